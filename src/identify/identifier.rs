@@ -1,0 +1,193 @@
+//! The identifier's face to its callers.
+
+use super::settings::{Settings, SettingsError};
+use crate::law::{Model, ModelError, Term};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// One measurement.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Sample {
+    /// Time, s.
+    pub t: f64,
+    /// Displacement; ignored where [`super::Channels`] says it is not measured.
+    pub q: f64,
+    /// Velocity; ignored where it is not measured.
+    pub qd: f64,
+    /// Excitation; ignored where it is not measured.
+    pub excitation: f64,
+}
+
+/// Why a sample was not used. Nothing else changes.
+#[derive(Clone, Copy, Debug, PartialEq, Error, Serialize, Deserialize)]
+pub enum Skipped {
+    /// A measured channel is NaN or infinite.
+    #[error("the sample at t = {t} s has a {channel} that is no finite number: skipped")]
+    NotFinite {
+        /// Time of the sample, s.
+        t: f64,
+        /// The channel at fault: `t`, `q`, `qd` or `F`.
+        channel: &'static str,
+    },
+    /// Time did not advance.
+    #[error("the sample at t = {t} s does not come after the one at {previous} s: skipped")]
+    NotLater {
+        /// Time of the sample, s.
+        t: f64,
+        /// Time of the last accepted one, s.
+        previous: f64,
+    },
+    /// The stream is faster than `sample_time`; thinned.
+    #[error("the sample at t = {t} s comes sooner than sample_time after the last one: thinned")]
+    TooSoon {
+        /// Time of the sample, s.
+        t: f64,
+    },
+}
+
+/// What the identifier is doing; numbered as in the FMU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Status {
+    /// No law yet.
+    Acquiring = 1,
+    /// The law explains the data.
+    Tracking = 2,
+    /// Evidence of a switch is growing.
+    SwitchSuspected = 3,
+    /// A switch was detected; the new law is being identified.
+    ReIdentifying = 4,
+}
+
+impl Status {
+    /// Every status, in the order of the FMU's enumeration.
+    pub const ALL: [Status; 4] = [Status::Acquiring, Status::Tracking, Status::SwitchSuspected, Status::ReIdentifying];
+
+    /// The name used in reports and in the FMU.
+    pub fn id(self) -> &'static str {
+        match self {
+            Status::Acquiring => "acquiring",
+            Status::Tracking => "tracking",
+            Status::SwitchSuspected => "switch suspected",
+            Status::ReIdentifying => "re-identifying",
+        }
+    }
+}
+
+/// A published coefficient.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Coefficient {
+    /// What it multiplies.
+    pub term: Term,
+    /// Its last known value; 0 before the first, and for a "maybe" term that the law does not have.
+    pub value: f64,
+    /// Its std; `None` while the coefficient is not known.
+    pub std: Option<f64>,
+}
+
+/// All other outputs after a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Output {
+    /// Switches detected so far.
+    pub switch_count: u32,
+    /// Estimated instant at which the present stage began, s.
+    pub switch_time: f64,
+    /// Time of the alarm that ended the last stage, s; `None` in the first one.
+    pub detection_time: Option<f64>,
+    /// First time at which the present law was vouched for (stated covariance puts e below 0.05²), s.
+    pub identified_time: Option<f64>,
+    /// What the identifier is doing.
+    pub status: Status,
+    /// Whether the present law is vouched for.
+    pub valid: bool,
+    /// Deviation of eq. (4) over T; 0 before the first law.
+    pub deviation: f64,
+    /// The deviation that is out of the ordinary.
+    pub threshold: f64,
+    /// Displacement that the law predicts for this instant.
+    pub prediction_q: f64,
+    /// Velocity that the law predicts for this instant.
+    pub prediction_qd: f64,
+    /// Estimated std of the displacement's sensor noise; `None` while not known or not measured.
+    pub noise_q: Option<f64>,
+    /// Estimated std of the velocity's sensor noise; `None` while not known or not measured.
+    pub noise_qd: Option<f64>,
+}
+
+/// Why an identifier cannot be built.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum BuildError {
+    /// The settings are refused.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// The model is refused.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}
+
+/// The streaming identifier of one model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Identifier {
+    settings: Settings,
+    coefficients: Vec<Coefficient>,
+    output: Output,
+}
+
+impl Identifier {
+    /// Builds an identifier in its initial state; everything that a step needs is allocated here.
+    ///
+    /// # Errors
+    /// [`BuildError`] when settings or model are refused.
+    pub fn new(model: &Model, settings: Settings) -> Result<Identifier, BuildError> {
+        settings.check()?;
+        model.check()?;
+        let coefficients =
+            model.terms.iter().map(|entry| Coefficient { term: entry.term, value: 0.0, std: None }).collect();
+        let output = Output {
+            switch_count: 0,
+            switch_time: 0.0,
+            detection_time: None,
+            identified_time: None,
+            status: Status::Acquiring,
+            valid: false,
+            deviation: 0.0,
+            threshold: 0.0,
+            prediction_q: 0.0,
+            prediction_qd: 0.0,
+            noise_q: None,
+            noise_qd: None,
+        };
+        Ok(Identifier { settings, coefficients, output })
+    }
+
+    /// Takes one sample.
+    ///
+    /// # Errors
+    /// [`Skipped`] says why the sample was not used; the identifier goes on unchanged.
+    pub fn step(&mut self, sample: Sample) -> Result<(), Skipped> {
+        if !sample.t.is_finite() {
+            return Err(Skipped::NotFinite { t: sample.t, channel: "t" });
+        }
+        Ok(())
+    }
+
+    /// The settings it was built with.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The published coefficients, in the order of the model's terms.
+    pub fn coefficients(&self) -> &[Coefficient] {
+        &self.coefficients
+    }
+
+    /// All other outputs after the last step.
+    pub fn output(&self) -> &Output {
+        &self.output
+    }
+
+    /// What the data since the present stage's start cannot determine: single terms, or combinations such as
+    /// `qdd and q together`.
+    pub fn unidentifiable(&self) -> Vec<String> {
+        Vec::new()
+    }
+}

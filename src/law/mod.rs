@@ -1,0 +1,17 @@
+//! Laws of motion as sums of terms.
+//!
+//! A law of one coordinate q reads `Σ θ_j f_j(q̈, q̇, q, F) = F`: coefficients θ on the left, the measured excitation F
+//! on the right with its coefficient fixed to 1 (or, unforced, with the inertia fixed to 1 and F = 0). Each
+//! [`Term`] is one f: the inertia q̈, a product of powers `q^a q̇^b F^c`, or a named physical effect of the catalogue.
+
+mod effect;
+mod hold;
+mod model;
+mod term;
+mod text;
+
+pub use effect::Effect;
+pub use hold::Hold;
+pub use model::{Columns, Given, Model, ModelError, ModelTerm};
+pub use term::{Monomial, Term, TermError};
+pub use text::equation;

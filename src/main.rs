@@ -1,0 +1,2 @@
+//! The `switchid` command line.
+fn main() {}
