@@ -10,3 +10,4 @@
 
 pub mod identify;
 pub mod law;
+pub mod simulate;

@@ -7,11 +7,13 @@
 mod effect;
 mod hold;
 mod model;
+mod motion;
 mod term;
 mod text;
 
 pub use effect::Effect;
 pub use hold::Hold;
 pub use model::{Columns, Given, Model, ModelError, ModelTerm};
+pub use motion::{Motion, State};
 pub use term::{Monomial, Term, TermError};
 pub use text::equation;
