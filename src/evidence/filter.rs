@@ -26,6 +26,14 @@ pub struct Noise {
     pub process: f64,
 }
 
+impl Noise {
+    /// Whether each sensor's variance is within a quarter of the other's.
+    pub fn is_near(&self, other: &Noise) -> bool {
+        let near = |a: f64, b: f64| (0.8..1.25).contains(&(a / b));
+        self.sensor.iter().zip(other.sensor).all(|(a, b)| near(*a, b))
+    }
+}
+
 /// Mean and covariance of (q, q̇).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Filter {

@@ -42,6 +42,17 @@ impl Information {
         self.score.fill(0.0);
     }
 
+    /// Copies the other's sums into this room.
+    pub fn clone_from_slices(&mut self, other: &Information) {
+        self.matrix.copy_from_slice(&other.matrix);
+        self.score.copy_from_slice(&other.score);
+    }
+
+    /// Multiplies all sums.
+    pub fn scale(&mut self, factor: f64) {
+        self.matrix.iter_mut().chain(&mut self.score).for_each(|entry| *entry *= factor);
+    }
+
     /// Takes one innovation.
     #[inline]
     pub fn add(&mut self, sensitivity: &[f64], residual: f64, variance: f64) {

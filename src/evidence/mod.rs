@@ -12,12 +12,14 @@
 //! - [`Bank`]: hypotheses that the law switched at one of many instants (Willsky and Jones, IEEE TAC 21, 1976).
 
 
+mod bank;
 mod filter;
 mod information;
 mod pass;
 mod symmetric;
 
 
+pub use bank::{Bank, Law, Suspect};
 pub use filter::{Channel, Filter, Innovation, Noise};
 pub use information::{Information, Solution};
-pub use pass::{Observation, Pass, Track};
+pub use pass::{IntervalMap, Observation, Pass, RIVALS, Track};

@@ -62,6 +62,45 @@ impl Track {
     }
 }
 
+/// δx⁺ = A δx + B δθ over an interval between two samples.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct IntervalMap {
+    /// A.
+    pub transition: [[f64; 2]; 2],
+    /// B, one column of (q, q̇) for each free coefficient.
+    pub input: Vec<[f64; 2]>,
+}
+
+impl IntervalMap {
+    fn reset(&mut self) {
+        self.transition = [[1.0, 0.0], [0.0, 1.0]];
+        self.input.fill([0.0; 2]);
+    }
+
+    #[inline]
+    fn append(&mut self, step: &Linearized, free: &[Term]) {
+        let [[a, b], [c, d]] = step.transition;
+        let [to_q, to_qd] = step.input;
+        for (input, term) in self.input.iter_mut().zip(free) {
+            let [q, qd] = *input;
+            let slope = step.slope(*term);
+            *input = [a * q + b * qd + to_q * slope, c * q + d * qd + to_qd * slope];
+        }
+        let [[e, f], [g, h]] = self.transition;
+        self.transition = [[a * e + b * g, a * f + b * h], [c * e + d * g, c * f + d * h]];
+    }
+
+    /// Carries the sensitivity of a state to the coefficients over the interval.
+    #[inline]
+    pub fn carry(&self, sensitivity: &mut [[f64; 2]]) {
+        let [[a, b], [c, d]] = self.transition;
+        for (state, input) in sensitivity.iter_mut().zip(&self.input) {
+            let [q, qd] = *state;
+            *state = [a * q + b * qd + input[0], c * q + d * qd + input[1]];
+        }
+    }
+}
+
 /// A run of the filter over a record, sample by sample.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pass {
@@ -75,6 +114,8 @@ pub struct Pass {
     pub information: Information,
     /// ∂(q, q̇)/∂θ of the filtered state.
     pub sensitivity: Vec<[f64; 2]>,
+    /// What the last interval between samples did to small changes.
+    pub map: IntervalMap,
     /// Parts into which an interval is cut.
     pub parts: usize,
     rival_filters: [Filter; 2],
@@ -92,6 +133,7 @@ impl Pass {
             rivals: [Track::default(); 2],
             information: Information::none(n),
             sensitivity: vec![[0.0; 2]; n],
+            map: IntervalMap { transition: [[0.0; 2]; 2], input: vec![[0.0; 2]; n] },
             parts: 1,
             rival_filters: [filter; 2],
             fastest: 0.0,
@@ -126,10 +168,11 @@ impl Pass {
     fn advance(&mut self, motion: &Motion, free: &[Term], noise: &Noise, observation: &Observation) {
         let parts = observation.drive.parts(self.parts);
         let dt = observation.dt / parts as f64;
+        self.map.reset();
         for part in 0..parts {
             let step = motion.linearized_step(self.filter.state, dt, observation.drive.part(part, parts));
             self.fastest = self.fastest.max(step.rate * (parts * parts) as f64);
-            self.carry_sensitivity(&step, free);
+            self.map.append(&step, free);
             for (rival, ratio) in self.rival_filters.iter_mut().zip(RIVALS) {
                 rival.state = beside(&step, self.filter.state, rival.state);
                 rival.predict(&step, dt, noise.process * ratio);
@@ -137,17 +180,7 @@ impl Pass {
             self.filter.state = step.state;
             self.filter.predict(&step, dt, noise.process);
         }
-    }
-
-    #[inline]
-    fn carry_sensitivity(&mut self, step: &Linearized, free: &[Term]) {
-        let [[a, b], [c, d]] = step.transition;
-        let [to_q, to_qd] = step.input;
-        for (sensitivity, term) in self.sensitivity.iter_mut().zip(free) {
-            let [q, qd] = *sensitivity;
-            let slope = step.slope(*term);
-            *sensitivity = [a * q + b * qd + to_q * slope, c * q + d * qd + to_qd * slope];
-        }
+        self.map.carry(&mut self.sensitivity);
     }
 
     fn correct(&mut self, channel: Channel, noise: &Noise, observation: &Observation) -> Option<Innovation> {

@@ -1,6 +1,8 @@
 //! The identifier's face to its callers.
 
+use super::problem::Problem;
 use super::settings::{Settings, SettingsError};
+use super::tracker::Tracker;
 use crate::law::{Model, ModelError, Term};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -128,8 +130,11 @@ pub enum BuildError {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Identifier {
     settings: Settings,
+    problem: Problem,
+    tracker: Tracker,
     coefficients: Vec<Coefficient>,
     output: Output,
+    last: Option<f64>,
 }
 
 impl Identifier {
@@ -142,6 +147,8 @@ impl Identifier {
         model.check()?;
         let coefficients =
             model.terms.iter().map(|entry| Coefficient { term: entry.term, value: 0.0, std: None }).collect();
+        let problem = Problem::new(model, &settings);
+        let tracker = Tracker::new(&problem, &settings);
         let output = Output {
             switch_count: 0,
             switch_time: 0.0,
@@ -156,7 +163,7 @@ impl Identifier {
             noise_q: None,
             noise_qd: None,
         };
-        Ok(Identifier { settings, coefficients, output })
+        Ok(Identifier { settings, problem, tracker, coefficients, output, last: None })
     }
 
     /// Takes one sample.
@@ -164,10 +171,29 @@ impl Identifier {
     /// # Errors
     /// [`Skipped`] says why the sample was not used; the identifier goes on unchanged.
     pub fn step(&mut self, sample: Sample) -> Result<(), Skipped> {
-        if !sample.t.is_finite() {
-            return Err(Skipped::NotFinite { t: sample.t, channel: "t" });
-        }
+        self.accept(&sample)?;
+        self.last = Some(sample.t);
+        self.tracker.step(&self.problem, &self.settings, sample, &mut self.coefficients, &mut self.output);
         Ok(())
+    }
+
+    fn accept(&self, sample: &Sample) -> Result<(), Skipped> {
+        let channels = self.settings.channels;
+        let values = [
+            ("t", true, sample.t),
+            ("q", channels.q, sample.q),
+            ("qd", channels.qd, sample.qd),
+            ("F", channels.excitation, sample.excitation),
+        ];
+        if let Some((channel, ..)) = values.into_iter().find(|(_, used, value)| *used && !value.is_finite()) {
+            return Err(Skipped::NotFinite { t: sample.t, channel });
+        }
+        let t = sample.t;
+        match self.last {
+            Some(previous) if t <= previous => Err(Skipped::NotLater { t, previous }),
+            Some(previous) if t - previous < 0.5 * self.settings.sample_time => Err(Skipped::TooSoon { t }),
+            _ => Ok(()),
+        }
     }
 
     /// The settings it was built with.

@@ -2,6 +2,7 @@
 
 use super::Variation;
 use crate::law::{Hold, Monomial, Term};
+use serde::{Deserialize, Serialize};
 
 /// Gauss–Legendre points on 0 ≤ x ≤ 1, exact for polynomials of degree 5.
 const GAUSS: [(f64, f64); 3] =
@@ -25,10 +26,12 @@ pub struct Section<'a> {
 }
 
 /// Computes weak equations for a set of terms.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// The integral of each term against φ.
     pub terms: Vec<f64>,
+    /// What white sensor noise of std 1 on each sample of (q, q̇) adds to the variance of each term's integral.
+    pub noise: Vec<[f64; 2]>,
     /// The integral of the excitation against φ.
     pub excitation: f64,
     /// ∫ φ² dt, s.
@@ -38,7 +41,7 @@ pub struct Row {
 impl Row {
     /// Room for `n` terms.
     pub fn new(n: usize) -> Row {
-        Row { terms: vec![0.0; n], excitation: 0.0, norm: 0.0 }
+        Row { terms: vec![0.0; n], noise: vec![[0.0; 2]; n], excitation: 0.0, norm: 0.0 }
     }
 
     /// Integrates over the section. Trapezoidal in the terms, which for an integrand that vanishes smoothly at both ends is of
@@ -46,6 +49,7 @@ impl Row {
     /// excitation, trapezoidal (spectrally accurate) in a band-limited one.
     pub fn integrate(&mut self, section: &Section, variation: Variation, terms: &[Term]) {
         self.terms.fill(0.0);
+        self.noise.fill([0.0; 2]);
         (self.excitation, self.norm) = (0.0, 0.0);
         let (start, end) = (section.t[0], section.t[section.t.len() - 1]);
         let length = end - start;
@@ -54,8 +58,11 @@ impl Row {
             let weight = half_widths(section.t, k);
             let phi = [weight * value, weight * slope / length, weight * curvature / (length * length)];
             self.norm += phi[0] * value;
-            for (sum, term) in self.terms.iter_mut().zip(terms) {
+            for ((sum, noise), term) in self.terms.iter_mut().zip(&mut self.noise).zip(terms) {
                 *sum += integrand(*term, section, k, phi);
+                let [by_q, by_qd] = sensitivity(*term, section, k, phi);
+                noise[0] += by_q * by_q;
+                noise[1] += by_qd * by_qd;
             }
             if section.hold == Hold::BandLimited {
                 self.excitation += section.excitation[k] * phi[0];
@@ -87,6 +94,20 @@ fn integrand(term: Term, section: &Section, k: usize, phi: [f64; 3]) -> f64 {
             -term.mass(q) * qd * phi[1] + (term.force(q, qd, section.excitation[k]) - 2.0 * q * qd * qd) * phi[0]
         }
         _ => term.force(q, qd, section.excitation[k]) * phi[0],
+    }
+}
+
+/// The integrand's derivatives by the measured (q, q̇) of sample k; an estimated velocity counts as exact.
+fn sensitivity(term: Term, section: &Section, k: usize, phi: [f64; 3]) -> [f64; 2] {
+    let (q, qd) = (section.q[k], section.qd[k]);
+    match term {
+        Term::Inertia if section.qd_measured => [0.0, phi[1]],
+        Term::Inertia => [phi[2], 0.0],
+        Term::Monomial(Monomial { q: power, qd: 1, excitation: 0 }) => [q.powi(i32::from(power)) * phi[1], 0.0],
+        _ => {
+            let (by_q, by_qd) = term.gradient(q, qd, section.excitation[k]);
+            [by_q * phi[0], if section.qd_measured { by_qd * phi[0] } else { 0.0 }]
+        }
     }
 }
 

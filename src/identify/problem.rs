@@ -1,0 +1,74 @@
+//! What is sought: the model's terms, split into known and free coefficients.
+
+use super::settings::{Channels, Settings};
+use crate::law::{Given, Hold, Model, Term};
+use crate::weak::Row;
+use serde::{Deserialize, Serialize};
+
+/// The identification problem, fixed at construction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Problem {
+    /// All terms of the model.
+    pub terms: Vec<Term>,
+    /// Positions of the free terms among `terms`.
+    pub free: Vec<usize>,
+    /// The free terms themselves.
+    pub free_terms: Vec<Term>,
+    /// Which free terms evidence may drop.
+    pub maybe: Vec<bool>,
+    /// Coefficients where known, 0 elsewhere; one for each of `terms`.
+    pub known: Vec<f64>,
+    /// Position of the inertia among `terms`.
+    pub inertia: usize,
+    /// Which quantities are measured.
+    pub channels: Channels,
+    /// What the excitation does between samples.
+    pub hold: Hold,
+}
+
+impl Problem {
+    /// Splits the model's terms. Without an excitation the inertia is fixed to 1, or to its known value.
+    pub fn new(model: &Model, settings: &Settings) -> Problem {
+        let channels = settings.channels;
+        let given = |term: Term, given: Given| match (term, given) {
+            (Term::Inertia, Given::Fit | Given::Maybe) if !channels.excitation => Given::Known(1.0),
+            (Term::Inertia, Given::Maybe) => Given::Fit,
+            _ => given,
+        };
+        let entries: Vec<(Term, Given)> =
+            model.terms.iter().map(|entry| (entry.term, given(entry.term, entry.given))).collect();
+        let is_free = |given: &Given| !matches!(given, Given::Known(_));
+        let free: Vec<usize> = (0..entries.len()).filter(|index| is_free(&entries[*index].1)).collect();
+        Problem {
+            terms: entries.iter().map(|(term, _)| *term).collect(),
+            free_terms: free.iter().map(|index| entries[*index].0).collect(),
+            maybe: free.iter().map(|index| entries[*index].1 == Given::Maybe).collect(),
+            known: entries.iter().map(|(_, given)| if let Given::Known(value) = given { *value } else { 0.0 }).collect(),
+            inertia: model.position(Term::Inertia).unwrap_or(0),
+            free,
+            channels,
+            hold: settings.hold,
+        }
+    }
+
+    /// Number of free coefficients.
+    pub fn n(&self) -> usize {
+        self.free.len()
+    }
+
+    /// The weak equation in the free coefficients: writes its left side, returns its right side.
+    pub fn weak_equation(&self, row: &Row, left: &mut [f64]) -> f64 {
+        for (entry, index) in left.iter_mut().zip(&self.free) {
+            *entry = row.terms[*index];
+        }
+        let known: f64 = row.terms.iter().zip(&self.known).map(|(integral, value)| integral * value).sum();
+        row.excitation - known
+    }
+
+    /// Writes free coefficients into all of them.
+    pub fn scatter(&self, free: &[f64], all: &mut [f64]) {
+        for (value, index) in free.iter().zip(&self.free) {
+            all[*index] = *value;
+        }
+    }
+}

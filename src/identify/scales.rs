@@ -1,0 +1,51 @@
+//! How large the motion is, for priors in the data's own units.
+
+use super::problem::Problem;
+use crate::evidence::{Observation, Pass};
+use serde::{Deserialize, Serialize};
+
+/// Mean squares over a pass.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scales {
+    /// Σ (∂q̈/∂θ)² by free coefficient.
+    slopes: Vec<f64>,
+    force: f64,
+    inertial: f64,
+    count: f64,
+}
+
+impl Scales {
+    /// Nothing seen yet of `n` free coefficients.
+    pub fn new(n: usize) -> Scales {
+        Scales { slopes: vec![0.0; n], force: 0.0, inertial: 0.0, count: 0.0 }
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.slopes.fill(0.0);
+        (self.force, self.inertial, self.count) = (0.0, 0.0, 0.0);
+    }
+
+    /// Takes the interval that the pass has just run over, under the coefficients `all`.
+    pub fn add(&mut self, problem: &Problem, all: &[f64], pass: &Pass, observation: &Observation) {
+        let inertia = all[problem.inertia];
+        for (sum, input) in self.slopes.iter_mut().zip(&pass.map.input) {
+            *sum += (input[1] / observation.dt).powi(2);
+        }
+        self.force += (observation.drive.part(0, 1)[0] / inertia).powi(2);
+        let stiffness = pass.map.transition[1][0] / observation.dt;
+        self.inertial += (stiffness * pass.filter.state.q).powi(2);
+        self.count += 1.0;
+    }
+
+    /// RMS of the acceleration that the excitation gives, or in free motion the one that the stiffness gives.
+    pub fn acceleration(&self) -> f64 {
+        let sum = if self.force > 0.0 { self.force } else { self.inertial };
+        (sum / self.count.max(1.0)).sqrt()
+    }
+
+    /// RMS of ∂q̈/∂θ of the free coefficient.
+    pub fn slope(&self, index: usize) -> f64 {
+        (self.slopes[index] / self.count.max(1.0)).sqrt()
+    }
+}

@@ -1,0 +1,314 @@
+//! The estimate of the present stage, refined pass by pass over its record.
+//!
+//! A pass runs the filter over all samples of the stage, a bounded number at a step, until it has caught up with the stream; then
+//! the coefficients take a Gauss–Newton step, terms without evidence are dropped, the noise levels follow the innovations, and the
+//! next pass begins. Begun with much process noise the fit is that of the equation error, which is nearly linear in the
+//! coefficients; the likelihood then takes the process noise down, pass by pass, to where the data want it, and the fit
+//! becomes the maximum likelihood of the trajectory without passing through its wrong minima.
+
+use super::problem::Problem;
+use super::scales::Scales;
+use super::settings::Settings;
+use super::structure::Structure;
+use super::window::Window;
+use crate::evidence::{Channel, Filter, Information, Noise, Pass, RIVALS, Solution, Track};
+use crate::law::{Motion, State};
+use serde::{Deserialize, Serialize};
+
+/// A pass that has caught up is closed only when the record has grown by this fraction since the last one …
+const GROWTH: f64 = 0.02;
+
+/// … and by this many samples.
+const FRESH: u64 = 8;
+
+/// Largest Gauss–Newton decrement, in units of the number of coefficients, of an estimate that has settled.
+const SETTLED: f64 = 1.0;
+
+/// Largest gain in log-likelihood that another noise level may still promise, nats.
+const GAIN: f64 = 3.0;
+
+/// Smallest sensor noise std, relative to the largest value measured: rounding and the integration's own error.
+const NOISE_FLOOR: f64 = 3e-9;
+
+/// The record of a stage is folded into a prior when it fills this fraction of the window.
+const FULL: f64 = 0.9;
+
+/// An estimate of one stage's law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Stage {
+    /// Number of the sample at which the stage's record begins.
+    pub start: u64,
+    /// Free coefficients.
+    pub coefficients: Vec<f64>,
+    /// All coefficients.
+    pub all: Vec<f64>,
+    /// Which free terms the law has.
+    pub active: Vec<bool>,
+    /// Noise levels.
+    pub noise: Noise,
+    /// Covariance of the active coefficients.
+    pub solution: Solution,
+    /// What the closed pass, the prior included, says about `coefficients`.
+    pub information: Information,
+    /// The Gauss–Newton decrement of the last pass ÷ number of active coefficients.
+    pub decrement: f64,
+    /// How large accelerations and their slopes were in the last closed pass.
+    pub scales: Scales,
+    /// What another level of process noise would add to the log-likelihood of the last pass.
+    pub gain: f64,
+    /// Log-likelihood per measurement of the last pass.
+    pub likelihood: f64,
+    /// Passes closed in this stage.
+    pub passes: u32,
+    /// What is known beside the record, about `coefficients`.
+    prior: Information,
+    pass: Pass,
+    next: u64,
+    closed_at: u64,
+    checkpoint: Checkpoint,
+    structure: Structure,
+    previous: Vec<f64>,
+    largest: [f64; 2],
+    running_scales: Scales,
+}
+
+/// What is known of the free coefficients before any data.
+#[derive(Clone, Copy, Debug)]
+pub struct Prior<'a> {
+    /// Means.
+    pub centre: &'a [f64],
+    /// Independent stds.
+    pub std: &'a [f64],
+}
+
+/// Information from the first half of a long record, to be folded into the prior.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Checkpoint {
+    at: Option<u64>,
+    information: Information,
+}
+
+impl Stage {
+    /// Room for the problem.
+    pub fn new(problem: &Problem) -> Stage {
+        let n = problem.n();
+        Stage {
+            start: 0,
+            coefficients: vec![0.0; n],
+            all: problem.known.clone(),
+            active: vec![true; n],
+            noise: Noise { sensor: [1.0; 2], process: 1.0 },
+            solution: Solution::none(n),
+            information: Information::none(n),
+            decrement: f64::INFINITY,
+            gain: f64::INFINITY,
+            likelihood: f64::NEG_INFINITY,
+            passes: 0,
+            prior: Information::none(n),
+            pass: Pass::new(n),
+            next: 0,
+            closed_at: 0,
+            checkpoint: Checkpoint { at: None, information: Information::none(n) },
+            structure: Structure::new(n),
+            previous: vec![0.0; n],
+            largest: [0.0; 2],
+            scales: Scales::new(n),
+            running_scales: Scales::new(n),
+        }
+    }
+
+    /// Begins a stage at sample `start` from the coefficients `from` and these noise levels; before any data the coefficients
+    /// lie about `centre` with the std `spread`.
+    pub fn begin(&mut self, problem: &Problem, window: &Window, start: u64, from: &[f64], prior: Prior, noise: Noise) {
+        self.start = start;
+        self.coefficients.copy_from_slice(from);
+        problem.scatter(from, &mut self.all);
+        self.active.fill(true);
+        self.noise = noise;
+        self.passes = 0;
+        self.decrement = f64::INFINITY;
+        self.closed_at = start;
+        self.prior.clear();
+        let n = problem.n();
+        for index in 0..n {
+            let precision = (prior.std[index] * prior.std[index]).recip();
+            self.prior.matrix[index * n + index] = precision;
+            self.prior.score[index] = precision * (prior.centre[index] - from[index]);
+        }
+        self.gain = f64::INFINITY;
+        self.largest = [0.0; 2];
+        self.begin_pass(problem, window);
+    }
+
+    /// Number of samples in the stage's record up to `end`.
+    pub fn length(&self, end: u64) -> u64 {
+        end.saturating_sub(self.start)
+    }
+
+    /// Advances the pass by up to `budget` samples; returns whether a pass was closed.
+    pub fn refine(&mut self, problem: &Problem, settings: &Settings, window: &Window, budget: usize) -> bool {
+        let end = window.ready();
+        if self.next <= window.oldest() {
+            self.start = window.oldest();
+            self.begin_pass(problem, window);
+        }
+        let motion = Motion { terms: &problem.terms, coefficients: &self.all };
+        let stop = end.min(self.next + budget as u64);
+        while self.next < stop {
+            let observation = window.observation(self.next);
+            self.pass.step(&motion, &problem.free_terms, &self.noise, &observation);
+            self.running_scales.add(problem, &self.all, &self.pass, &observation);
+            for (largest, measured) in self.largest.iter_mut().zip(observation.measured) {
+                *largest = largest.max(measured.unwrap_or(0.0).abs());
+            }
+            self.next += 1;
+            if Some(self.next) == self.checkpoint.at {
+                self.checkpoint.information.clone_from_slices(&self.pass.information);
+            }
+        }
+        let fresh = self.closed_at + FRESH.max((GROWTH * self.length(end) as f64) as u64);
+        if self.next < end || (self.next < fresh && self.decrement < SETTLED) || self.length(end) < 4 {
+            return false;
+        }
+        self.close(problem, settings, window);
+        true
+    }
+
+    /// Whether the last passes agree: the estimate is at the likelihood's maximum, to within a fraction of its std.
+    pub fn settled(&self) -> bool {
+        self.passes >= 3 && self.decrement < SETTLED && self.gain < GAIN
+    }
+
+    /// The variance that the estimate states for e of eq. (8), relative: tr Cov ÷ Σθ².
+    pub fn stated_error(&self) -> f64 {
+        let squares: f64 = self.all.iter().map(|value| value * value).sum();
+        let active = (0..self.active.len()).filter(|index| self.active[*index]);
+        let trace: f64 = active
+            .map(|index| if self.solution.determined[index] { self.solution.variance(index) } else { f64::INFINITY })
+            .sum();
+        trace / squares
+    }
+
+    /// The run that was just closed, at the head of the stream and linear about the new coefficients; the caller gets it in
+    /// exchange for another one's room. The next pass begins.
+    pub fn hand_over(&mut self, problem: &Problem, window: &Window, live: &mut Pass) {
+        std::mem::swap(&mut self.pass, live);
+        live.information.clone_from_slices(&self.information);
+        self.begin_pass(problem, window);
+    }
+
+    fn close(&mut self, problem: &Problem, settings: &Settings, window: &Window) {
+        let track = self.pass.track;
+        self.closed_at = self.next;
+        std::mem::swap(&mut self.scales, &mut self.running_scales);
+        self.passes += 1;
+        self.information.clone_from_slices(&self.pass.information);
+        self.information.merge(&self.prior);
+        self.previous.copy_from_slice(&self.coefficients);
+        self.structure.select(
+            &self.information,
+            &problem.maybe,
+            track.total(),
+            &mut self.coefficients,
+            &mut self.active,
+            &mut self.solution,
+        );
+        self.limit_step(problem);
+        problem.scatter(&self.coefficients, &mut self.all);
+        for (step, value) in self.previous.iter_mut().zip(&self.coefficients) {
+            *step = value - *step;
+        }
+        self.move_to_new_coefficients();
+        let active = self.active.iter().filter(|active| **active).count().max(1);
+        self.decrement = self.information.quadratic(&self.previous) / active as f64;
+        self.follow_noise(problem, settings, &track);
+        self.fold(window);
+    }
+
+    /// Keeps the inertia from losing more than half of itself in one step.
+    fn limit_step(&mut self, problem: &Problem) {
+        let Some(inertia) = problem.free.iter().position(|index| *index == problem.inertia) else { return };
+        let (old, new) = (self.previous[inertia], self.coefficients[inertia]);
+        let change = new - old;
+        let allowed = 0.6 * old.abs();
+        let against = change * old < 0.0 && change.abs() > allowed;
+        if against {
+            let fraction = allowed / change.abs();
+            for (new, old) in self.coefficients.iter_mut().zip(&self.previous) {
+                *new = old + fraction * (*new - old);
+            }
+        }
+    }
+
+    /// `previous` holds the step: scores are taken about the new coefficients, the filtered state follows them.
+    fn move_to_new_coefficients(&mut self) {
+        self.information.shift(&self.previous);
+        self.prior.shift(&self.previous);
+        self.pass.information.shift(&self.previous);
+        if self.checkpoint.at.is_some() {
+            self.checkpoint.information.shift(&self.previous);
+        }
+        for (step, sensitivity) in self.previous.iter().zip(&self.pass.sensitivity) {
+            self.pass.filter.state.q += step * sensitivity[0];
+            self.pass.filter.state.qd += step * sensitivity[1];
+        }
+    }
+
+    /// Sensor noise follows the innovations, process noise the likelihood.
+    fn follow_noise(&mut self, problem: &Problem, settings: &Settings, track: &Track) {
+        let given = [settings.noise_q, settings.noise_qd];
+        for channel in Channel::ALL {
+            let index = channel as usize;
+            let floor = (NOISE_FLOOR * self.largest[index]).powi(2).max(f64::MIN_POSITIVE);
+            self.noise.sensor[index] = match given[index] {
+                0.0 => (self.noise.sensor[index] * track.scale(channel)).max(floor),
+                std => std * std,
+            };
+        }
+        let mean = (track.squares[0] + track.squares[1]) / track.total().max(1.0);
+        let likelihoods = self.pass.rivals.map(|rival| rival.log_likelihood());
+        let best = if likelihoods[0] >= likelihoods[1] { 0 } else { 1 };
+        self.gain = likelihoods[best] - track.log_likelihood();
+        self.likelihood = track.log_likelihood() / track.total().max(1.0);
+        let better = self.gain > 0.0;
+        let ratio = if better { RIVALS[best] } else { 1.0 };
+        let force = settings.noise_excitation / self.all[problem.inertia];
+        let floor = force * force * settings.sample_time + f64::MIN_POSITIVE;
+        self.noise.process = (self.noise.process * ratio * mean).max(floor);
+    }
+
+    /// When the record outgrows the window, its first half becomes prior knowledge.
+    fn fold(&mut self, window: &Window) {
+        if let Some(at) = self.checkpoint.at.take() {
+            if self.length(self.next) as f64 > FULL * window.capacity() as f64 {
+                self.prior.merge(&self.checkpoint.information);
+                self.start = at;
+            }
+        }
+    }
+
+    /// Begins the next pass.
+    pub fn begin_pass(&mut self, problem: &Problem, window: &Window) {
+        let length = self.length(window.ready());
+        let long = length as f64 > 0.6 * FULL * window.capacity() as f64;
+        self.checkpoint.at = long.then_some(self.start + length / 2);
+        self.pass.begin(first_state(problem, window, self.start, &self.noise));
+        self.next = self.start + 1;
+        self.running_scales.clear();
+    }
+}
+
+/// The state at the first sample, from that sample and the next alone.
+fn first_state(problem: &Problem, window: &Window, start: u64, noise: &Noise) -> Filter {
+    let [first, second] = [start, (start + 1).min(window.end() - 1)].map(|number| *window.sample(number));
+    let [q, qd] = noise.sensor;
+    let dt = (second.t - first.t).max(f64::MIN_POSITIVE);
+    match (problem.channels.q, problem.channels.qd) {
+        (true, true) => Filter { state: State { q: first.q, qd: first.qd }, covariance: [q, 0.0, qd] },
+        (true, false) => {
+            let slope = (second.q - first.q) / dt;
+            Filter { state: State { q: first.q, qd: slope }, covariance: [q, 0.0, 10.0 * (slope * slope + q / (dt * dt))] }
+        }
+        _ => Filter { state: State { q: 0.0, qd: first.qd }, covariance: [1.0, 0.0, qd] },
+    }
+}

@@ -1,0 +1,90 @@
+//! Which of the "maybe" terms a law has.
+//!
+//! At the maximum of the likelihood, dropping a term of coefficient θ_j with variance v_j costs θ_j²/v_j in twice the
+//! log-likelihood. The cheapest term goes while that is below 2 ln N for N scalar measurements; the rest is solved anew.
+
+use crate::evidence::{Information, Solution};
+use serde::{Deserialize, Serialize};
+
+/// Room for the elimination.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Structure {
+    information: Information,
+    values: Vec<f64>,
+}
+
+impl Structure {
+    /// Room for `n` coefficients.
+    pub fn new(n: usize) -> Structure {
+        Structure { information: Information::none(n), values: vec![0.0; n] }
+    }
+
+    /// Eliminates terms. `information` is taken about `coefficients`; `active` says which terms remain, `solution` is theirs,
+    /// and `coefficients` become its values, 0 for what was dropped.
+    pub fn select(
+        &mut self,
+        information: &Information,
+        maybe: &[bool],
+        measurements: f64,
+        coefficients: &mut [f64],
+        active: &mut [bool],
+        solution: &mut Solution,
+    ) {
+        let price = 2.0 * measurements.max(2.0).ln();
+        active.fill(true);
+        loop {
+            self.solve(information, coefficients, active, solution);
+            match self.cheapest(maybe, active, solution) {
+                Some((index, cost)) if cost < price => active[index] = false,
+                _ => break,
+            }
+        }
+        coefficients.copy_from_slice(&self.values);
+    }
+
+    /// Solves with the terms that are not active at 0.
+    fn solve(&mut self, information: &Information, from: &[f64], active: &[bool], solution: &mut Solution) {
+        self.information.clone_from_slices(information);
+        for ((value, from), active) in self.values.iter_mut().zip(from).zip(active) {
+            *value = if *active { 0.0 } else { -from };
+        }
+        self.information.shift(&self.values);
+        solution.solve(&self.information, active);
+        for index in 0..self.values.len() {
+            self.values[index] = if active[index] { from[index] + solution.step[index] } else { 0.0 };
+        }
+    }
+
+    fn cheapest(&self, maybe: &[bool], active: &[bool], solution: &Solution) -> Option<(usize, f64)> {
+        let cost = |index: usize| match solution.determined[index] {
+            true => self.values[index].powi(2) / solution.variance(index),
+            false => 0.0,
+        };
+        let candidates = (0..active.len()).filter(|index| maybe[*index] && active[*index]);
+        candidates.map(|index| (index, cost(index))).min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_term_that_the_data_do_not_need_goes_and_the_others_are_solved_anew() {
+        let mut information = Information::none(3);
+        let truth = [2.0, 0.0, -1.0];
+        for k in 0..2000 {
+            let x = 0.01 * f64::from(k);
+            let row = [x.sin(), (x + 0.3).sin(), (1.7 * x).cos()];
+            let noise = 0.1 * (f64::from(k) * 12.9898).sin();
+            let residual: f64 = row.iter().zip(truth).map(|(a, b)| a * b).sum::<f64>() + noise;
+            information.add(&row, residual, 0.005);
+        }
+        let (mut coefficients, mut active) = ([0.0; 3], [false; 3]);
+        let mut solution = Solution::none(3);
+        Structure::new(3).select(&information, &[true; 3], 2000.0, &mut coefficients, &mut active, &mut solution);
+        assert_eq!(active, [true, false, true]);
+        assert_eq!(coefficients[1], 0.0);
+        assert!((coefficients[0] - 2.0).abs() < 0.02 && (coefficients[2] + 1.0).abs() < 0.02, "{coefficients:?}");
+    }
+}

@@ -1,0 +1,425 @@
+//! Our method: acquire → track → suspect → re-identify.
+
+use super::deviation::Deviation;
+use super::identifier::{Coefficient, Output, Status};
+use super::problem::Problem;
+use super::settings::Settings;
+use super::stage::{Prior, Stage};
+use super::start::Start;
+use super::window::Window;
+use crate::evidence::{Bank, Law, Noise, Observation, Pass, Suspect};
+use crate::law::{Motion, State};
+use serde::{Deserialize, Serialize};
+
+/// Hypotheses of a switch that are kept.
+const HYPOTHESES: usize = 20;
+
+/// A hypothesis starts every so many samples.
+const SPAWN_EVERY: u64 = 2;
+
+/// Oldest start that is still considered, s ÷ `sample_time`: the record of a switch this old has long been decided on.
+const OLDEST: f64 = 8.0;
+
+/// Hypotheses looked at in a step.
+const LOOKS: usize = 3;
+
+/// Samples of refinement in a step, while tracking and while the law is not settled.
+const BUDGET: [usize; 2] = [6, 40];
+
+/// A switch moves a coefficient's force by this fraction of the acceleration's RMS, as a std.
+const SWITCH_SIZE: f64 = 0.3;
+
+/// A first law is tried when the weak start predicts its force this well.
+const START_ERROR: f64 = 0.3;
+
+/// e below this square vouches for a law.
+pub const VOUCHED: f64 = 0.05 * 0.05;
+
+/// e below this square makes a law good enough to weigh switches against.
+const TRUSTED: f64 = 0.2 * 0.2;
+
+/// The state of our method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tracker {
+    window: Window,
+    start: Start,
+    stage: Stage,
+    challenger: Stage,
+    challenging: bool,
+    challenged_from: u64,
+    live: Live,
+    bank: Bank,
+    deviation: Deviation,
+    usual_deviation: f64,
+    phase: Phase,
+    next_guess: u64,
+    spread: Vec<f64>,
+    change: Vec<f64>,
+    centre: Vec<f64>,
+}
+
+/// Where the identification stands.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+enum Phase {
+    /// Rows are gathered for the first law.
+    Gathering,
+    /// A stage is being refined.
+    Refining,
+}
+
+/// The law in use, run along with the stream.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Live {
+    pass: Pass,
+    all: Vec<f64>,
+    active: Vec<bool>,
+    noise: Noise,
+    next: u64,
+    running: bool,
+    prediction: State,
+    predicted_since: f64,
+}
+
+impl Tracker {
+    /// Room for everything.
+    pub fn new(problem: &Problem, settings: &Settings) -> Tracker {
+        let n = problem.n();
+        let capacity = (settings.max_window / settings.sample_time).ceil() as usize;
+        Tracker {
+            window: Window::new(capacity, problem.channels, problem.hold),
+            start: Start::new(problem, capacity),
+            stage: Stage::new(problem),
+            challenger: Stage::new(problem),
+            challenging: false,
+            challenged_from: 0,
+            live: Live {
+                pass: Pass::new(n),
+                all: problem.known.clone(),
+                active: vec![true; n],
+                noise: Noise { sensor: [1.0; 2], process: 1.0 },
+                next: 0,
+                running: false,
+                prediction: State::default(),
+                predicted_since: 0.0,
+            },
+            bank: Bank::new(n, HYPOTHESES),
+            deviation: Deviation::new(settings.deviation_interval, settings.sample_time),
+            usual_deviation: 0.0,
+            phase: Phase::Gathering,
+            next_guess: 0,
+            spread: vec![1.0; n],
+            change: vec![0.0; n],
+            centre: vec![0.0; n],
+        }
+    }
+
+    /// The record it works on.
+    pub fn window(&self) -> &Window {
+        &self.window
+    }
+
+    /// Takes an accepted sample.
+    pub fn step(
+        &mut self,
+        problem: &Problem,
+        settings: &Settings,
+        sample: super::Sample,
+        published: &mut [Coefficient],
+        output: &mut Output,
+    ) {
+        if self.window.end() == 0 {
+            output.switch_time = sample.t;
+            self.start.begin(0);
+        }
+        self.window.push(sample);
+        self.follow(problem, settings, output);
+        if !output.valid {
+            self.challenge(problem, settings);
+            self.refine_challenger(problem, settings);
+        }
+        if self.phase == Phase::Refining {
+            self.refine(problem, settings, published, output);
+        }
+    }
+
+    fn now(&self) -> f64 {
+        self.window.sample(self.window.end() - 1).t
+    }
+
+    /// Begins a stage, or a challenger of the one there is, from what the weak rows of its record say.
+    fn challenge(&mut self, problem: &Problem, settings: &Settings) {
+        self.start.feed(problem, &self.window, 4);
+        let (window, since) = (&self.window, self.challenged_from);
+        let long_enough = self.now() - window.sample(window.oldest()).t >= settings.initial_window;
+        if !long_enough || window.end() < self.next_guess || since < window.oldest() {
+            return;
+        }
+        self.next_guess = window.end() + (window.end() - since) / 8 + 4;
+        let sensor = match self.phase {
+            Phase::Gathering => first_noise(problem, settings, window),
+            Phase::Refining => self.stage.noise.sensor,
+        };
+        let Some(guess) = self.start.guess(problem, sensor) else { return };
+        let free = problem.free.iter().position(|index| *index == problem.inertia);
+        let inertia = free.map_or(problem.known[problem.inertia], |index| guess.fit.coefficients[index]);
+        if guess.relative_error > START_ERROR || !(inertia.is_finite() && inertia != 0.0) {
+            return;
+        }
+        let process = guess.force_intensity / (inertia * inertia) + f64::MIN_POSITIVE;
+        let noise = Noise { sensor, process };
+        for (spread, std) in self.spread.iter_mut().zip(guess.std) {
+            *spread = 10.0 * std + f64::MIN_POSITIVE;
+        }
+        let centre = &guess.fit.coefficients;
+        let challenger = match self.phase {
+            Phase::Gathering => &mut self.stage,
+            Phase::Refining => &mut self.challenger,
+        };
+        challenger.begin(problem, window, since, centre, Prior { centre, std: &self.spread }, noise);
+        self.challenging = self.phase == Phase::Refining;
+        self.phase = Phase::Refining;
+    }
+
+    /// Refines the challenger; it takes the stage's place when it explains the record better.
+    fn refine_challenger(&mut self, problem: &Problem, settings: &Settings) {
+        if !self.challenging || !self.challenger.refine(problem, settings, &self.window, BUDGET[1]) {
+            return;
+        }
+        if self.challenger.settled() {
+            self.challenging = false;
+            let measurements = 2.0 * self.challenger.length(self.window.ready()) as f64;
+            if self.challenger.likelihood > self.stage.likelihood + 3.0 / measurements {
+                std::mem::swap(&mut self.challenger, &mut self.stage);
+            }
+        }
+        self.challenger.begin_pass(problem, &self.window);
+    }
+
+    /// Runs the law in use over what is new, and weighs the evidence of a switch.
+    fn follow(&mut self, problem: &Problem, settings: &Settings, output: &mut Output) {
+        while self.live.running && self.live.next < self.window.ready() {
+            let number = self.live.next;
+            let observation = self.window.observation(number);
+            let innovations = self.live.step(problem, &observation);
+            self.bank.step(&self.live.pass.map, &innovations);
+            self.predict(problem, settings, number, &observation, output);
+            if number % SPAWN_EVERY == 0 {
+                let law = Law { information: &self.live.pass.information, active: &self.live.active };
+                self.bank.spawn(number, &law);
+            }
+            let oldest = number.saturating_sub((OLDEST / settings.sample_time) as u64);
+            self.bank.forget_before(oldest.max(self.stage.start));
+            self.bank.look(LOOKS);
+            self.live.next += 1;
+            if let Some(suspect) = self.bank.suspect() {
+                self.judge(problem, settings, &suspect, output);
+            }
+        }
+    }
+
+    /// Alarm, suspicion, or neither.
+    fn judge(&mut self, problem: &Problem, settings: &Settings, suspect: &Suspect, output: &mut Output) {
+        let level = (settings.false_alarm_interval / settings.sample_time).ln().max(3.0);
+        let given = settings.deviation_threshold;
+        let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
+        if suspect.evidence > level || deviates {
+            self.switch(problem, suspect, output);
+        } else if output.status == Status::Tracking && suspect.evidence > 0.5 * level {
+            output.status = Status::SwitchSuspected;
+        } else if output.status == Status::SwitchSuspected && suspect.evidence <= 0.5 * level {
+            output.status = Status::Tracking;
+        }
+    }
+
+    /// Ends the stage; only data from after the switch enters the new law.
+    fn switch(&mut self, problem: &Problem, suspect: &Suspect, output: &mut Output) {
+        self.bank.look_at_all();
+        let Some(suspect) = self.bank.suspect().or(Some(*suspect)) else { return };
+        let last = self.window.ready() - 1;
+        let start = (self.bank.latest_start(&suspect, 5.0) + 1).min(last);
+        self.bank.change(&suspect, &mut self.change);
+        self.set_spread(problem);
+        let plausible = self.change.iter().zip(&self.spread).all(|(change, spread)| change.abs() < 2.0 * spread);
+        for (index, (change, centre)) in self.change.iter_mut().zip(&mut self.centre).enumerate() {
+            *centre = self.live.all[problem.free[index]];
+            *change = if plausible { *centre + *change } else { *centre };
+        }
+        let acceleration = self.stage.scales.acceleration();
+        let process = (SWITCH_SIZE * acceleration).powi(2) * 0.1;
+        let noise = Noise { sensor: self.live.noise.sensor, process: process.max(self.live.noise.process) };
+        self.spread.iter_mut().for_each(|spread| *spread *= 10.0);
+        keep_inertia(problem, &self.live.all, &mut self.change);
+        let prior = Prior { centre: &self.centre, std: &self.spread };
+        self.stage.begin(problem, &self.window, start, &self.change, prior, noise);
+        self.start.begin(start);
+        (self.challenging, self.challenged_from, self.next_guess) = (false, start, 0);
+        self.live.running = false;
+        self.bank.clear();
+        self.deviation.clear();
+        self.usual_deviation = 0.0;
+        output.switch_count += 1;
+        output.switch_time = self.window.sample(suspect.start).t;
+        output.detection_time = Some(self.now());
+        output.identified_time = None;
+        output.valid = false;
+        output.status = Status::ReIdentifying;
+    }
+
+    fn refine(&mut self, problem: &Problem, settings: &Settings, published: &mut [Coefficient], output: &mut Output) {
+        let budget = BUDGET[usize::from(!output.valid)];
+        if output.status == Status::SwitchSuspected || !self.stage.refine(problem, settings, &self.window, budget) {
+            return;
+        }
+        if std::env::var("DBG").is_ok() { eprintln!("PASS {} t {:.3} n {} start {} dec {:.2e} stated {:.2e} noise {:?} th {:.5?} prior {:?}", self.stage.passes, self.now(), self.stage.length(self.window.ready()), self.stage.start, self.stage.decrement, self.stage.stated_error(), self.stage.noise, self.stage.all, self.spread); }
+        let usable = self.stage.passes >= 2 && self.stage.all.iter().all(|value| value.is_finite());
+        let trusted = self.stage.settled() && self.stage.stated_error() < TRUSTED;
+        if !trusted && !(usable && self.live.running) {
+            self.stage.begin_pass(problem, &self.window);
+            return;
+        }
+        if self.live.running {
+            for (index, change) in self.change.iter_mut().enumerate() {
+                *change = self.stage.coefficients[index] - self.live.all[problem.free[index]];
+            }
+            match self.live.noise.is_near(&self.stage.noise) {
+                true => self.bank.shift(&self.change),
+                false => self.bank.clear(),
+            }
+        }
+        self.live.adopt(problem, &mut self.stage, &self.window);
+        self.set_spread(problem);
+        let spread: &[f64] = &self.spread;
+        self.bank.set_spread(spread);
+        if std::env::var("DBG").is_ok() { eprintln!("pass {} t {:.3} n {} dec {:.2e} stated {:.2e} noise {:?} spread {:?} th {:?}", self.stage.passes, self.now(), self.stage.length(self.window.ready()), self.stage.decrement, self.stage.stated_error(), self.stage.noise, spread, self.stage.all); }
+        self.publish(problem, published, output);
+    }
+
+    fn publish(&mut self, problem: &Problem, published: &mut [Coefficient], output: &mut Output) {
+        for (index, coefficient) in published.iter_mut().enumerate() {
+            match problem.free.iter().position(|free| *free == index) {
+                None => (coefficient.value, coefficient.std) = (problem.known[index], Some(0.0)),
+                Some(free) => self.publish_free(free, coefficient),
+            }
+        }
+        output.noise_q = problem.channels.q.then(|| self.stage.noise.sensor[0].sqrt());
+        output.noise_qd = problem.channels.qd.then(|| self.stage.noise.sensor[1].sqrt());
+        if self.stage.settled() && self.stage.stated_error() < VOUCHED {
+            output.valid = true;
+            output.identified_time.get_or_insert(self.now());
+            if output.status != Status::SwitchSuspected {
+                output.status = Status::Tracking;
+            }
+        }
+    }
+
+    #[doc(hidden)] fn publish_free(&self, free: usize, coefficient: &mut Coefficient) {
+        if !self.stage.active[free] {
+            (coefficient.value, coefficient.std) = (0.0, Some(0.0));
+        } else if self.stage.solution.determined[free] && self.stage.solution.variance(free).sqrt() < self.spread[free] {
+            coefficient.value = self.stage.coefficients[free];
+            coefficient.std = Some(self.stage.solution.variance(free).sqrt());
+        } else {
+            coefficient.std = None;
+        }
+    }
+
+    /// τ of each coefficient: a change whose force moves the acceleration by [`SWITCH_SIZE`] of its RMS.
+    fn set_spread(&mut self, problem: &Problem) {
+        let acceleration = self.stage.scales.acceleration();
+        for index in 0..problem.n() {
+            let slope = self.stage.scales.slope(index);
+            self.spread[index] = if slope > 0.0 { SWITCH_SIZE * acceleration / slope } else { 1e9 };
+        }
+    }
+
+    fn predict(
+        &mut self,
+        problem: &Problem,
+        settings: &Settings,
+        number: u64,
+        observation: &Observation,
+        output: &mut Output,
+    ) {
+        let sample = *self.window.sample(number);
+        let motion = Motion { terms: &problem.terms, coefficients: &self.live.all };
+        let [from, _, to] = observation.drive.part(0, 1);
+        self.live.prediction = motion.step_linear(self.live.prediction, observation.dt, from, to);
+        let prediction = self.live.prediction;
+        let weight = |measured: bool, weight: f64| if measured { weight } else { 0.0 };
+        let difference = weight(problem.channels.q, settings.weight_q) * (prediction.q - sample.q).abs()
+            + weight(problem.channels.qd, settings.weight_qd) * (prediction.qd - sample.qd).abs();
+        if difference.is_finite() {
+            self.deviation.add(sample.t, difference);
+        }
+        (output.prediction_q, output.prediction_qd) = (prediction.q, prediction.qd);
+        output.deviation = self.deviation.mean();
+        output.threshold = self.threshold(settings);
+        if sample.t - self.live.predicted_since > settings.deviation_interval || !prediction.is_finite() {
+            self.live.restart_prediction(sample.t);
+            self.usual_deviation += 0.2 * (output.deviation - self.usual_deviation);
+        }
+    }
+
+    /// The given threshold, or four times the usual deviation under this law and what its noise alone would give.
+    fn threshold(&self, settings: &Settings) -> f64 {
+        if settings.deviation_threshold > 0.0 {
+            return settings.deviation_threshold;
+        }
+        let [q, qd] = self.live.noise.sensor.map(f64::sqrt);
+        4.0 * self.usual_deviation.max(settings.weight_q * q + settings.weight_qd * qd)
+    }
+}
+
+impl Live {
+    fn step(&mut self, problem: &Problem, observation: &Observation) -> [Option<crate::evidence::Innovation>; 2] {
+        let motion = Motion { terms: &problem.terms, coefficients: &self.all };
+        self.pass.step(&motion, &problem.free_terms, &self.noise, observation)
+    }
+
+    /// Takes over the stage's estimate and the run that led to it.
+    fn adopt(&mut self, problem: &Problem, stage: &mut Stage, window: &Window) {
+        stage.hand_over(problem, window, &mut self.pass);
+        self.all.copy_from_slice(&stage.all);
+        self.active.copy_from_slice(&stage.active);
+        self.noise = stage.noise;
+        if !self.running {
+            self.restart_prediction(window.sample(window.ready() - 1).t);
+        }
+        self.next = window.ready();
+        self.running = true;
+    }
+
+    fn restart_prediction(&mut self, t: f64) {
+        self.prediction = self.pass.filter.state;
+        self.predicted_since = t;
+    }
+}
+
+/// A linear estimate of the change may turn the inertia around: it then stays what it was.
+fn keep_inertia(problem: &Problem, old: &[f64], new: &mut [f64]) {
+    if let Some(index) = problem.free.iter().position(|index| *index == problem.inertia) {
+        let ratio = new[index] / old[problem.inertia];
+        if !(0.3..3.0).contains(&ratio) {
+            new[index] = old[problem.inertia];
+        }
+    }
+}
+
+/// Sensor variances from third differences, which a smooth motion leaves small; an upper bound that passes then lower.
+fn first_noise(problem: &Problem, settings: &Settings, window: &Window) -> [f64; 2] {
+    let given = [settings.noise_q, settings.noise_qd];
+    let channel = |index: usize, value: fn(&super::Sample) -> f64| {
+        if given[index] > 0.0 {
+            return given[index] * given[index];
+        }
+        let first = window.end().saturating_sub(4096).max(window.oldest());
+        let differences = (first..window.end().saturating_sub(3)).map(|number| {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|offset| value(window.sample(number + offset)));
+            (d - 3.0 * c + 3.0 * b - a).powi(2)
+        });
+        let count = window.end().saturating_sub(3).saturating_sub(first).max(1);
+        differences.sum::<f64>() / (20.0 * count as f64) + f64::MIN_POSITIVE
+    };
+    let _ = problem;
+    [channel(0, |sample| sample.q), channel(1, |sample| sample.qd)]
+}

@@ -1,0 +1,90 @@
+//! The last samples, in a ring whose memory is fixed at construction.
+
+use super::identifier::Sample;
+use super::settings::Channels;
+use crate::evidence::Observation;
+use crate::law::{BandLimited, Drive, Hold, REACH, look_ahead};
+use serde::{Deserialize, Serialize};
+
+/// Accepted samples by number; the first of all is number 0.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Window {
+    ring: Vec<Sample>,
+    count: u64,
+    channels: Channels,
+    hold: Hold,
+    band_limited: BandLimited,
+}
+
+impl Window {
+    /// Room for `capacity` samples.
+    pub fn new(capacity: usize, channels: Channels, hold: Hold) -> Window {
+        let ring = vec![Sample::default(); capacity];
+        Window { ring, count: 0, channels, hold, band_limited: BandLimited::new() }
+    }
+
+    /// How many samples it can hold.
+    pub fn capacity(&self) -> usize {
+        self.ring.len()
+    }
+
+    /// Forgets all samples and begins to count anew.
+    pub fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    /// Adds a sample; the oldest goes when there is no room.
+    pub fn push(&mut self, sample: Sample) {
+        let slot = self.slot(self.count);
+        self.ring[slot] = sample;
+        self.count += 1;
+    }
+
+    /// Number of the oldest sample that is still there.
+    pub fn oldest(&self) -> u64 {
+        self.count.saturating_sub(self.ring.len() as u64)
+    }
+
+    /// Number of the next sample to come.
+    pub fn end(&self) -> u64 {
+        self.count
+    }
+
+    /// One past the last sample up to which the excitation is known.
+    pub fn ready(&self) -> u64 {
+        (self.count + 1).saturating_sub(look_ahead(self.hold) as u64)
+    }
+
+    /// The sample of that number, which must be in the window.
+    #[inline]
+    pub fn sample(&self, number: u64) -> &Sample {
+        &self.ring[self.slot(number)]
+    }
+
+    /// Sample `number` and the excitation since the one before it; both must be in the window.
+    #[inline]
+    pub fn observation(&self, number: u64) -> Observation {
+        let (before, after) = (self.sample(number - 1), self.sample(number));
+        let drive = match self.hold {
+            _ if !self.channels.excitation => Drive::Held(0.0),
+            Hold::Zero => Drive::Held(before.excitation),
+            Hold::Linear => Drive::Line(before.excitation, after.excitation),
+            Hold::BandLimited => self.interpolate(number - 1),
+        };
+        let measured = [self.channels.q.then_some(after.q), self.channels.qd.then_some(after.qd)];
+        Observation { dt: after.t - before.t, drive, measured }
+    }
+
+    /// Interpolates the excitation after sample `start`; beyond the ends of the record its last value stays.
+    fn interpolate(&self, start: u64) -> Drive {
+        let first = start as i64 - (REACH as i64 - 1);
+        let (oldest, newest) = (self.oldest() as i64, self.count as i64 - 1);
+        let tap = |index: usize| self.sample((first + index as i64).clamp(oldest, newest) as u64).excitation;
+        self.band_limited.interpolate(&std::array::from_fn(tap))
+    }
+
+    #[inline]
+    fn slot(&self, number: u64) -> usize {
+        (number % self.ring.len() as u64) as usize
+    }
+}
