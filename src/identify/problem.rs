@@ -56,6 +56,11 @@ impl Problem {
         self.free.len()
     }
 
+    /// Position of the inertia among the free coefficients, where it is one.
+    pub fn free_inertia(&self) -> Option<usize> {
+        self.free.iter().position(|index| *index == self.inertia)
+    }
+
     /// The weak equation in the free coefficients: writes its left side, returns its right side.
     pub fn weak_equation(&self, row: &Row, left: &mut [f64]) -> f64 {
         for (entry, index) in left.iter_mut().zip(&self.free) {

@@ -70,6 +70,7 @@ pub struct Stage {
     previous: Vec<f64>,
     largest: [f64; 2],
     running_scales: Scales,
+    inertia_prior: Option<InertiaPrior>,
 }
 
 /// What is known of the free coefficients before any data.
@@ -79,6 +80,24 @@ pub struct Prior<'a> {
     pub centre: &'a [f64],
     /// Independent stds.
     pub std: &'a [f64],
+    /// Std of the logarithm of the inertia, which keeps its sign.
+    pub log_inertia: f64,
+}
+
+/// The inertia's prior, normal in its logarithm: as the inertia goes to 0 the law becomes one of first order, whose
+/// likelihood over a short record is no worse, and its covariance in the linearisation no longer honest.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct InertiaPrior {
+    centre: f64,
+    log_std: f64,
+}
+
+impl InertiaPrior {
+    /// (information, score) about the value m.
+    fn about(&self, m: f64) -> (f64, f64) {
+        let precision = (self.log_std * m).powi(2).recip();
+        (precision, -(m / self.centre).ln() * m * precision)
+    }
 }
 
 /// Information from the first half of a long record, to be folded into the prior.
@@ -114,6 +133,7 @@ impl Stage {
             largest: [0.0; 2],
             scales: Scales::new(n),
             running_scales: Scales::new(n),
+            inertia_prior: None,
         }
     }
 
@@ -134,6 +154,11 @@ impl Stage {
             let precision = (prior.std[index] * prior.std[index]).recip();
             self.prior.matrix[index * n + index] = precision;
             self.prior.score[index] = precision * (prior.centre[index] - from[index]);
+        }
+        self.inertia_prior = None;
+        if let Some(index) = problem.free_inertia() {
+            (self.prior.matrix[index * n + index], self.prior.score[index]) = (0.0, 0.0);
+            self.inertia_prior = Some(InertiaPrior { centre: prior.centre[index], log_std: prior.log_inertia });
         }
         self.gain = f64::INFINITY;
         self.largest = [0.0; 2];
@@ -204,6 +229,11 @@ impl Stage {
         self.passes += 1;
         self.information.clone_from_slices(&self.pass.information);
         self.information.merge(&self.prior);
+        if let (Some(index), Some(prior)) = (problem.free_inertia(), self.inertia_prior) {
+            let (information, score) = prior.about(self.coefficients[index]);
+            self.information.matrix[index * problem.n() + index] += information;
+            self.information.score[index] += score;
+        }
         self.previous.copy_from_slice(&self.coefficients);
         self.structure.select(
             &self.information,
@@ -213,6 +243,9 @@ impl Stage {
             &mut self.active,
             &mut self.solution,
         );
+        if !self.coefficients.iter().all(|value| value.is_finite()) {
+            return self.recover(problem, window);
+        }
         self.limit_step(problem);
         problem.scatter(&self.coefficients, &mut self.all);
         for (step, value) in self.previous.iter_mut().zip(&self.coefficients) {
@@ -225,9 +258,17 @@ impl Stage {
         self.fold(window);
     }
 
+    /// The pass has left what can be integrated: it is repeated from the last coefficients with the filter closer to the data.
+    fn recover(&mut self, problem: &Problem, window: &Window) {
+        self.coefficients.copy_from_slice(&self.previous);
+        self.noise.process = if self.noise.process.is_finite() { 1e3 * self.noise.process } else { 1.0 };
+        (self.decrement, self.gain, self.passes) = (f64::INFINITY, f64::INFINITY, 0);
+        self.begin_pass(problem, window);
+    }
+
     /// Keeps the inertia from losing more than half of itself in one step.
     fn limit_step(&mut self, problem: &Problem) {
-        let Some(inertia) = problem.free.iter().position(|index| *index == problem.inertia) else { return };
+        let Some(inertia) = problem.free_inertia() else { return };
         let (old, new) = (self.previous[inertia], self.coefficients[inertia]);
         let change = new - old;
         let allowed = 0.6 * old.abs();

@@ -29,6 +29,12 @@ const BUDGET: [usize; 2] = [6, 40];
 /// A switch moves a coefficient's force by this fraction of the acceleration's RMS, as a std.
 const SWITCH_SIZE: f64 = 0.3;
 
+/// The prior of a new law is this much wider than the switch that is looked for.
+const PRIOR_WIDTH: f64 = 3.0;
+
+/// Std of the logarithm of an inertia after a switch, or about a first guess.
+const INERTIA_SPREAD: f64 = 0.5;
+
 /// A first law is tried when the weak start predicts its force this well.
 const START_ERROR: f64 = 0.3;
 
@@ -160,8 +166,7 @@ impl Tracker {
             Phase::Refining => self.stage.noise.sensor,
         };
         let Some(guess) = self.start.guess(problem, sensor) else { return };
-        let free = problem.free.iter().position(|index| *index == problem.inertia);
-        let inertia = free.map_or(problem.known[problem.inertia], |index| guess.fit.coefficients[index]);
+        let inertia = problem.free_inertia().map_or(problem.known[problem.inertia], |index| guess.fit.coefficients[index]);
         if guess.relative_error > START_ERROR || !(inertia.is_finite() && inertia != 0.0) {
             return;
         }
@@ -175,7 +180,8 @@ impl Tracker {
             Phase::Gathering => &mut self.stage,
             Phase::Refining => &mut self.challenger,
         };
-        challenger.begin(problem, window, since, centre, Prior { centre, std: &self.spread }, noise);
+        let prior = Prior { centre, std: &self.spread, log_inertia: INERTIA_SPREAD };
+        challenger.begin(problem, window, since, centre, prior, noise);
         self.challenging = self.phase == Phase::Refining;
         self.phase = Phase::Refining;
     }
@@ -247,9 +253,9 @@ impl Tracker {
         let acceleration = self.stage.scales.acceleration();
         let process = (SWITCH_SIZE * acceleration).powi(2) * 0.1;
         let noise = Noise { sensor: self.live.noise.sensor, process: process.max(self.live.noise.process) };
-        self.spread.iter_mut().for_each(|spread| *spread *= 10.0);
+        self.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
         keep_inertia(problem, &self.live.all, &mut self.change);
-        let prior = Prior { centre: &self.centre, std: &self.spread };
+        let prior = Prior { centre: &self.centre, std: &self.spread, log_inertia: INERTIA_SPREAD };
         self.stage.begin(problem, &self.window, start, &self.change, prior, noise);
         self.start.begin(start);
         (self.challenging, self.challenged_from, self.next_guess) = (false, start, 0);
@@ -270,7 +276,7 @@ impl Tracker {
         if output.status == Status::SwitchSuspected || !self.stage.refine(problem, settings, &self.window, budget) {
             return;
         }
-        if std::env::var("DBG").is_ok() { eprintln!("PASS {} t {:.3} n {} start {} dec {:.2e} stated {:.2e} noise {:?} th {:.5?} prior {:?}", self.stage.passes, self.now(), self.stage.length(self.window.ready()), self.stage.start, self.stage.decrement, self.stage.stated_error(), self.stage.noise, self.stage.all, self.spread); }
+        if std::env::var("DBG").is_ok() { eprintln!("PASS {} t {:.3} n {} dec {:.1e} stated {:.1e} s {:.2e} {:.2e} Q {:.1e} gain {:.1e} {:?} th {:.4?}", self.stage.passes, self.now(), self.stage.length(self.window.ready()), self.stage.decrement, self.stage.stated_error(), self.stage.noise.sensor[0].sqrt(), self.stage.noise.sensor[1].sqrt(), self.stage.noise.process, self.stage.gain, output.status, self.stage.all); }
         let usable = self.stage.passes >= 2 && self.stage.all.iter().all(|value| value.is_finite());
         let trusted = self.stage.settled() && self.stage.stated_error() < TRUSTED;
         if !trusted && !(usable && self.live.running) {
@@ -290,7 +296,6 @@ impl Tracker {
         self.set_spread(problem);
         let spread: &[f64] = &self.spread;
         self.bank.set_spread(spread);
-        if std::env::var("DBG").is_ok() { eprintln!("pass {} t {:.3} n {} dec {:.2e} stated {:.2e} noise {:?} spread {:?} th {:?}", self.stage.passes, self.now(), self.stage.length(self.window.ready()), self.stage.decrement, self.stage.stated_error(), self.stage.noise, spread, self.stage.all); }
         self.publish(problem, published, output);
     }
 
@@ -397,7 +402,7 @@ impl Live {
 
 /// A linear estimate of the change may turn the inertia around: it then stays what it was.
 fn keep_inertia(problem: &Problem, old: &[f64], new: &mut [f64]) {
-    if let Some(index) = problem.free.iter().position(|index| *index == problem.inertia) {
+    if let Some(index) = problem.free_inertia() {
         let ratio = new[index] / old[problem.inertia];
         if !(0.3..3.0).contains(&ratio) {
             new[index] = old[problem.inertia];
