@@ -22,6 +22,9 @@ use serde::{Deserialize, Serialize};
 /// Pivots this far below their diagonal are rounding.
 const TOLERANCE: f64 = 1e-13;
 
+/// The law in use is trusted with this fraction of its information: its covariance is that of a linearisation.
+const CAUTION: f64 = 0.1;
+
 /// A hypothesis is looked at again when its age has grown by this factor.
 const AGING: f64 = 1.1;
 
@@ -133,7 +136,7 @@ impl Bank {
         hypothesis.sensitivity.fill([0.0; 2]);
         hypothesis.information.clear();
         hypothesis.mean.fill(0.0);
-        hypothesis.prior.copy_from_slice(&law.information.matrix);
+        hypothesis.prior.iter_mut().zip(&law.information.matrix).for_each(|(slot, entry)| *slot = CAUTION * entry);
         for (index, (slot, active)) in hypothesis.active.iter_mut().zip(law.active).enumerate() {
             *slot = *active && law.information.matrix[index * n + index] > 0.0;
         }

@@ -11,8 +11,8 @@ pub const RIVALS: [f64; 2] = [1.0 / 30.0, 6.0];
 /// Most parts into which an interval between two samples is cut.
 const MAX_PARTS: usize = 8;
 
-/// Largest rate per part, squared radians: below it a step of order 4 errs by less than 1e-6 of the motion.
-const MAX_RATE: f64 = 0.02;
+/// Largest rate per part, squared radians: below it a step of order 4 errs by less than 1e-7 of the motion.
+const MAX_RATE: f64 = 0.0025;
 
 /// A sample and the excitation since the one before it.
 #[derive(Clone, Copy, Debug)]

@@ -28,7 +28,7 @@ const SETTLED: f64 = 1.0;
 const GAIN: f64 = 3.0;
 
 /// Smallest sensor noise std, relative to the largest value measured: rounding and the integration's own error.
-const NOISE_FLOOR: f64 = 3e-9;
+const NOISE_FLOOR: f64 = 1e-7;
 
 /// The record of a stage is folded into a prior when it fills this fraction of the window.
 const FULL: f64 = 0.9;
@@ -71,6 +71,8 @@ pub struct Stage {
     largest: [f64; 2],
     running_scales: Scales,
     inertia_prior: Option<InertiaPrior>,
+    known_noise: [f64; 2],
+    known_noise_weight: f64,
 }
 
 /// What is known of the free coefficients before any data.
@@ -82,6 +84,10 @@ pub struct Prior<'a> {
     pub std: &'a [f64],
     /// Std of the logarithm of the inertia, which keeps its sign.
     pub log_inertia: f64,
+    /// Which terms the law before had, after a switch.
+    pub structure: Option<&'a [bool]>,
+    /// How many samples the sensors' variances are known from.
+    pub noise_weight: f64,
 }
 
 /// The inertia's prior, normal in its logarithm: as the inertia goes to 0 the law becomes one of first order, whose
@@ -134,6 +140,8 @@ impl Stage {
             scales: Scales::new(n),
             running_scales: Scales::new(n),
             inertia_prior: None,
+            known_noise: [0.0; 2],
+            known_noise_weight: 0.0,
         }
     }
 
@@ -145,6 +153,12 @@ impl Stage {
         problem.scatter(from, &mut self.all);
         self.active.fill(true);
         self.noise = noise;
+        match prior.structure {
+            Some(active) => self.structure.remember(active),
+            None => self.structure.forget(),
+        }
+        self.known_noise = noise.sensor;
+        self.known_noise_weight = prior.noise_weight;
         self.passes = 0;
         self.decrement = f64::INFINITY;
         self.closed_at = start;
@@ -212,6 +226,11 @@ impl Stage {
             .map(|index| if self.solution.determined[index] { self.solution.variance(index) } else { f64::INFINITY })
             .sum();
         trace / squares
+    }
+
+    /// The same with every "maybe" term in the law: what the estimate would be worth, had it picked the wrong ones.
+    pub fn full_error(&self) -> f64 {
+        self.structure.full_error
     }
 
     /// The run that was just closed, at the head of the stream and linear about the new coefficients; the caller gets it in
@@ -302,7 +321,11 @@ impl Stage {
             let index = channel as usize;
             let floor = (NOISE_FLOOR * self.largest[index]).powi(2).max(f64::MIN_POSITIVE);
             self.noise.sensor[index] = match given[index] {
-                0.0 => (self.noise.sensor[index] * track.scale(channel)).max(floor),
+                0.0 => {
+                    let (count, known) = (track.count[index], self.known_noise_weight);
+                    let seen = count * self.noise.sensor[index] * track.scale(channel);
+                    ((seen + known * self.known_noise[index]) / (count + known).max(1.0)).max(floor)
+                }
                 std => std * std,
             };
         }

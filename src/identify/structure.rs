@@ -1,22 +1,48 @@
 //! Which of the "maybe" terms a law has.
 //!
 //! At the maximum of the likelihood, dropping a term of coefficient θ_j with variance v_j costs θ_j²/v_j in twice the
-//! log-likelihood. The cheapest term goes while that is below 2 ln N for N scalar measurements; the rest is solved anew.
+//! log-likelihood. The cheapest term goes while that is below its price, 2 ln N for N scalar measurements; the rest is solved
+//! anew. After a switch the old structure is the likelier one: a term that the old law had is cheaper by [`LOYALTY`], one that it
+//! had not dearer.
 
 use crate::evidence::{Information, Solution};
 use serde::{Deserialize, Serialize};
+
+/// What the old law's structure counts for, in twice nats.
+const LOYALTY: f64 = 20.0;
 
 /// Room for the elimination.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Structure {
     information: Information,
     values: Vec<f64>,
+    /// What the price of each term adds to 2 ln N.
+    surcharge: Vec<f64>,
+    /// Relative error of eq. (8) that the last solution with all terms states.
+    pub full_error: f64,
 }
 
 impl Structure {
     /// Room for `n` coefficients.
     pub fn new(n: usize) -> Structure {
-        Structure { information: Information::none(n), values: vec![0.0; n] }
+        Structure {
+            information: Information::none(n),
+            values: vec![0.0; n],
+            surcharge: vec![0.0; n],
+            full_error: f64::INFINITY,
+        }
+    }
+
+    /// Nothing is known of the structure.
+    pub fn forget(&mut self) {
+        self.surcharge.fill(0.0);
+    }
+
+    /// The structure is likely to be that of a law with these terms.
+    pub fn remember(&mut self, active: &[bool]) {
+        for (surcharge, active) in self.surcharge.iter_mut().zip(active) {
+            *surcharge = if *active { -LOYALTY } else { LOYALTY };
+        }
     }
 
     /// Eliminates terms. `information` is taken about `coefficients`; `active` says which terms remain, `solution` is theirs,
@@ -34,8 +60,11 @@ impl Structure {
         active.fill(true);
         loop {
             self.solve(information, coefficients, active, solution);
+            if active.iter().all(|active| *active) {
+                self.full_error = stated(&self.values, solution);
+            }
             match self.cheapest(maybe, active, solution) {
-                Some((index, cost)) if cost < price => active[index] = false,
+                Some((index, excess)) if excess < price => active[index] = false,
                 _ => break,
             }
         }
@@ -61,8 +90,14 @@ impl Structure {
             false => 0.0,
         };
         let candidates = (0..active.len()).filter(|index| maybe[*index] && active[*index]);
-        candidates.map(|index| (index, cost(index))).min_by(|a, b| a.1.total_cmp(&b.1))
+        candidates.map(|index| (index, cost(index) - self.surcharge[index])).min_by(|a, b| a.1.total_cmp(&b.1))
     }
+}
+
+/// tr Cov ÷ Σθ².
+fn stated(values: &[f64], solution: &Solution) -> f64 {
+    let squares: f64 = values.iter().map(|value| value * value).sum();
+    (0..values.len()).map(|index| solution.variance(index)).sum::<f64>() / squares
 }
 
 #[cfg(test)]

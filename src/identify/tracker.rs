@@ -26,8 +26,14 @@ const LOOKS: usize = 3;
 /// Samples of refinement in a step, while tracking and while the law is not settled.
 const BUDGET: [usize; 2] = [6, 40];
 
+/// A stage with fewer samples than this is refined at the faster pace: its law is not yet linear within its std.
+const YOUNG: u64 = 5000;
+
 /// A switch moves a coefficient's force by this fraction of the acceleration's RMS, as a std.
 const SWITCH_SIZE: f64 = 0.3;
+
+/// For how many samples the sensor noise of the last stage counts in the next one.
+const NOISE_MEMORY: f64 = 500.0;
 
 /// The prior of a new law is this much wider than the switch that is looked for.
 const PRIOR_WIDTH: f64 = 3.0;
@@ -60,6 +66,7 @@ pub struct Tracker {
     phase: Phase,
     next_guess: u64,
     spread: Vec<f64>,
+    noise_weight: f64,
     change: Vec<f64>,
     centre: Vec<f64>,
 }
@@ -114,6 +121,7 @@ impl Tracker {
             phase: Phase::Gathering,
             next_guess: 0,
             spread: vec![1.0; n],
+            noise_weight: 0.0,
             change: vec![0.0; n],
             centre: vec![0.0; n],
         }
@@ -163,6 +171,7 @@ impl Tracker {
         self.next_guess = window.end() + (window.end() - since) / 8 + 4;
         let sensor = match self.phase {
             Phase::Gathering => first_noise(problem, settings, window),
+            Phase::Refining if self.noise_weight > 0.0 => self.live.noise.sensor,
             Phase::Refining => self.stage.noise.sensor,
         };
         let Some(guess) = self.start.guess(problem, sensor) else { return };
@@ -172,16 +181,24 @@ impl Tracker {
         }
         let process = guess.force_intensity / (inertia * inertia) + f64::MIN_POSITIVE;
         let noise = Noise { sensor, process };
-        for (spread, std) in self.spread.iter_mut().zip(guess.std) {
-            *spread = 10.0 * std + f64::MIN_POSITIVE;
+        let fit = guess.fit;
+        for index in 0..problem.n() {
+            self.spread[index] = fit.reach[index].max(10.0 * guess.std[index]).min(1e9);
+            self.centre[index] = if problem.maybe[index] { 0.0 } else { fit.coefficients[index] };
         }
-        let centre = &guess.fit.coefficients;
         let challenger = match self.phase {
             Phase::Gathering => &mut self.stage,
             Phase::Refining => &mut self.challenger,
         };
-        let prior = Prior { centre, std: &self.spread, log_inertia: INERTIA_SPREAD };
-        challenger.begin(problem, window, since, centre, prior, noise);
+        let structure = (self.noise_weight > 0.0).then_some(self.live.active.as_slice());
+        let prior = Prior {
+            centre: &self.centre,
+            std: &self.spread,
+            log_inertia: INERTIA_SPREAD,
+            structure,
+            noise_weight: self.noise_weight,
+        };
+        challenger.begin(problem, window, since, &fit.coefficients, prior, noise);
         self.challenging = self.phase == Phase::Refining;
         self.phase = Phase::Refining;
     }
@@ -240,6 +257,7 @@ impl Tracker {
     /// Ends the stage; only data from after the switch enters the new law.
     fn switch(&mut self, problem: &Problem, suspect: &Suspect, output: &mut Output) {
         self.bank.look_at_all();
+        if std::env::var("DBG").is_ok() { eprintln!("ALARM t {:.3} {:?} stage start {} passes {} live noise {:?} th {:?}", self.now(), self.bank.suspect(), self.stage.start, self.stage.passes, self.live.noise, self.live.all); }
         let Some(suspect) = self.bank.suspect().or(Some(*suspect)) else { return };
         let last = self.window.ready() - 1;
         let start = (self.bank.latest_start(&suspect, 5.0) + 1).min(last);
@@ -255,7 +273,14 @@ impl Tracker {
         let noise = Noise { sensor: self.live.noise.sensor, process: process.max(self.live.noise.process) };
         self.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
         keep_inertia(problem, &self.live.all, &mut self.change);
-        let prior = Prior { centre: &self.centre, std: &self.spread, log_inertia: INERTIA_SPREAD };
+        self.noise_weight = NOISE_MEMORY;
+        let prior = Prior {
+            centre: &self.centre,
+            std: &self.spread,
+            log_inertia: INERTIA_SPREAD,
+            structure: Some(&self.live.active),
+            noise_weight: self.noise_weight,
+        };
         self.stage.begin(problem, &self.window, start, &self.change, prior, noise);
         self.start.begin(start);
         (self.challenging, self.challenged_from, self.next_guess) = (false, start, 0);
@@ -272,13 +297,14 @@ impl Tracker {
     }
 
     fn refine(&mut self, problem: &Problem, settings: &Settings, published: &mut [Coefficient], output: &mut Output) {
-        let budget = BUDGET[usize::from(!output.valid)];
+        let young = !output.valid || self.stage.length(self.window.ready()) < YOUNG;
+        let budget = BUDGET[usize::from(young)];
         if output.status == Status::SwitchSuspected || !self.stage.refine(problem, settings, &self.window, budget) {
             return;
         }
         if std::env::var("DBG").is_ok() { eprintln!("PASS {} t {:.3} n {} dec {:.1e} stated {:.1e} s {:.2e} {:.2e} Q {:.1e} gain {:.1e} {:?} th {:.4?}", self.stage.passes, self.now(), self.stage.length(self.window.ready()), self.stage.decrement, self.stage.stated_error(), self.stage.noise.sensor[0].sqrt(), self.stage.noise.sensor[1].sqrt(), self.stage.noise.process, self.stage.gain, output.status, self.stage.all); }
         let usable = self.stage.passes >= 2 && self.stage.all.iter().all(|value| value.is_finite());
-        let trusted = self.stage.settled() && self.stage.stated_error() < TRUSTED;
+        let trusted = self.stage.settled() && self.stage.stated_error() < TRUSTED && self.stage.full_error() < TRUSTED;
         if !trusted && !(usable && self.live.running) {
             self.stage.begin_pass(problem, &self.window);
             return;
@@ -308,7 +334,7 @@ impl Tracker {
         }
         output.noise_q = problem.channels.q.then(|| self.stage.noise.sensor[0].sqrt());
         output.noise_qd = problem.channels.qd.then(|| self.stage.noise.sensor[1].sqrt());
-        if self.stage.settled() && self.stage.stated_error() < VOUCHED {
+        if self.stage.settled() && self.stage.stated_error() < VOUCHED && self.stage.full_error() < TRUSTED {
             output.valid = true;
             output.identified_time.get_or_insert(self.now());
             if output.status != Status::SwitchSuspected {

@@ -49,6 +49,9 @@ pub struct Fit {
     pub condition: f64,
     /// Whether the rows determine the unknown, n.
     pub determined: Vec<bool>,
+    /// Length of the right side ÷ length of the unknown's column, n: the value at which its term alone would be as large as the
+    /// right side; infinite for a column of zeros.
+    pub reach: Vec<f64>,
     /// RMS of the residual over the rows.
     pub residual: f64,
     /// Right singular vectors that do not count, one row of n for each.
@@ -124,6 +127,10 @@ impl Regression {
         let largest = values.max();
         let counts = |index: usize| values[index] > RANK_TOLERANCE * largest;
         let mut smallest = largest;
+        let right_length = length(n);
+        for (reach, scale) in fit.reach.iter_mut().zip(scale.iter()) {
+            *reach = if *scale > 0.0 { right_length * scale } else { f64::INFINITY };
+        }
         for index in (0..N).filter(|index| counts(*index)) {
             let along = left_vectors.column(index).dot(&right) / values[index];
             smallest = smallest.min(values[index]);
@@ -172,6 +179,7 @@ impl Fit {
             rank: 0,
             condition: f64::INFINITY,
             determined: vec![false; n],
+            reach: vec![f64::INFINITY; n],
             residual: 0.0,
             null: vec![0.0; n * n],
         }
