@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 const TOLERANCE: f64 = 1e-13;
 
 /// The law in use is trusted with this fraction of its information: its covariance is that of a linearisation.
-const CAUTION: f64 = 0.1;
+const CAUTION: f64 = 0.03;
 
 /// A hypothesis is looked at again when its age has grown by this factor.
 const AGING: f64 = 1.1;

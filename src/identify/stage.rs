@@ -60,6 +60,8 @@ pub struct Stage {
     pub likelihood: f64,
     /// Passes closed in this stage.
     pub passes: u32,
+    /// Passes in a row that changed little.
+    calm: u32,
     /// What is known beside the record, about `coefficients`.
     prior: Information,
     pass: Pass,
@@ -129,6 +131,7 @@ impl Stage {
             gain: f64::INFINITY,
             likelihood: f64::NEG_INFINITY,
             passes: 0,
+            calm: 0,
             prior: Information::none(n),
             pass: Pass::new(n),
             next: 0,
@@ -159,7 +162,7 @@ impl Stage {
         }
         self.known_noise = noise.sensor;
         self.known_noise_weight = prior.noise_weight;
-        self.passes = 0;
+        (self.passes, self.calm) = (0, 0);
         self.decrement = f64::INFINITY;
         self.closed_at = start;
         self.prior.clear();
@@ -215,7 +218,12 @@ impl Stage {
 
     /// Whether the last passes agree: the estimate is at the likelihood's maximum, to within a fraction of its std.
     pub fn settled(&self) -> bool {
-        self.passes >= 3 && self.decrement < SETTLED && self.gain < GAIN
+        self.calm >= 2
+    }
+
+    /// Whether the last pass changed little, by its own standard.
+    pub fn is_calm(&self) -> bool {
+        self.passes >= 2 && self.decrement.abs() < SETTLED && self.gain < GAIN
     }
 
     /// The variance that the estimate states for e of eq. (8), relative: tr Cov ÷ Σθ².
@@ -274,6 +282,7 @@ impl Stage {
         let active = self.active.iter().filter(|active| **active).count().max(1);
         self.decrement = self.information.quadratic(&self.previous) / active as f64;
         self.follow_noise(problem, settings, &track);
+        self.calm = if self.is_calm() { self.calm + 1 } else { 0 };
         self.fold(window);
     }
 
@@ -281,7 +290,8 @@ impl Stage {
     fn recover(&mut self, problem: &Problem, window: &Window) {
         self.coefficients.copy_from_slice(&self.previous);
         self.noise.process = if self.noise.process.is_finite() { 1e3 * self.noise.process } else { 1.0 };
-        (self.decrement, self.gain, self.passes) = (f64::INFINITY, f64::INFINITY, 0);
+        (self.decrement, self.gain) = (f64::INFINITY, f64::INFINITY);
+        (self.passes, self.calm) = (0, 0);
         self.begin_pass(problem, window);
     }
 

@@ -67,6 +67,7 @@ pub struct Tracker {
     next_guess: u64,
     spread: Vec<f64>,
     noise_weight: f64,
+    all_active: Vec<bool>,
     change: Vec<f64>,
     centre: Vec<f64>,
 }
@@ -122,6 +123,7 @@ impl Tracker {
             next_guess: 0,
             spread: vec![1.0; n],
             noise_weight: 0.0,
+            all_active: vec![true; n],
             change: vec![0.0; n],
             centre: vec![0.0; n],
         }
@@ -227,7 +229,7 @@ impl Tracker {
             self.bank.step(&self.live.pass.map, &innovations);
             self.predict(problem, settings, number, &observation, output);
             if number % SPAWN_EVERY == 0 {
-                let law = Law { information: &self.live.pass.information, active: &self.live.active };
+                let law = Law { information: &self.live.pass.information, active: &self.all_active };
                 self.bank.spawn(number, &law);
             }
             let oldest = number.saturating_sub((OLDEST / settings.sample_time) as u64);
@@ -303,7 +305,7 @@ impl Tracker {
             return;
         }
         if std::env::var("DBG").is_ok() { eprintln!("PASS {} t {:.3} n {} dec {:.1e} stated {:.1e} s {:.2e} {:.2e} Q {:.1e} gain {:.1e} {:?} th {:.4?}", self.stage.passes, self.now(), self.stage.length(self.window.ready()), self.stage.decrement, self.stage.stated_error(), self.stage.noise.sensor[0].sqrt(), self.stage.noise.sensor[1].sqrt(), self.stage.noise.process, self.stage.gain, output.status, self.stage.all); }
-        let usable = self.stage.passes >= 2 && self.stage.all.iter().all(|value| value.is_finite());
+        let usable = self.stage.is_calm();
         let trusted = self.stage.settled() && self.stage.stated_error() < TRUSTED && self.stage.full_error() < TRUSTED;
         if !trusted && !(usable && self.live.running) {
             self.stage.begin_pass(problem, &self.window);
