@@ -3,8 +3,12 @@
 //! [`Settings`] are checked once at construction; [`Identifier`] is plain data that clones, compares and serialises.
 //! A step does a bounded amount of work, allocates nothing, and cannot fail.
 
+mod identification;
 mod identifier;
+mod recording;
 mod settings;
 
+pub use identification::{Identification, Stage, choose_hold, identify_recording, settings_for};
 pub use identifier::{BuildError, Coefficient, Identifier, Output, Sample, Skipped, Status};
+pub use recording::{Gap, Recording, RecordingError};
 pub use settings::{Channels, Method, Settings, SettingsError};
