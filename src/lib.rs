@@ -12,6 +12,8 @@
 pub mod cli;
 #[cfg(feature = "cli")]
 pub mod data;
+pub mod evidence;
 pub mod identify;
 pub mod law;
 pub mod simulate;
+pub mod weak;

@@ -358,6 +358,29 @@ fn simulate_writes_a_record_and_its_truth_which_identify_opens() {
 }
 
 #[test]
+fn the_trace_has_one_line_per_sample_and_every_output() {
+    let bench = Bench::new("trace");
+    bench.write("data.csv", &plain("t,q,qd,F", 300));
+    let output = bench.identify(&["data.csv", "--trace", "trace.csv", "--json"]);
+    assert_eq!(output.status.code(), Some(0));
+    let trace = std::fs::read_to_string(bench.0.join("trace.csv")).unwrap();
+    let lines: Vec<Vec<&str>> = trace.lines().map(|line| line.split(',').collect()).collect();
+    assert!(trace.starts_with("t,coef.qdd,coef.qd,coef.q,coef.q_3,std.qdd,"), "{}", lines[0].join(","));
+    for name in ["switch.count", "switch.time", "switch.detection_time", "status", "valid", "deviation", "prediction.q"]
+    {
+        assert!(lines[0].contains(&name), "no {name}");
+    }
+    assert_eq!(lines.len(), 301);
+    let valid = lines[0].iter().position(|name| *name == "valid").unwrap();
+    assert!(lines[1..].iter().all(|line| line.len() == lines[0].len() && ["0", "1"].contains(&line[valid])));
+    assert_eq!((lines[1][0], lines[300][0]), ("0", "2.99"));
+    bench.refused(
+        &["identify", "data.csv", "--model", "model.toml", "--trace", "no/such/trace.csv"],
+        &["no/such/trace.csv", "cannot be written"],
+    );
+}
+
+#[test]
 fn text_goes_to_stdout_and_names_what_is_not_known() {
     let bench = Bench::new("text");
     bench.write("data.csv", &plain("t,q,F", 20));

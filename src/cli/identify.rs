@@ -3,6 +3,7 @@
 use super::error::CommandError;
 use super::output::{self, Pairs};
 use super::progress::Progress;
+use super::trace::Trace;
 use crate::data::{self, Opened};
 use crate::identify::{self, Gap, Identification, Method, Recording, Settings, Stage};
 use crate::law::{Hold, Model};
@@ -46,6 +47,9 @@ pub(super) struct Arguments {
     /// Mean time between two false alarms
     #[arg(long, value_name = "S", default_value_t = Settings::default().false_alarm_interval)]
     false_alarm_interval: f64,
+    /// Write every output of the identifier after each sample into this CSV file, as the FMU would show them
+    #[arg(long, value_name = "OUT.csv")]
+    trace: Option<PathBuf>,
     /// Print one JSON document instead of text
     #[arg(long)]
     json: bool,
@@ -64,13 +68,29 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let model = data::open_model(&arguments.model)?;
     let opened = data::open_recording(&arguments.data, &model)?;
     let (settings, hold_from) = settings(arguments, &model, &opened.recording)?;
-    let mut progress = Progress::new(opened.recording.count());
-    let found = identify::identify_recording(&model, settings, &opened.recording, |_, index| progress.reached(index))
-        .map_err(|source| CommandError::Build { model: arguments.model.display().to_string(), source })?;
-    progress.finish();
+    let found = identify(arguments, &model, settings, &opened.recording)?;
     let run = Run { opened, settings, hold_from, found };
     warnings(&run).iter().for_each(|warning| output::complain("warning", warning));
     if arguments.json { output::print_json(&Report::of(&run)) } else { output::print(&text(&run)) }
+}
+
+fn identify(
+    arguments: &Arguments,
+    model: &Model,
+    settings: Settings,
+    recording: &Recording,
+) -> Result<Identification, CommandError> {
+    let mut progress = Progress::new(recording.count());
+    let mut trace = arguments.trace.as_deref().map(|path| Trace::create(path, model)).transpose()?;
+    let found = identify::identify_recording(model, settings, recording, |identifier, index| {
+        progress.reached(index);
+        if let Some(trace) = &mut trace {
+            trace.push(recording.t()[index], identifier);
+        }
+    });
+    progress.finish();
+    trace.map_or(Ok(()), Trace::finish)?;
+    found.map_err(|source| CommandError::Build { model: arguments.model.display().to_string(), source })
 }
 
 fn settings(

@@ -8,6 +8,7 @@ mod identify;
 mod output;
 mod progress;
 mod simulate;
+mod trace;
 
 use clap::{Parser, Subcommand};
 use error::CommandError;

@@ -55,7 +55,7 @@ impl Table {
 
     /// Writes one line; every number reads back as the same bits.
     pub(super) fn push(&mut self, numbers: &[f64]) -> Result<(), CommandError> {
-        let cells = numbers.iter().map(|number| number.to_string());
+        let cells = numbers.iter().map(|number| cell(*number));
         self.writer.write_record(cells).map_err(|error| CommandError::write(&self.file, error))
     }
 
@@ -65,11 +65,28 @@ impl Table {
     }
 }
 
+/// The shortest text that reads back as the same bits: `0`, `0.001`, `1e30`.
+fn cell(number: f64) -> String {
+    if number.fract() == 0.0 && number.abs() < 1e15 { number.to_string() } else { format!("{number:?}") }
+}
+
 /// Pairs that become an object of JSON, in their order.
 pub(super) struct Pairs(pub(super) Vec<(String, f64)>);
 
 impl Serialize for Pairs {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::cell;
+
+    #[test]
+    fn cells_are_short_and_exact() {
+        let numbers = [0.0, 1.0, -3.0, 0.1 + 0.2, 1e30, 1.5e-9, f64::MAX];
+        assert_eq!(numbers.map(cell)[..5], ["0", "1", "-3", "0.30000000000000004", "1e30"]);
+        assert!(numbers.iter().all(|number| cell(*number).parse() == Ok(*number)));
     }
 }

@@ -5,10 +5,14 @@
 
 mod identification;
 mod identifier;
+mod outputs;
+mod parameters;
 mod recording;
 mod settings;
 
 pub use identification::{Identification, Stage, choose_hold, identify_recording, settings_for};
 pub use identifier::{BuildError, Coefficient, Identifier, Output, Sample, Skipped, Status};
+pub use outputs::{OutputDescription, OutputKind, OutputValue, Outputs, UNKNOWN};
+pub use parameters::Parameter;
 pub use recording::{Gap, Recording, RecordingError};
 pub use settings::{Channels, Method, Settings, SettingsError};
