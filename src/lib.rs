@@ -8,6 +8,10 @@
 //!
 //! Terms stand on the left, the excitation on the right, `m q̈ + c q̇ + k₁ q + k₃ q³ = F`.
 
+#[cfg(feature = "cli")]
+pub mod cli;
+#[cfg(feature = "cli")]
+pub mod data;
 pub mod evidence;
 pub mod identify;
 pub mod law;

@@ -1,2 +1,7 @@
 //! The `switchid` command line.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    switchid::cli::run()
+}

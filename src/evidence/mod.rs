@@ -11,13 +11,11 @@
 //! - [`Information`]: sums of them, and their solution;
 //! - [`Bank`]: hypotheses that the law switched at one of many instants (Willsky and Jones, IEEE TAC 21, 1976).
 
-
 mod bank;
 mod filter;
 mod information;
 mod pass;
 mod symmetric;
-
 
 pub use bank::{Bank, Law, Suspect};
 pub use filter::{Channel, Filter, Innovation, Noise};

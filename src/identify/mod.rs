@@ -4,8 +4,13 @@
 //! A step does a bounded amount of work, allocates nothing, and cannot fail.
 
 mod deviation;
+mod identification;
 mod identifier;
+mod identifier;
+mod outputs;
+mod parameters;
 mod problem;
+mod recording;
 mod scales;
 mod settings;
 mod stage;
@@ -14,5 +19,9 @@ mod structure;
 mod tracker;
 mod window;
 
+pub use identification::{Identification, Stage, choose_hold, identify_recording, settings_for};
 pub use identifier::{BuildError, Coefficient, Identifier, Output, Sample, Skipped, Status};
+pub use outputs::{OutputDescription, OutputKind, OutputValue, Outputs, UNKNOWN};
+pub use parameters::Parameter;
+pub use recording::{Gap, Recording, RecordingError};
 pub use settings::{Channels, Method, Settings, SettingsError};

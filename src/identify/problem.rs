@@ -43,7 +43,10 @@ impl Problem {
             terms: entries.iter().map(|(term, _)| *term).collect(),
             free_terms: free.iter().map(|index| entries[*index].0).collect(),
             maybe: free.iter().map(|index| entries[*index].1 == Given::Maybe).collect(),
-            known: entries.iter().map(|(_, given)| if let Given::Known(value) = given { *value } else { 0.0 }).collect(),
+            known: entries
+                .iter()
+                .map(|(_, given)| if let Given::Known(value) = given { *value } else { 0.0 })
+                .collect(),
             inertia: model.position(Term::Inertia).unwrap_or(0),
             free,
             channels,

@@ -381,7 +381,10 @@ fn first_state(problem: &Problem, window: &Window, start: u64, noise: &Noise) ->
         (true, true) => Filter { state: State { q: first.q, qd: first.qd }, covariance: [q, 0.0, qd] },
         (true, false) => {
             let slope = (second.q - first.q) / dt;
-            Filter { state: State { q: first.q, qd: slope }, covariance: [q, 0.0, 10.0 * (slope * slope + q / (dt * dt))] }
+            Filter {
+                state: State { q: first.q, qd: slope },
+                covariance: [q, 0.0, 10.0 * (slope * slope + q / (dt * dt))],
+            }
         }
         _ => Filter { state: State { q: 0.0, qd: first.qd }, covariance: [1.0, 0.0, qd] },
     }

@@ -74,7 +74,8 @@ impl Start {
         let n = problem.free.len();
         let longest = LONGEST.min(capacity / 4).max(SHORTEST);
         let lengths = (0..).map(|octave| SHORTEST << octave).take_while(|length| *length <= longest);
-        let scale = |length| Scale { length, next: 0, regression: Regression::new(n), norm: 0.0, noise: vec![[0.0; 2]; n] };
+        let scale =
+            |length| Scale { length, next: 0, regression: Regression::new(n), norm: 0.0, noise: vec![[0.0; 2]; n] };
         let empty = vec![0.0; longest + 1];
         Start {
             scales: lengths.map(scale).collect(),

@@ -177,7 +177,8 @@ impl Tracker {
             Phase::Refining => self.stage.noise.sensor,
         };
         let Some(guess) = self.start.guess(problem, sensor) else { return };
-        let inertia = problem.free_inertia().map_or(problem.known[problem.inertia], |index| guess.fit.coefficients[index]);
+        let inertia =
+            problem.free_inertia().map_or(problem.known[problem.inertia], |index| guess.fit.coefficients[index]);
         if guess.relative_error > START_ERROR || !(inertia.is_finite() && inertia != 0.0) {
             return;
         }
@@ -259,7 +260,17 @@ impl Tracker {
     /// Ends the stage; only data from after the switch enters the new law.
     fn switch(&mut self, problem: &Problem, suspect: &Suspect, output: &mut Output) {
         self.bank.look_at_all();
-        if std::env::var("DBG").is_ok() { eprintln!("ALARM t {:.3} {:?} stage start {} passes {} live noise {:?} th {:?}", self.now(), self.bank.suspect(), self.stage.start, self.stage.passes, self.live.noise, self.live.all); }
+        if std::env::var("DBG").is_ok() {
+            eprintln!(
+                "ALARM t {:.3} {:?} stage start {} passes {} live noise {:?} th {:?}",
+                self.now(),
+                self.bank.suspect(),
+                self.stage.start,
+                self.stage.passes,
+                self.live.noise,
+                self.live.all
+            );
+        }
         let Some(suspect) = self.bank.suspect().or(Some(*suspect)) else { return };
         let last = self.window.ready() - 1;
         let start = (self.bank.latest_start(&suspect, 5.0) + 1).min(last);
@@ -304,7 +315,22 @@ impl Tracker {
         if output.status == Status::SwitchSuspected || !self.stage.refine(problem, settings, &self.window, budget) {
             return;
         }
-        if std::env::var("DBG").is_ok() { eprintln!("PASS {} t {:.3} n {} dec {:.1e} stated {:.1e} s {:.2e} {:.2e} Q {:.1e} gain {:.1e} {:?} th {:.4?}", self.stage.passes, self.now(), self.stage.length(self.window.ready()), self.stage.decrement, self.stage.stated_error(), self.stage.noise.sensor[0].sqrt(), self.stage.noise.sensor[1].sqrt(), self.stage.noise.process, self.stage.gain, output.status, self.stage.all); }
+        if std::env::var("DBG").is_ok() {
+            eprintln!(
+                "PASS {} t {:.3} n {} dec {:.1e} stated {:.1e} s {:.2e} {:.2e} Q {:.1e} gain {:.1e} {:?} th {:.4?}",
+                self.stage.passes,
+                self.now(),
+                self.stage.length(self.window.ready()),
+                self.stage.decrement,
+                self.stage.stated_error(),
+                self.stage.noise.sensor[0].sqrt(),
+                self.stage.noise.sensor[1].sqrt(),
+                self.stage.noise.process,
+                self.stage.gain,
+                output.status,
+                self.stage.all
+            );
+        }
         let usable = self.stage.is_calm();
         let trusted = self.stage.settled() && self.stage.stated_error() < TRUSTED && self.stage.full_error() < TRUSTED;
         if !trusted && !(usable && self.live.running) {
@@ -345,10 +371,12 @@ impl Tracker {
         }
     }
 
-    #[doc(hidden)] fn publish_free(&self, free: usize, coefficient: &mut Coefficient) {
+    #[doc(hidden)]
+    fn publish_free(&self, free: usize, coefficient: &mut Coefficient) {
         if !self.stage.active[free] {
             (coefficient.value, coefficient.std) = (0.0, Some(0.0));
-        } else if self.stage.solution.determined[free] && self.stage.solution.variance(free).sqrt() < self.spread[free] {
+        } else if self.stage.solution.determined[free] && self.stage.solution.variance(free).sqrt() < self.spread[free]
+        {
             coefficient.value = self.stage.coefficients[free];
             coefficient.std = Some(self.stage.solution.variance(free).sqrt());
         } else {

@@ -6,11 +6,13 @@
 //! communication steps that led there. Measured values ([`Reading`]) and truth ([`Truth`]) are apart.
 
 mod builtin;
+mod check;
 mod noise;
 mod plant;
 mod random;
 mod scenario;
 
 pub use builtin::{Builtin, UnknownBuiltin};
+pub use check::ScenarioError;
 pub use plant::{Plant, PlantError, Reading, SimulateError, Truth, record};
-pub use scenario::{Excitation, ExcitationKind, Scenario, ScenarioError, SensorNoise, Stage};
+pub use scenario::{Excitation, ExcitationKind, Scenario, SensorNoise, Stage};

@@ -4,8 +4,9 @@
 //! in two where the law switches within it. A value between two points of the inner grid comes from a shortened step
 //! that is then thrown away, so that what a plant shows at t does not depend on the way there.
 
+use super::check::ScenarioError;
 use super::noise::{Stream, standard_normal};
-use super::scenario::{ExcitationKind, Scenario, ScenarioError};
+use super::scenario::{ExcitationKind, Scenario};
 use crate::law::{Motion, State};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;

@@ -1,0 +1,68 @@
+//! Why a command did not do its work.
+
+use crate::data::DataError;
+use crate::identify::BuildError;
+use crate::simulate::{SimulateError, UnknownBuiltin};
+use thiserror::Error;
+
+/// Why a command did not do its work.
+#[derive(Debug, Error)]
+pub(super) enum CommandError {
+    /// A file is at fault.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// Neither a file nor a built-in scenario.
+    #[error("{argument}: there is no such file, and {source}")]
+    NoScenario {
+        /// The argument.
+        argument: String,
+        /// The names there are.
+        source: UnknownBuiltin,
+    },
+    /// The scenario cannot be followed.
+    #[error("{scenario}: {source}")]
+    Simulate {
+        /// The scenario's name or file.
+        scenario: String,
+        /// Why.
+        source: SimulateError,
+    },
+    /// Settings or model are refused.
+    #[error("{model}: {source}")]
+    Build {
+        /// The model's file.
+        model: String,
+        /// Why.
+        source: BuildError,
+    },
+    /// A number of the command line is out of range.
+    #[error("--{option} {value} is out of range: it must be {range}")]
+    Option {
+        /// The option.
+        option: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        range: &'static str,
+    },
+    /// A file cannot be written.
+    #[error("{file}: cannot be written: {reason}")]
+    Write {
+        /// The file, or "standard output".
+        file: String,
+        /// What the system says.
+        reason: String,
+    },
+}
+
+impl CommandError {
+    /// 2: everything that can go wrong so far is the user's to mend.
+    pub(super) fn exit_status(&self) -> u8 {
+        2
+    }
+
+    /// A failure to write `file`.
+    pub(super) fn write(file: &str, reason: impl ToString) -> CommandError {
+        CommandError::Write { file: file.into(), reason: reason.to_string() }
+    }
+}

@@ -1,0 +1,246 @@
+//! `switchid identify`: the streaming identifier over a recording.
+
+use super::error::CommandError;
+use super::output::{self, Pairs};
+use super::progress::Progress;
+use super::trace::Trace;
+use crate::data::{self, Opened};
+use crate::identify::{self, Gap, Identification, Method, Recording, Settings, Stage};
+use crate::law::{Hold, Model};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+const EXAMPLE: &str = r#"Examples:
+  switchid identify recording.csv --model model.toml
+  switchid identify recording.csv@20:60 --model model.toml --hold linear --json
+  switchid identify recording.csv --model model.toml --trace trace.csv
+
+A model file:
+  name = "positioning axis"
+  [columns]                  # which column is what; without it t, q, qd and F
+  t = "time_s"
+  q = "position_m"
+  F = "force_N"
+  [terms]                    # m q̈ + c q̇ + k q = F
+  inertia = "fit"            # "fit": estimated, stays
+  linear_damping = 0.3       # a number: known, held
+  "q^3" = "maybe"            # "maybe": evidence decides whether the law has it"#;
+
+/// Identify the stages of a recording and the law of each
+#[derive(Args)]
+#[command(after_help = EXAMPLE)]
+pub(super) struct Arguments {
+    /// The recording (CSV with a header), or a section of it: DATA@t0:t1 in seconds
+    data: String,
+    /// The model file (TOML)
+    #[arg(long, short)]
+    model: PathBuf,
+    /// What the excitation did between samples; else the model says, or the best one is kept
+    #[arg(long, value_parser = PossibleValuesParser::new(Hold::ALL.map(Hold::id)))]
+    hold: Option<String>,
+    /// Which procedure identifies
+    #[arg(long, default_value = Method::Default.id(), value_parser = PossibleValuesParser::new(Method::ALL.map(Method::id)))]
+    method: String,
+    /// Mean time between two false alarms
+    #[arg(long, value_name = "S", default_value_t = Settings::default().false_alarm_interval)]
+    false_alarm_interval: f64,
+    /// Write every output of the identifier after each sample into this CSV file, as the FMU would show them
+    #[arg(long, value_name = "OUT.csv")]
+    trace: Option<PathBuf>,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+/// What the run rested on.
+struct Run {
+    opened: Opened,
+    settings: Settings,
+    /// Who chose the hold.
+    hold_from: &'static str,
+    found: Identification,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    let model = data::open_model(&arguments.model)?;
+    let opened = data::open_recording(&arguments.data, &model)?;
+    let (settings, hold_from) = settings(arguments, &model, &opened.recording)?;
+    let found = identify(arguments, &model, settings, &opened.recording)?;
+    let run = Run { opened, settings, hold_from, found };
+    warnings(&run).iter().for_each(|warning| output::complain("warning", warning));
+    if arguments.json { output::print_json(&Report::of(&run)) } else { output::print(&text(&run)) }
+}
+
+fn identify(
+    arguments: &Arguments,
+    model: &Model,
+    settings: Settings,
+    recording: &Recording,
+) -> Result<Identification, CommandError> {
+    let mut progress = Progress::new(recording.count());
+    let mut trace = arguments.trace.as_deref().map(|path| Trace::create(path, model)).transpose()?;
+    let found = identify::identify_recording(model, settings, recording, |identifier, index| {
+        progress.reached(index);
+        if let Some(trace) = &mut trace {
+            trace.push(recording.t()[index], identifier);
+        }
+    });
+    progress.finish();
+    trace.map_or(Ok(()), Trace::finish)?;
+    found.map_err(|source| CommandError::Build { model: arguments.model.display().to_string(), source })
+}
+
+fn settings(
+    arguments: &Arguments,
+    model: &Model,
+    recording: &Recording,
+) -> Result<(Settings, &'static str), CommandError> {
+    let value = arguments.false_alarm_interval;
+    if !(value > 0.0 && value.is_finite()) {
+        let range = "a positive number of seconds";
+        return Err(CommandError::Option { option: "false-alarm-interval", value, range });
+    }
+    let method = Method::from_id(&arguments.method).unwrap_or_default();
+    let base = Settings { method, false_alarm_interval: value, ..Settings::default() };
+    let settings = identify::settings_for(recording, base);
+    let (hold, from) = match (arguments.hold.as_deref().and_then(Hold::from_id), model.hold) {
+        (Some(hold), _) => (hold, "as asked"),
+        (None, Some(hold)) => (hold, "the model's"),
+        (None, None) => (identify::choose_hold(model, recording, &settings), "chosen"),
+    };
+    Ok((Settings { hold, ..settings }, from))
+}
+
+/// Everything that was left out or taken otherwise than the file says.
+fn warnings(run: &Run) -> Vec<String> {
+    let recording = &run.opened.recording;
+    let source = recording.source();
+    let gap = |gap: Gap| {
+        let Gap { start, end } = gap;
+        format!(
+            "{source}: no samples from {start} s to {end} s: identified anew after this gap, nothing is carried over it"
+        )
+    };
+    let mut warnings: Vec<String> = recording.gaps().into_iter().map(gap).collect();
+    if !recording.channels().excitation {
+        warnings.push(format!("{source}: there is no excitation: taken as free motion, the inertia is fixed to 1"));
+    }
+    if let Some(first) = run.found.skipped.first() {
+        let count = run.found.skipped.len();
+        warnings.push(format!("{source}: {count} samples were not used; the first: {first}"));
+    }
+    warnings
+}
+
+#[derive(Serialize)]
+struct Report {
+    stages: Vec<StageReport>,
+    noise: Pairs,
+    hold: &'static str,
+    gaps: Vec<[f64; 2]>,
+    skipped: usize,
+}
+
+#[derive(Serialize)]
+struct StageReport {
+    start: f64,
+    end: f64,
+    detected: Option<f64>,
+    identified: Option<f64>,
+    law: Option<String>,
+    coefficients: Pairs,
+    std: Pairs,
+    unidentifiable: Vec<String>,
+}
+
+impl Report {
+    fn of(run: &Run) -> Report {
+        let Run { opened, settings, found, .. } = run;
+        let forced = settings.channels.excitation;
+        Report {
+            stages: found.stages.iter().map(|stage| StageReport::of(stage, forced)).collect(),
+            noise: Pairs(noise(found)),
+            hold: settings.hold.id(),
+            gaps: opened.recording.gaps().into_iter().map(|gap| [gap.start, gap.end]).collect(),
+            skipped: found.skipped.len(),
+        }
+    }
+}
+
+impl StageReport {
+    fn of(stage: &Stage, forced: bool) -> StageReport {
+        StageReport {
+            start: stage.start,
+            end: stage.end,
+            detected: stage.detected,
+            identified: stage.identified,
+            law: stage.law(forced),
+            coefficients: Pairs(stage.known().map(|(known, _)| (known.term.name(), known.value)).collect()),
+            std: Pairs(stage.known().map(|(known, std)| (known.term.name(), std)).collect()),
+            unidentifiable: stage.unidentifiable.clone(),
+        }
+    }
+}
+
+fn noise(found: &Identification) -> Vec<(String, f64)> {
+    let channels = [("q", found.noise_q), ("qd", found.noise_qd)];
+    channels.into_iter().filter_map(|(channel, std)| Some((channel.to_string(), std?))).collect()
+}
+
+fn text(run: &Run) -> String {
+    let mut text = head(run);
+    text += "\nstage       start         end    detected  identified   s\n";
+    for (index, stage) in run.found.stages.iter().enumerate() {
+        let (detected, identified) = (time(stage.detected), time(stage.identified));
+        let _ = writeln!(
+            text,
+            "{:>5} {:>11.3} {:>11.3} {detected:>11} {identified:>11}",
+            index + 1,
+            stage.start,
+            stage.end
+        );
+    }
+    for (index, stage) in run.found.stages.iter().enumerate() {
+        let _ = write!(text, "\nstage {}: {}", index + 1, law(stage, run.settings.channels.excitation));
+    }
+    text
+}
+
+fn head(run: &Run) -> String {
+    let recording = &run.opened.recording;
+    let (first, last) = (recording.sample(0).t, recording.sample(recording.count() - 1).t);
+    let mut text = format!("{}: {} samples from {first} s to {last} s\n", recording.source(), recording.count());
+    for column in &run.opened.columns {
+        let _ = writeln!(text, "  {column}");
+    }
+    let _ = writeln!(text, "between samples: {} ({})", run.settings.hold, run.hold_from);
+    let noise: Vec<String> = noise(&run.found).iter().map(|(channel, std)| format!("{channel} {std:.3e}")).collect();
+    let noise = if noise.is_empty() { "not known".into() } else { noise.join(", ") };
+    let _ = writeln!(text, "sensor noise (std): {noise}");
+    text
+}
+
+/// The law on one line, its coefficients with their std, and what is not known.
+fn law(stage: &Stage, forced: bool) -> String {
+    let unknown = "cannot be determined from these data";
+    let mut text = stage.law(forced).unwrap_or_else(|| unknown.into()) + "\n";
+    for (known, std) in stage.known() {
+        let _ = writeln!(text, "  {:<12} {:>14.6e} ± {std:.1e}", known.term.name(), known.value);
+    }
+    let open: Vec<String> =
+        stage.coefficients.iter().filter(|entry| entry.std.is_none()).map(|entry| entry.term.name()).collect();
+    if !open.is_empty() {
+        let _ = writeln!(text, "  not known: {}", open.join(", "));
+    }
+    for combination in &stage.unidentifiable {
+        let _ = writeln!(text, "  no data of this stage determine {combination}");
+    }
+    text
+}
+
+fn time(t: Option<f64>) -> String {
+    t.map_or_else(|| "–".into(), |t| format!("{t:.3}"))
+}

@@ -1,0 +1,49 @@
+//! The command line: one file per command.
+//!
+//! Human text goes to stdout; `--json` prints exactly one JSON document there instead. Errors and warnings go to stderr. Exit status:
+//! 0 done, 1 a gate or a check failed, 2 bad usage or bad input.
+
+mod error;
+mod identify;
+mod output;
+mod progress;
+mod simulate;
+mod trace;
+
+use clap::{Parser, Subcommand};
+use error::CommandError;
+use std::process::ExitCode;
+
+/// Watches a vibrating system, identifies its equation of motion, and notices when the law switches.
+#[derive(Parser)]
+#[command(name = "switchid", version, about, max_term_width = 110)]
+struct CommandLine {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Identify(identify::Arguments),
+    Simulate(simulate::Arguments),
+}
+
+impl Command {
+    fn run(self) -> Result<(), CommandError> {
+        match self {
+            Command::Identify(arguments) => identify::run(&arguments),
+            Command::Simulate(arguments) => simulate::run(&arguments),
+        }
+    }
+}
+
+/// Reads the process's arguments, runs the command, reports its error.
+pub fn run() -> ExitCode {
+    match CommandLine::parse().command.run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            output::complain("error", &error.to_string());
+            ExitCode::from(error.exit_status())
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! A whole recording through the streaming identifier: its stages, one after the other.
+
+use super::{BuildError, Coefficient, Identifier, Recording, Settings, Skipped};
+use crate::law::{Hold, Model, equation};
+use std::ops::Range;
+
+/// A time over which one law held.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// Estimated instant at which it began, s; the first sample's time where the record or a gap begins it.
+    pub start: f64,
+    /// Its end, s: the next stage's start, or the last sample.
+    pub end: f64,
+    /// Time of the alarm that opened it, s; `None` where the record or a gap began it.
+    pub detected: Option<f64>,
+    /// First time at which the identifier vouched for its law, s.
+    pub identified: Option<f64>,
+    /// The last published coefficients, in the order of the model's terms.
+    pub coefficients: Vec<Coefficient>,
+    /// What its data could not determine.
+    pub unidentifiable: Vec<String>,
+}
+
+impl Stage {
+    /// The coefficients that are known, with their std.
+    pub fn known(&self) -> impl Iterator<Item = (&Coefficient, f64)> {
+        self.coefficients.iter().filter_map(|coefficient| Some((coefficient, coefficient.std?)))
+    }
+
+    /// The law on one line; `None` where no coefficient is known. `forced` puts F on its right-hand side.
+    pub fn law(&self, forced: bool) -> Option<String> {
+        let terms: Vec<_> = self.known().map(|(known, std)| (known.term, known.value, Some(std))).collect();
+        if terms.is_empty() { None } else { Some(equation(&terms, forced)) }
+    }
+}
+
+/// What was found in a recording.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Identification {
+    /// The stages, in the order of time; at least one.
+    pub stages: Vec<Stage>,
+    /// Estimated std of the displacement's sensor noise.
+    pub noise_q: Option<f64>,
+    /// Estimated std of the velocity's sensor noise.
+    pub noise_qd: Option<f64>,
+    /// The samples that were not used, and why.
+    pub skipped: Vec<Skipped>,
+}
+
+/// How often the list of what cannot be determined is renewed, samples.
+const RENEW_UNIDENTIFIABLE: usize = 64;
+
+/// Settings that fit a recording: its channels, a `sample_time` that thins nothing, a window that holds enough samples.
+pub fn settings_for(recording: &Recording, base: Settings) -> Settings {
+    let sample_time = 0.5 * recording.sample_time();
+    let max_window = base.max_window.clamp(2e3 * sample_time, 1e6 * sample_time);
+    Settings { channels: recording.channels(), sample_time, max_window, ..base }
+}
+
+/// The hold under which the recording is explained best.
+///
+/// For now the straight line, which errs least where nothing is known.
+pub fn choose_hold(_model: &Model, _recording: &Recording, _settings: &Settings) -> Hold {
+    Hold::Linear
+}
+
+/// Steps an identifier over every sample and collects the stages. Each gap of the recording starts a new identifier, since
+/// nothing may be integrated over it. `watch` is called after every sample with its index.
+///
+/// # Errors
+/// [`BuildError`] when settings or model are refused.
+pub fn identify_recording(
+    model: &Model,
+    settings: Settings,
+    recording: &Recording,
+    mut watch: impl FnMut(&Identifier, usize),
+) -> Result<Identification, BuildError> {
+    let fresh = Identifier::new(model, settings)?;
+    let mut found = Identification { stages: Vec::new(), noise_q: None, noise_qd: None, skipped: Vec::new() };
+    for piece in recording.pieces() {
+        follow(fresh.clone(), recording, piece, &mut found, &mut watch);
+    }
+    Ok(found)
+}
+
+/// One piece between gaps: adds its stages to `found`.
+fn follow(
+    mut identifier: Identifier,
+    recording: &Recording,
+    piece: Range<usize>,
+    found: &mut Identification,
+    watch: &mut impl FnMut(&Identifier, usize),
+) {
+    let mut present = begin(&identifier, recording.t()[piece.start]);
+    for index in piece {
+        let sample = recording.sample(index);
+        let switches = identifier.output().switch_count;
+        found.skipped.extend(identifier.step(sample).err());
+        if identifier.output().switch_count != switches {
+            let next = begin(&identifier, identifier.output().switch_time);
+            present.end = next.start;
+            found.stages.push(std::mem::replace(&mut present, next));
+        }
+        renew(&mut present, &identifier, sample.t);
+        if index % RENEW_UNIDENTIFIABLE == 0 {
+            present.unidentifiable = identifier.unidentifiable();
+        }
+        watch(&identifier, index);
+    }
+    present.unidentifiable = identifier.unidentifiable();
+    found.stages.push(present);
+    found.noise_q = identifier.output().noise_q.or(found.noise_q);
+    found.noise_qd = identifier.output().noise_qd.or(found.noise_qd);
+}
+
+fn begin(identifier: &Identifier, start: f64) -> Stage {
+    Stage {
+        start,
+        end: start,
+        detected: identifier.output().detection_time,
+        identified: None,
+        coefficients: identifier.coefficients().to_vec(),
+        unidentifiable: identifier.unidentifiable(),
+    }
+}
+
+fn renew(stage: &mut Stage, identifier: &Identifier, t: f64) {
+    stage.end = t;
+    stage.identified = identifier.output().identified_time;
+    stage.coefficients.copy_from_slice(identifier.coefficients());
+}

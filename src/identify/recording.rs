@@ -1,0 +1,242 @@
+//! A recording: what was measured, sample by sample.
+
+use super::{Channels, Sample};
+use std::ops::Range;
+use thiserror::Error;
+
+/// Measured signals over increasing time, SI units; each signal has as many values as there are times.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recording {
+    t: Vec<f64>,
+    q: Option<Vec<f64>>,
+    qd: Option<Vec<f64>>,
+    excitation: Option<Vec<f64>>,
+    source: String,
+}
+
+/// A time without samples, far longer than the usual distance of two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// Time of the last sample before it, s.
+    pub start: f64,
+    /// Time of the first sample after it, s.
+    pub end: f64,
+}
+
+/// Why signals are no recording.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum RecordingError {
+    /// Too short to hold any motion.
+    #[error("{source_name}: {count} samples are too few: at least {} are needed", Recording::MINIMUM)]
+    TooFew {
+        /// Where it came from.
+        source_name: String,
+        /// How many samples there are.
+        count: usize,
+    },
+    /// Signals of different length.
+    #[error("{source_name}: {channel} has {found} values for {expected} times")]
+    Length {
+        /// Where it came from.
+        source_name: String,
+        /// Which signal.
+        channel: &'static str,
+        /// How many values it has.
+        found: usize,
+        /// How many it must have.
+        expected: usize,
+    },
+    /// A value that is infinite or none.
+    #[error("{source_name}: {channel} of sample {index} is no finite number: correct it or leave the sample out")]
+    NotFinite {
+        /// Where it came from.
+        source_name: String,
+        /// Which signal.
+        channel: &'static str,
+        /// Which sample, from 0.
+        index: usize,
+    },
+    /// Time that does not increase.
+    #[error("{source_name}: time does not increase at sample {index}: {previous} s, then {t} s")]
+    NotIncreasing {
+        /// Where it came from.
+        source_name: String,
+        /// Which sample, from 0.
+        index: usize,
+        /// The time before, s.
+        previous: f64,
+        /// Its time, s.
+        t: f64,
+    },
+    /// Neither displacement nor velocity.
+    #[error("{source_name}: neither q nor qd is measured: one of them is needed")]
+    NothingMeasured {
+        /// Where it came from.
+        source_name: String,
+    },
+    /// A motion that never moves.
+    #[error(
+        "{source_name}: {channel} is {value} in every sample: a motion that stands still determines no law; check the sensor, \
+         or leave the column out if another one measures the motion"
+    )]
+    Constant {
+        /// Where it came from.
+        source_name: String,
+        /// Which signal.
+        channel: &'static str,
+        /// Its only value.
+        value: f64,
+    },
+}
+
+/// How many usual distances of two samples make a gap.
+const GAP: f64 = 4.5;
+
+impl Recording {
+    /// Fewest samples of a recording.
+    pub const MINIMUM: usize = 10;
+
+    /// A recording from signals in SI units; `source` names it in messages.
+    ///
+    /// # Errors
+    /// [`RecordingError`] names the signal and the sample at fault.
+    pub fn new(
+        source: &str,
+        t: Vec<f64>,
+        q: Option<Vec<f64>>,
+        qd: Option<Vec<f64>>,
+        excitation: Option<Vec<f64>>,
+    ) -> Result<Recording, RecordingError> {
+        let recording = Recording { t, q, qd, excitation, source: source.into() };
+        recording.check()?;
+        Ok(recording)
+    }
+
+    fn check(&self) -> Result<(), RecordingError> {
+        let source_name = self.source.clone();
+        if self.q.is_none() && self.qd.is_none() {
+            return Err(RecordingError::NothingMeasured { source_name });
+        }
+        if self.t.len() < Recording::MINIMUM {
+            return Err(RecordingError::TooFew { source_name, count: self.t.len() });
+        }
+        self.check_signal("t", &self.t)?;
+        for (channel, values) in self.signals() {
+            self.check_signal(channel, values)?;
+        }
+        if let Some(index) = self.t.windows(2).position(|pair| pair[1] <= pair[0]) {
+            let (previous, t) = (self.t[index], self.t[index + 1]);
+            return Err(RecordingError::NotIncreasing { source_name, index: index + 1, previous, t });
+        }
+        match self.signals().find(|(channel, values)| *channel != "F" && is_constant(values)) {
+            Some((channel, values)) => Err(RecordingError::Constant { source_name, channel, value: values[0] }),
+            None => Ok(()),
+        }
+    }
+
+    fn check_signal(&self, channel: &'static str, values: &[f64]) -> Result<(), RecordingError> {
+        let source_name = self.source.clone();
+        let (found, expected) = (values.len(), self.t.len());
+        if found != expected {
+            return Err(RecordingError::Length { source_name, channel, found, expected });
+        }
+        match values.iter().position(|value| !value.is_finite()) {
+            Some(index) => Err(RecordingError::NotFinite { source_name, channel, index }),
+            None => Ok(()),
+        }
+    }
+
+    fn signals(&self) -> impl Iterator<Item = (&'static str, &[f64])> {
+        let all = [("q", &self.q), ("qd", &self.qd), ("F", &self.excitation)];
+        all.into_iter().filter_map(|(channel, values)| Some((channel, values.as_deref()?)))
+    }
+
+    /// Where it came from.
+    pub fn source(&self) -> &str {
+        &self.source
+    }
+
+    /// The times, s.
+    pub fn t(&self) -> &[f64] {
+        &self.t
+    }
+
+    /// How many samples it has; at least [`Recording::MINIMUM`].
+    pub fn count(&self) -> usize {
+        self.t.len()
+    }
+
+    /// Which quantities are measured. An excitation that is 0 throughout is none: the motion is free.
+    pub fn channels(&self) -> Channels {
+        let forced = self.excitation.as_deref().is_some_and(|values| values.iter().any(|value| *value != 0.0));
+        Channels { q: self.q.is_some(), qd: self.qd.is_some(), excitation: forced }
+    }
+
+    /// Sample `index`; 0 stands for a quantity that is not measured.
+    pub fn sample(&self, index: usize) -> Sample {
+        let value = |values: &Option<Vec<f64>>| values.as_deref().map_or(0.0, |values| values[index]);
+        Sample { t: self.t[index], q: value(&self.q), qd: value(&self.qd), excitation: value(&self.excitation) }
+    }
+
+    /// The usual distance of two samples, s: the median.
+    pub fn sample_time(&self) -> f64 {
+        let mut distances: Vec<f64> = self.t.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let middle = distances.len() / 2;
+        *distances.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+
+    /// The gaps, in the order of time: distances of more than a few usual ones. Nothing may be integrated over them.
+    pub fn gaps(&self) -> Vec<Gap> {
+        let longest = GAP * self.sample_time();
+        let pairs = self.t.windows(2).filter(|pair| pair[1] - pair[0] > longest);
+        pairs.map(|pair| Gap { start: pair[0], end: pair[1] }).collect()
+    }
+
+    /// The runs of samples between gaps.
+    pub fn pieces(&self) -> Vec<Range<usize>> {
+        let cuts = self.gaps().into_iter().map(|gap| self.t.partition_point(|t| *t < gap.end));
+        let cuts: Vec<usize> = std::iter::once(0).chain(cuts).chain([self.t.len()]).collect();
+        cuts.windows(2).map(|pair| pair[0]..pair[1]).collect()
+    }
+}
+
+fn is_constant(values: &[f64]) -> bool {
+    values.iter().all(|value| *value == values[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ramp(t: Vec<f64>) -> Recording {
+        let q = t.iter().map(|t| 2.0 * t).collect();
+        Recording::new("ramp", t, Some(q), None, None).unwrap()
+    }
+
+    #[test]
+    fn gaps_cut_a_recording_into_pieces() {
+        let t: Vec<f64> = (0..40).map(|n| f64::from(n) * 0.1 + if n >= 15 { 2.0 } else { 0.0 }).collect();
+        let recording = ramp(t.clone());
+        assert!((recording.sample_time() - 0.1).abs() < 1e-12);
+        assert_eq!(recording.gaps(), [Gap { start: t[14], end: t[15] }]);
+        assert_eq!(recording.pieces(), [0..15, 15..40]);
+    }
+
+    #[test]
+    fn jitter_and_a_lost_sample_are_no_gap() {
+        let t = (0..40).filter(|n| *n != 17).map(|n| f64::from(n) * 0.1 + 0.03 * f64::from(n % 3)).collect();
+        let recording = ramp(t);
+        assert!(recording.gaps().is_empty());
+        assert_eq!(recording.pieces(), std::iter::once(0..39).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn an_excitation_of_zeros_is_free_motion() {
+        let t: Vec<f64> = (0..20).map(f64::from).collect();
+        let forced = |force: f64| {
+            Recording::new("x", t.clone(), Some(t.clone()), None, Some(vec![force; 20])).unwrap().channels().excitation
+        };
+        assert!(!forced(0.0));
+        assert!(forced(1.0));
+    }
+}

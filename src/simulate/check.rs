@@ -1,0 +1,164 @@
+//! What makes a scenario impossible, found before the plant moves.
+
+use super::scenario::{Scenario, Stage};
+use crate::law::Term;
+use thiserror::Error;
+
+/// Why a scenario is refused.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ScenarioError {
+    /// The text is no TOML, or a key is missing, unknown or of the wrong type.
+    #[error("{message}")]
+    Syntax {
+        /// What the TOML reader says, with line and column.
+        message: String,
+    },
+    /// The same term twice.
+    #[error("terms: \"{term}\" stands there twice: keep one")]
+    Twice {
+        /// The term.
+        term: Term,
+    },
+    /// Nothing to integrate.
+    #[error("terms: there is no inertia: add \"qdd\"")]
+    NoInertia,
+    /// No stage at all.
+    #[error("there is no stage: write at least one [[stage]] with start = 0")]
+    NoStages,
+    /// The first stage does not begin at 0.
+    #[error("stage 1 starts at {start} s: the first stage starts at 0")]
+    FirstStart {
+        /// Its start, s.
+        start: f64,
+    },
+    /// Stages out of order.
+    #[error("stage {stage} starts at {start} s, which is not after stage {} at {previous} s: order the stages by time", stage - 1)]
+    Order {
+        /// The stage, counted from 1.
+        stage: usize,
+        /// Its start, s.
+        start: f64,
+        /// The start of the stage before, s.
+        previous: f64,
+    },
+    /// Not one coefficient per term.
+    #[error("stage {stage} has {found} coefficients for {expected} terms: write one for each, in their order")]
+    Count {
+        /// The stage, counted from 1.
+        stage: usize,
+        /// How many terms there are.
+        expected: usize,
+        /// How many coefficients there are.
+        found: usize,
+    },
+    /// A mass of 0 has no acceleration.
+    #[error("stage {stage}: the coefficient of qdd is 0: give it a mass")]
+    ZeroInertia {
+        /// The stage, counted from 1.
+        stage: usize,
+    },
+    /// A stage holds an infinite number or none.
+    #[error("stage {stage}: {name} = {value} is no finite number")]
+    StageNumber {
+        /// The stage, counted from 1.
+        stage: usize,
+        /// What is at fault.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
+    /// A number outside its range.
+    #[error("{name} = {value} is out of range: it must be {range}")]
+    OutOfRange {
+        /// The key.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed, in words.
+        range: &'static str,
+    },
+}
+
+impl Scenario {
+    /// Checks everything that would make the plant fail later.
+    ///
+    /// # Errors
+    /// The first rule that is broken.
+    pub fn check(&self) -> Result<(), ScenarioError> {
+        self.check_terms()?;
+        self.check_numbers()?;
+        self.check_stages()
+    }
+
+    fn check_terms(&self) -> Result<(), ScenarioError> {
+        for (index, &term) in self.terms.iter().enumerate() {
+            if self.terms[..index].contains(&term) {
+                return Err(ScenarioError::Twice { term });
+            }
+        }
+        if self.terms.contains(&Term::Inertia) { Ok(()) } else { Err(ScenarioError::NoInertia) }
+    }
+
+    fn check_numbers(&self) -> Result<(), ScenarioError> {
+        let positive = [
+            ("duration", self.duration),
+            ("inner_step", self.inner_step),
+            ("excitation.sample_time", self.excitation.sample_time),
+        ];
+        for (name, value) in positive {
+            within(name, value, value > 0.0, "a positive number of seconds")?;
+        }
+        let not_negative = [
+            ("excitation.intensity", self.excitation.intensity),
+            ("noise.q", self.noise.q),
+            ("noise.qd", self.noise.qd),
+        ];
+        for (name, value) in not_negative {
+            within(name, value, value >= 0.0, "0 or a positive number")?;
+        }
+        for (name, value) in [("initial.q", self.initial.q), ("initial.qd", self.initial.qd)] {
+            within(name, value, true, "a finite number")?;
+        }
+        let ratio = self.excitation.sample_time / self.inner_step;
+        within("inner_step", self.inner_step, ratio <= 1e6, "at least a millionth of excitation.sample_time")
+    }
+
+    fn check_stages(&self) -> Result<(), ScenarioError> {
+        let first = self.stages.first().ok_or(ScenarioError::NoStages)?;
+        if first.start != 0.0 {
+            return Err(ScenarioError::FirstStart { start: first.start });
+        }
+        for (index, stage) in self.stages.iter().enumerate() {
+            self.check_stage(index + 1, stage)?;
+        }
+        for (index, pair) in self.stages.windows(2).enumerate() {
+            let (previous, start) = (pair[0].start, pair[1].start);
+            if start <= previous {
+                return Err(ScenarioError::Order { stage: index + 2, start, previous });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_stage(&self, number: usize, stage: &Stage) -> Result<(), ScenarioError> {
+        let (expected, found) = (self.terms.len(), stage.coefficients.len());
+        if expected != found {
+            return Err(ScenarioError::Count { stage: number, expected, found });
+        }
+        let named = [("start", stage.start), ("amplitude", stage.amplitude), ("omega", stage.omega)];
+        let named = named.into_iter().map(|(name, value)| (name.to_string(), value));
+        let coefficients = self.terms.iter().zip(&stage.coefficients).map(|(term, value)| (term.name(), *value));
+        if let Some((name, value)) = named.chain(coefficients).find(|(_, value)| !value.is_finite()) {
+            return Err(ScenarioError::StageNumber { stage: number, name, value });
+        }
+        let mut inertia = self.terms.iter().zip(&stage.coefficients).filter(|(term, _)| **term == Term::Inertia);
+        if inertia.any(|(_, value)| *value == 0.0) {
+            return Err(ScenarioError::ZeroInertia { stage: number });
+        }
+        Ok(())
+    }
+}
+
+fn within(name: &'static str, value: f64, holds: bool, range: &'static str) -> Result<(), ScenarioError> {
+    if holds && value.is_finite() { Ok(()) } else { Err(ScenarioError::OutOfRange { name, value, range }) }
+}

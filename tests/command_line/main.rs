@@ -1,0 +1,5 @@
+//! The binary as a user meets it: bad input is refused with its place, good input gives one JSON document.
+
+mod bad_input;
+mod bench;
+mod good_input;
