@@ -79,6 +79,15 @@ unsafe extern "C" fn keep(environment: *mut c_void, _: Text, status: Status, cat
     }
 }
 
+/// A state that the slave holds for the host.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Saved(FmuState);
+
+impl Saved {
+    /// No state.
+    pub const NULL: Saved = Saved(null_mut());
+}
+
 /// What to instantiate.
 #[derive(Clone, Debug)]
 pub struct Request<'a> {
@@ -242,41 +251,48 @@ impl Instance {
     ///
     /// # Errors
     /// The status that is not OK.
-    pub fn save(&self) -> Result<FmuState, Status> {
+    pub fn save(&self) -> Result<Saved, Status> {
         let mut state = null_mut();
-        ok(self.call(|f, c| unsafe { (f.get_state)(c, &mut state) }), ()).map(|()| state)
+        ok(self.call(|f, c| unsafe { (f.get_state)(c, &mut state) }), ()).map(|()| Saved(state))
     }
 
     /// `fmi2SetFMUstate` with a state that [`Instance::save`] or [`Instance::unpack`] gave.
-    pub fn restore(&self, state: FmuState) -> Status {
-        self.call(|f, c| unsafe { (f.set_state)(c, state) })
+    pub fn restore(&self, state: Saved) -> Status {
+        self.call(|f, c| unsafe { (f.set_state)(c, state.0) })
     }
 
     /// `fmi2FreeFMUstate`.
-    pub fn free(&self, state: &mut FmuState) -> Status {
-        self.call(|f, c| unsafe { (f.free_state)(c, state) })
+    pub fn free(&self, state: &mut Saved) -> Status {
+        self.call(|f, c| unsafe { (f.free_state)(c, &mut state.0) })
+    }
+
+    /// `fmi2SerializeFMUstate` into a buffer of that size, whether it is large enough or not.
+    pub fn pack_into(&self, state: Saved, size: usize) -> Status {
+        let mut bytes = vec![0_u8; size];
+        let out = bytes.as_mut_ptr().cast();
+        self.call(|f, c| unsafe { (f.serialize)(c, state.0, out, size) })
     }
 
     /// `fmi2SerializedFMUstateSize` and `fmi2SerializeFMUstate`.
     ///
     /// # Errors
     /// The status that is not OK.
-    pub fn pack(&self, state: FmuState) -> Result<Vec<u8>, Status> {
+    pub fn pack(&self, state: Saved) -> Result<Vec<u8>, Status> {
         let mut size = 0;
-        ok(self.call(|f, c| unsafe { (f.serialized_size)(c, state, &mut size) }), ())?;
+        ok(self.call(|f, c| unsafe { (f.serialized_size)(c, state.0, &mut size) }), ())?;
         let mut bytes = vec![0_u8; size];
         let out = bytes.as_mut_ptr().cast();
-        ok(self.call(|f, c| unsafe { (f.serialize)(c, state, out, size) }), bytes)
+        ok(self.call(|f, c| unsafe { (f.serialize)(c, state.0, out, size) }), bytes)
     }
 
     /// `fmi2DeSerializeFMUstate`.
     ///
     /// # Errors
     /// The status that is not OK.
-    pub fn unpack(&self, bytes: &[u8]) -> Result<FmuState, Status> {
+    pub fn unpack(&self, bytes: &[u8]) -> Result<Saved, Status> {
         let mut state = null_mut();
         let start = bytes.as_ptr().cast();
-        ok(self.call(|f, c| unsafe { (f.deserialize)(c, start, bytes.len(), &mut state) }), ()).map(|()| state)
+        ok(self.call(|f, c| unsafe { (f.deserialize)(c, start, bytes.len(), &mut state) }), ()).map(|()| Saved(state))
     }
 }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::ptr::{null, null_mut};
-use switchid_fmu_slave::host::{Functions, Instance, Request};
+use switchid_fmu_slave::host::{Functions, Instance, Request, Saved};
 use switchid_fmu_slave::{
     Causality, Description, INTERFACE_FILE, Interface, Kind, Log, Slave, SlaveError, Value, Values, Variability,
     Variable,
@@ -265,15 +265,15 @@ fn a_state_of_something_else_is_refused() {
     let instance = running();
     let mut state = instance.save().unwrap();
     let mut bytes = instance.pack(state).unwrap();
-    assert_eq!(instance.call(|f, c| unsafe { (f.serialize)(c, state, bytes.as_mut_ptr().cast(), 3) }), ERROR);
+    assert_eq!(instance.pack_into(state, 3), ERROR);
     bytes[1] ^= 1;
     assert_eq!(instance.unpack(&bytes), Err(ERROR));
     assert!(last_message(&instance).contains("GUID"), "{:?}", instance.messages());
     assert_eq!(instance.unpack(b"nonsense"), Err(ERROR));
     assert_eq!(instance.unpack(&[]), Err(ERROR));
-    assert_eq!(instance.restore(null_mut()), ERROR);
+    assert_eq!(instance.restore(Saved::NULL), ERROR);
     assert_eq!(instance.free(&mut state), OK);
-    assert!(state.is_null());
+    assert_eq!(state, Saved::NULL);
     assert_eq!(instance.free(&mut state), OK);
 }
 
