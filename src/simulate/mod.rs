@@ -8,11 +8,13 @@
 mod builtin;
 mod check;
 mod noise;
+mod parametric;
 mod plant;
 mod random;
 mod scenario;
 
 pub use builtin::{Builtin, UnknownBuiltin};
 pub use check::ScenarioError;
+pub use parametric::{LawParameter, ParametricLaw, ParametricLawError};
 pub use plant::{Plant, PlantError, Reading, SimulateError, Truth, record};
 pub use scenario::{Excitation, ExcitationKind, Scenario, SensorNoise, Stage};

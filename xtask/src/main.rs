@@ -1,28 +1,50 @@
-//! Chores of the project: `cargo xtask fmu`.
+//! Chores of the project: `cargo xtask crosscheck | test | fmu | bench`.
 
+mod command;
+mod crosscheck;
+mod error;
 mod fmu;
+mod libclang;
+mod python;
+mod readme;
+mod steps;
+mod test;
 
-use std::path::Path;
+use error::Error;
 use std::process::ExitCode;
 
+const USAGE: &str = "\
+usage: cargo xtask CHORE
+
+  crosscheck [--seed N] [--quick] [--jobs N]
+                     steps plant and identifier FMUs together under fmpy, gates the figures,
+                     writes target/crosscheck/report.html and report.json
+  test               every test
+  fmu                builds SwitchedIdentifier.fmu, Duffing.fmu, VanDerPol.fmu into target/fmu
+  bench [ARGUMENT..] benchmarks; arguments go to cargo bench";
+
 fn main() -> ExitCode {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
-    let command = std::env::args().nth(1).unwrap_or_default();
-    let outcome = match command.as_str() {
-        "fmu" => fmu::write_model_description(&root).and_then(|_| fmu::build(&root)),
-        _ => {
-            eprintln!("usage: cargo xtask fmu");
-            return ExitCode::from(2);
-        }
-    };
-    match outcome {
-        Ok(paths) => {
-            paths.iter().for_each(|path| println!("{}", path.display()));
-            ExitCode::SUCCESS
-        }
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match chore(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
-            ExitCode::FAILURE
+            ExitCode::from(if matches!(error, Error::Usage { .. }) { 2 } else { 1 })
         }
+    }
+}
+
+fn chore(arguments: &[String]) -> Result<(), Error> {
+    let (name, rest) = arguments.split_first().ok_or_else(|| Error::Usage { text: "which chore?".into() })?;
+    match (name.as_str(), rest) {
+        ("crosscheck", rest) => crosscheck::crosscheck(rest),
+        ("test", []) => test::test(),
+        ("fmu", []) => fmu::build(),
+        ("bench", rest) => command::run(command::cargo(&["bench"]).args(rest), "install Rust from https://rustup.rs"),
+        ("--help" | "-h" | "help", _) => {
+            println!("{USAGE}");
+            Ok(())
+        }
+        _ => Err(Error::Usage { text: format!("no such chore: \"{}\"", arguments.join(" ")) }),
     }
 }

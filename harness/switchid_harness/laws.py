@@ -1,0 +1,62 @@
+"""The two laws of motion of the plants, and the names of their terms.
+
+Terms stand on the left-hand side, the excitation on the right (DESIGN section 2):
+
+    Duffing        m q̈ + c q̇ + k1 q + k3 q³ = F
+    van der Pol    L q̈ + alpha (q² − a) q̇ + q/C = V
+
+Terms carry their FMU names: `qdd`, `qd`, `q`, `q_3`, `q_2_qd`, `const`.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+Coefficients = dict[str, float]
+
+
+@dataclass(frozen=True)
+class Law:
+    """A law of motion: its plant FMU, its parameters, and what the identifier may assume about it."""
+
+    name: str
+    fmu: str
+    parameters: tuple[str, ...]
+    terms: str
+    """FMU parameter `terms` of the identifier; empty = the full cubic library of eq. (11)."""
+    coefficients: Callable[[dict[str, float]], Coefficients]
+    """Coefficients of the terms from the parameters; terms not named have the coefficient 0."""
+
+
+def _duffing(p: dict[str, float]) -> Coefficients:
+    return {"qdd": p["m"], "qd": p["c"], "q": p["k1"], "q_3": p["k3"]}
+
+
+def _van_der_pol(p: dict[str, float]) -> Coefficients:
+    return {"qdd": p["L"], "qd": -p["alpha"] * p["a"], "q_2_qd": p["alpha"], "q": 1.0 / p["C"]}
+
+
+DUFFING = Law("Duffing", "Duffing.fmu", ("m", "c", "k1", "k3"), "qdd qd q q^3", _duffing)
+VAN_DER_POL = Law("van der Pol", "VanDerPol.fmu", ("L", "alpha", "a", "C"), "", _van_der_pol)
+
+
+def factors(term: str) -> list[tuple[str, int]]:
+    """The factors of a term by base and exponent: `q_2_qd` is [("q", 2), ("qd", 1)], `const` has none."""
+    if term == "const":
+        return []
+    result: list[tuple[str, int]] = []
+    for part in term.split("_"):
+        if part.isdigit():
+            result[-1] = (result[-1][0], int(part))
+        else:
+            result.append((part, 1))
+    return result
+
+
+_SYMBOLS = {"qdd": "q̈", "qd": "q̇"}
+_SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def symbol(term: str) -> str:
+    """The term as it is written in a law, `q² q̇`; `1` for the constant."""
+    written = [_SYMBOLS.get(base, base) + (str(n).translate(_SUPERSCRIPTS) if n > 1 else "") for base, n in factors(term)]
+    return " ".join(written) or "1"

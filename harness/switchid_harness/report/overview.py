@@ -1,0 +1,27 @@
+"""The summary at the head of the page."""
+
+from html import escape
+
+from ..table import failures
+
+
+def _plural(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+
+
+def summary(seed: int, runs: list[dict]) -> str:
+    """Verdict, what was run, and the list of gates that fail."""
+    failed = failures(runs)
+    total = sum(len(run["gates"]) for run in runs)
+    verdict = f"All {total} gates hold" if not failed else f"{len(failed)} of {total} gates fail"
+    switches = sum(len(run["stages"]) - 1 for run in runs)
+    seconds = sum(run["end"] for run in runs)
+    facts = [
+        f"{_plural(len(runs), 'run')}, {switches} switches, {seconds:.0f} s of record at 1 kHz",
+        f"one default configuration; drawn parameters from seed {seed}",
+    ]
+    items = "".join(f"<li>{escape(line)}</li>" for line in failed)
+    details = f"<details><summary>Gates that fail</summary><ul>{items}</ul></details>" if failed else ""
+    kind = "bad" if failed else "good"
+    chips = "".join(f'<span class="chip">{escape(fact)}</span>' for fact in facts)
+    return f'<p class="verdict"><span class="chip {kind}">{escape(verdict)}</span>{chips}</p>{details}'

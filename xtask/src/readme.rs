@@ -1,0 +1,42 @@
+//! The README's shell commands, run as they stand.
+
+use crate::command::{root, run};
+use crate::error::Error;
+use std::process::Command;
+
+/// Runs every ```` ```sh ```` block of README.md in the workspace's root, in order; lines that call `cargo xtask` are
+/// left out, since CI runs those itself.
+///
+/// # Errors
+/// [`Error::Document`] when there is no such block, [`Error::Failed`] when a command fails.
+pub fn commands() -> Result<(), Error> {
+    let path = root().join("README.md");
+    let text =
+        std::fs::read_to_string(&path).map_err(|source| Error::File { action: "read", path: path.clone(), source })?;
+    let blocks = shell_blocks(&text);
+    if blocks.is_empty() {
+        return Err(Error::Document { path, text: "has no ```sh block: its commands are tested from there" });
+    }
+    let script = blocks.join("\n");
+    run(Command::new("bash").args(["-euxo", "pipefail", "-c", &script]).current_dir(root()), "install bash")
+}
+
+fn shell_blocks(text: &str) -> Vec<String> {
+    let blocks = text.split("\n```sh\n").skip(1).filter_map(|rest| rest.split("\n```").next());
+    blocks.map(without_xtask).filter(|block| !block.trim().is_empty()).collect()
+}
+
+fn without_xtask(block: &str) -> String {
+    block.lines().filter(|line| !line.trim_start().starts_with("cargo xtask")).collect::<Vec<_>>().join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_shell_blocks_are_run_and_no_chore() {
+        let text = "a\n```sh\ncargo xtask test\nls -l\n```\nb\n```rust\nfn f() {}\n```\n```sh\necho 2\n```\n";
+        assert_eq!(shell_blocks(text), ["ls -l", "echo 2"]);
+    }
+}

@@ -1,0 +1,78 @@
+//! Every test there is; `.ci/run` calls it.
+
+use crate::command::{cargo, run};
+use crate::crosscheck::harness;
+use crate::error::Error;
+use crate::steps::Steps;
+use crate::{fmu, libclang, python, readme};
+use std::path::Path;
+use std::process::Command;
+
+const CARGO: &str = "install Rust from https://rustup.rs";
+const CHECK: &str = "switchid-fmu-check";
+
+/// Runs every step, also after one failed, and names those that did.
+///
+/// # Errors
+/// [`Error::Steps`]; [`Error::Data`] when real records are missing in CI.
+pub fn test() -> Result<(), Error> {
+    let mut steps = Steps::new(11);
+    steps.check("real records", real_records);
+    steps.check("format", || cargo_run(&["fmt", "--all", "--check"]));
+    steps.check("clippy", || cargo_run(&clippy(&["--workspace", "--exclude", CHECK, "--all-targets"])));
+    steps.check("clippy, heart alone", || cargo_run(&clippy(&["--package", "switchid", "--no-default-features"])));
+    steps.check("documentation", documentation);
+    steps.check("Rust tests", || cargo_run(&["test", "--release", "--quiet"]));
+    steps.check("FMUs", fmu::build);
+    steps.check("FMUs through the fmi crate", fmi_crate);
+    steps.check("README's commands", readme::commands);
+    let interpreter = steps.run("Python environment", python::environment);
+    steps.check("harness tests", || pytest(&interpreter?));
+    steps.finish()
+}
+
+fn cargo_run(arguments: &[&str]) -> Result<(), Error> {
+    run(&mut cargo(arguments), CARGO)
+}
+
+fn clippy<'a>(selection: &[&'a str]) -> Vec<&'a str> {
+    [&["clippy", "--quiet"], selection, &["--", "--deny", "warnings"]].concat()
+}
+
+fn documentation() -> Result<(), Error> {
+    let arguments = ["doc", "--quiet", "--no-deps", "--workspace", "--exclude", CHECK];
+    run(cargo(&arguments).env("RUSTDOCFLAGS", "--deny warnings"), CARGO)
+}
+
+fn fmi_crate() -> Result<(), Error> {
+    let mut command = cargo(&["test", "--quiet", "--package", CHECK]);
+    libclang::provide(&mut command)?;
+    run(&mut command, CARGO)
+}
+
+fn pytest(interpreter: &Path) -> Result<(), Error> {
+    let mut command: Command = harness(interpreter);
+    run(command.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "harness/tests"]), python::NO_PYTHON)
+}
+
+/// Tests on real records are skipped where there are none, which CI must not do.
+fn real_records() -> Result<(), Error> {
+    let problem = match std::env::var_os("SWITCHID_DATA") {
+        None => "SWITCHID_DATA is not set".to_string(),
+        Some(directory) => match missing_record(Path::new(&directory)) {
+            None => return Ok(()),
+            Some(missing) => format!("{missing} is not there"),
+        },
+    };
+    if std::env::var_os("CI").is_some() {
+        return Err(Error::Data { text: problem });
+    }
+    eprintln!("{problem}: tests on real records are skipped");
+    Ok(())
+}
+
+fn missing_record(directory: &Path) -> Option<String> {
+    let files = ["emps/emps_train_tidy.csv", "silverbox/silverbox_tidy.csv"];
+    let missing = files.into_iter().map(|file| directory.join(file)).find(|path| !path.is_file())?;
+    Some(missing.display().to_string())
+}
