@@ -8,5 +8,8 @@
 //!
 //! Terms stand on the left, the excitation on the right, `m q̈ + c q̇ + k₁ q + k₃ q³ = F`.
 
+pub mod evidence;
 pub mod identify;
 pub mod law;
+pub mod simulate;
+pub mod weak;

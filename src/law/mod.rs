@@ -4,14 +4,20 @@
 //! on the right with its coefficient fixed to 1 (or, unforced, with the inertia fixed to 1 and F = 0). Each
 //! [`Term`] is one f: the inertia q̈, a product of powers `q^a q̇^b F^c`, or a named physical effect of the catalogue.
 
+mod drive;
 mod effect;
 mod hold;
+mod linearized;
 mod model;
+mod motion;
 mod term;
 mod text;
 
+pub use drive::{BandLimited, Drive, NODES, REACH, look_ahead};
 pub use effect::Effect;
 pub use hold::Hold;
+pub use linearized::Linearized;
 pub use model::{Columns, Given, Model, ModelError, ModelTerm};
+pub use motion::{Motion, State};
 pub use term::{Monomial, Term, TermError};
 pub use text::equation;

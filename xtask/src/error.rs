@@ -77,6 +77,9 @@ pub enum Error {
         /// What is missing.
         text: String,
     },
+    /// The FMUs cannot be built.
+    #[error(transparent)]
+    Fmu(#[from] crate::fmu::FmuError),
     /// Some steps failed.
     #[error("{} of {total} steps failed: {}", failed.len(), failed.join(", "))]
     Steps {

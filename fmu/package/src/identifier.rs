@@ -1,0 +1,120 @@
+//! The identifier's interface for a model.
+
+use crate::archive::{Fmu, PackageError};
+use crate::documentation;
+use crate::variables::{at_least, choice, input, output, real, units, variable};
+use switchid::identify::{Method, OutputDescription, OutputKind, Outputs, Parameter, Status};
+use switchid::law::{Hold, Model, Term};
+use switchid_fmu_slave::{Description, Enumeration, Kind, Variable};
+
+/// An identifier for a model, still without binaries.
+///
+/// # Errors
+/// [`PackageError`] where the model is refused or `name` is no identifier.
+pub fn identifier(name: &str, model: &Model) -> Result<Fmu, PackageError> {
+    model.check()?;
+    let description = identifier_description(name, model);
+    let page = documentation::identifier(&description, model);
+    Fmu::new(description, vec![("model.toml".into(), model.to_toml().into_bytes())], page)
+}
+
+/// The variables of an identifier for a model: inputs, parameters, outputs.
+pub fn identifier_description(name: &str, model: &Model) -> Description {
+    let terms: Vec<Term> = model.terms.iter().map(|entry| entry.term).collect();
+    let variables: Vec<Variable> = inputs()
+        .into_iter()
+        .chain(parameters(&terms))
+        .chain(Outputs::describe(&terms).iter().map(to_variable))
+        .collect();
+    Description {
+        name: name.into(),
+        description: "Identifies the law of motion of a switched system, notices switches, re-identifies".into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        default_step: 1e-3,
+        default_duration: 30.0,
+        units: units(&variables),
+        enumerations: enumerations(),
+        variables,
+    }
+}
+
+fn inputs() -> [Variable; 3] {
+    [
+        input(real("q", 0.0, None, "Displacement, sampled at the start of every step")),
+        input(real("qd", 0.0, None, "Velocity, sampled at the start of every step")),
+        input(real("F", 0.0, None, "Excitation, sampled at the start of every step")),
+    ]
+}
+
+fn parameters(terms: &[Term]) -> Vec<Variable> {
+    let names: Vec<String> = terms.iter().map(|term| term.name()).collect();
+    let text = format!(
+        "Terms of the law, separated by spaces: those named are fitted, the others absent; empty = as the model says. \
+         To choose among: {}",
+        names.join(" ")
+    );
+    let mut parameters = vec![
+        variable("terms", Kind::String { start: String::new() }, text),
+        choice("method", "Method", 1, "Which procedure identifies; the publication's has the published settings"),
+        choice("hold", "Hold", 1, "What F does between samples; in co-simulation an input is held over a step: zero"),
+    ];
+    parameters.extend(Parameter::ALL.iter().map(|parameter| {
+        let start = parameter.default();
+        at_least(real(parameter.name, start, parameter.unit, parameter.description), parameter.min)
+    }));
+    parameters
+}
+
+fn to_variable(of: &OutputDescription) -> Variable {
+    let kind = match of.kind {
+        OutputKind::Real(unit) => Kind::Real { start: 0.0, min: None, max: None, unit: unit.map(Into::into) },
+        OutputKind::Count => Kind::Integer { start: 0, min: None, max: None },
+        OutputKind::Flag => Kind::Boolean { start: false },
+        OutputKind::Status => Kind::Enumeration { of: "Status".into(), start: 1 },
+    };
+    output(variable(&of.name, kind, &of.description), initial_dependencies(&of.name))
+}
+
+/// Which parameters an output's value before the first sample depends on.
+fn initial_dependencies(name: &str) -> &'static [&'static str] {
+    match name {
+        "threshold" => &["deviation.threshold", "method"],
+        "noise_estimate.q" => &["noise.q"],
+        "noise_estimate.qd" => &["noise.qd"],
+        name if name.starts_with("coef.") || name.starts_with("std.") => &["terms"],
+        _ => &[],
+    }
+}
+
+fn enumerations() -> Vec<Enumeration> {
+    let item = |name: &str, text: &str| (name.to_string(), text.to_string());
+    let methods = Method::ALL.map(|method| {
+        let text = match method {
+            Method::Default => "Needs no setting",
+            Method::Publication => "The published procedure",
+        };
+        item(method.id(), text)
+    });
+    let holds = Hold::ALL.map(|hold| {
+        let text = match hold {
+            Hold::Zero => "A sample's value stays until the next one",
+            Hold::Linear => "A straight line from sample to sample",
+            Hold::BandLimited => "Smooth up to half the sampling frequency",
+        };
+        item(hold.id(), text)
+    });
+    let statuses = Status::ALL.map(|status| {
+        let text = match status {
+            Status::Acquiring => "No law yet",
+            Status::Tracking => "The law explains the data",
+            Status::SwitchSuspected => "Evidence of a switch is growing",
+            Status::ReIdentifying => "A switch was detected; the new law is being identified",
+        };
+        item(status.id(), text)
+    });
+    vec![
+        Enumeration { name: "Method".into(), items: methods.into() },
+        Enumeration { name: "Hold".into(), items: holds.into() },
+        Enumeration { name: "Status".into(), items: statuses.into() },
+    ]
+}

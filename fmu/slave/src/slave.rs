@@ -1,0 +1,35 @@
+//! What a slave must do; all of FMI is done for it.
+
+use crate::description::Description;
+use crate::log::Log;
+use crate::values::Values;
+use serde::{Serialize, de::DeserializeOwned};
+use std::path::Path;
+
+/// Why a slave cannot do what was asked: a text that says what, where, and how to mend it.
+pub type SlaveError = Box<dyn std::error::Error>;
+
+/// A co-simulation slave as plain data: saving and restoring it is a copy.
+///
+/// No threads, no thread-locals, no globals; what it reads from its resources it reads in `instantiate`.
+pub trait Slave: Clone + Serialize + DeserializeOwned + 'static {
+    /// Reads the resources.
+    ///
+    /// # Errors
+    /// What is missing or does not fit.
+    fn instantiate(resources: &Path, description: &Description) -> Result<Self, SlaveError>;
+
+    /// Takes the parameters and writes the outputs at the start time, s. Called on a slave as instantiated, possibly
+    /// several times before the first step; ranges given in the description have been checked.
+    ///
+    /// # Errors
+    /// Which parameter is refused, and why.
+    fn start(&mut self, time: f64, values: &mut Values, log: &mut Log) -> Result<(), SlaveError>;
+
+    /// Steps from `time` over `step` (both s, finite, step ≥ 0): inputs hold at `time`, outputs at `time + step`. Bad
+    /// data is no error: it is skipped and said in the log.
+    ///
+    /// # Errors
+    /// Only what leaves the slave unable to go on.
+    fn step(&mut self, time: f64, step: f64, values: &mut Values, log: &mut Log) -> Result<(), SlaveError>;
+}

@@ -1,0 +1,23 @@
+//! How well a law explains a record, and how much better another one would.
+//!
+//! Everything stands on the innovations ε of a Kalman filter for (q, q̇) under a law with coefficients θ (Ljung, *System
+//! Identification*, 2nd ed., ch. 7 and 10; Särkkä, *Bayesian Filtering and Smoothing*, ch. 16): with s the variance that
+//! the filter states for ε, a record has the log-likelihood −½ Σ (ε²/s + ln s). The filter allows for sensor noise in both
+//! channels and for a white force that the law does not have. As that force goes to zero the fit becomes the maximum
+//! likelihood of the trajectory, with its initial state marginalised; as it grows, that of the equation error.
+//!
+//! - [`Filter`]: the state and its covariance, from sample to sample;
+//! - [`Pass`]: one run over a record: likelihood, score and Fisher information of the coefficients;
+//! - [`Information`]: sums of them, and their solution;
+//! - [`Bank`]: hypotheses that the law switched at one of many instants (Willsky and Jones, IEEE TAC 21, 1976).
+
+
+mod filter;
+mod information;
+mod pass;
+mod symmetric;
+
+
+pub use filter::{Channel, Filter, Innovation, Noise};
+pub use information::{Information, Solution};
+pub use pass::{Observation, Pass, Track};

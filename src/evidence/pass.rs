@@ -1,0 +1,176 @@
+//! One run of the filter over a record: likelihood, score and information of the coefficients.
+
+use super::filter::{Channel, Filter, Innovation, Noise};
+use super::information::Information;
+use crate::law::{Drive, Linearized, Motion, State, Term};
+use serde::{Deserialize, Serialize};
+
+/// Ratio by which the process noise of the two rival filters differs from the one in use.
+pub const RIVALS: [f64; 2] = [1.0 / 30.0, 6.0];
+
+/// Most parts into which an interval between two samples is cut.
+const MAX_PARTS: usize = 8;
+
+/// Largest rate per part, squared radians: below it a step of order 4 errs by less than 1e-6 of the motion.
+const MAX_RATE: f64 = 0.02;
+
+/// A sample and the excitation since the one before it.
+#[derive(Clone, Copy, Debug)]
+pub struct Observation {
+    /// Time since the last sample, s.
+    pub dt: f64,
+    /// The excitation over that time.
+    pub drive: Drive,
+    /// What was measured at its end, by [`Channel`]; `None` where a channel is not measured.
+    pub measured: [Option<f64>; 2],
+}
+
+/// Sums that make up a likelihood.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Track {
+    /// Number of innovations by channel.
+    pub count: [f64; 2],
+    /// Σ ε²/s by channel.
+    pub squares: [f64; 2],
+    /// Σ ln s.
+    pub log_variance: f64,
+}
+
+impl Track {
+    #[inline]
+    fn add(&mut self, channel: Channel, innovation: &Innovation) {
+        self.count[channel as usize] += 1.0;
+        self.squares[channel as usize] += innovation.residual * innovation.residual / innovation.variance;
+        self.log_variance += innovation.variance.ln();
+    }
+
+    /// Mean of ε²/s in the channel: by how much its stated variance is too small; 1 where nothing was measured.
+    pub fn scale(&self, channel: Channel) -> f64 {
+        let count = self.count[channel as usize];
+        if count > 0.0 { self.squares[channel as usize] / count } else { 1.0 }
+    }
+
+    /// Log-likelihood with each channel's scale at its own maximum, up to a constant.
+    pub fn log_likelihood(&self) -> f64 {
+        let profile = Channel::ALL.map(|channel| self.count[channel as usize] * self.scale(channel).max(1e-300).ln());
+        -0.5 * (self.log_variance + profile[0] + profile[1])
+    }
+
+    /// Number of scalar measurements.
+    pub fn total(&self) -> f64 {
+        self.count[0] + self.count[1]
+    }
+}
+
+/// A run of the filter over a record, sample by sample.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pass {
+    /// The filter in use.
+    pub filter: Filter,
+    /// Its likelihood.
+    pub track: Track,
+    /// Likelihoods under the process noise times [`RIVALS`].
+    pub rivals: [Track; 2],
+    /// What the record says on the free coefficients.
+    pub information: Information,
+    /// ∂(q, q̇)/∂θ of the filtered state.
+    pub sensitivity: Vec<[f64; 2]>,
+    /// Parts into which an interval is cut.
+    pub parts: usize,
+    rival_filters: [Filter; 2],
+    fastest: f64,
+    row: Vec<f64>,
+}
+
+impl Pass {
+    /// A run that has not begun, on `n` free coefficients.
+    pub fn new(n: usize) -> Pass {
+        let filter = Filter { state: State::default(), covariance: [0.0; 3] };
+        Pass {
+            filter,
+            track: Track::default(),
+            rivals: [Track::default(); 2],
+            information: Information::none(n),
+            sensitivity: vec![[0.0; 2]; n],
+            parts: 1,
+            rival_filters: [filter; 2],
+            fastest: 0.0,
+            row: vec![0.0; n],
+        }
+    }
+
+    /// Begins at a state that does not depend on the coefficients.
+    pub fn begin(&mut self, filter: Filter) {
+        self.filter = filter;
+        self.rival_filters = [filter; 2];
+        self.track = Track::default();
+        self.rivals = [Track::default(); 2];
+        self.information.clear();
+        self.sensitivity.fill([0.0; 2]);
+        self.parts = ((self.fastest / MAX_RATE).sqrt().ceil() as usize).clamp(1, MAX_PARTS);
+        self.fastest = 0.0;
+    }
+
+    /// Takes one sample; `free` are the terms whose coefficients are sought. Returns the innovations by channel.
+    pub fn step(
+        &mut self,
+        motion: &Motion,
+        free: &[Term],
+        noise: &Noise,
+        observation: &Observation,
+    ) -> [Option<Innovation>; 2] {
+        self.advance(motion, free, noise, observation);
+        Channel::ALL.map(|channel| self.correct(channel, noise, observation))
+    }
+
+    fn advance(&mut self, motion: &Motion, free: &[Term], noise: &Noise, observation: &Observation) {
+        let parts = observation.drive.parts(self.parts);
+        let dt = observation.dt / parts as f64;
+        for part in 0..parts {
+            let step = motion.linearized_step(self.filter.state, dt, observation.drive.part(part, parts));
+            self.fastest = self.fastest.max(step.rate * (parts * parts) as f64);
+            self.carry_sensitivity(&step, free);
+            for (rival, ratio) in self.rival_filters.iter_mut().zip(RIVALS) {
+                rival.state = beside(&step, self.filter.state, rival.state);
+                rival.predict(&step, dt, noise.process * ratio);
+            }
+            self.filter.state = step.state;
+            self.filter.predict(&step, dt, noise.process);
+        }
+    }
+
+    #[inline]
+    fn carry_sensitivity(&mut self, step: &Linearized, free: &[Term]) {
+        let [[a, b], [c, d]] = step.transition;
+        let [to_q, to_qd] = step.input;
+        for (sensitivity, term) in self.sensitivity.iter_mut().zip(free) {
+            let [q, qd] = *sensitivity;
+            let slope = step.slope(*term);
+            *sensitivity = [a * q + b * qd + to_q * slope, c * q + d * qd + to_qd * slope];
+        }
+    }
+
+    fn correct(&mut self, channel: Channel, noise: &Noise, observation: &Observation) -> Option<Innovation> {
+        let measured = observation.measured[channel as usize]?;
+        let variance = noise.sensor[channel as usize];
+        for (rival, track) in self.rival_filters.iter_mut().zip(&mut self.rivals) {
+            track.add(channel, &rival.update(channel, measured, variance));
+        }
+        let innovation = self.filter.update(channel, measured, variance);
+        self.track.add(channel, &innovation);
+        for (row, sensitivity) in self.row.iter_mut().zip(&mut self.sensitivity) {
+            *row = sensitivity[channel as usize];
+            sensitivity[0] -= innovation.gain[0] * *row;
+            sensitivity[1] -= innovation.gain[1] * *row;
+        }
+        self.information.add(&self.row, innovation.residual, innovation.variance);
+        Some(innovation)
+    }
+}
+
+/// Where a state near the one that was integrated ends: it is carried by the linearised step.
+fn beside(step: &Linearized, from: State, state: State) -> State {
+    let [[a, b], [c, d]] = step.transition;
+    let (dq, dqd) = (state.q - from.q, state.qd - from.qd);
+    State { q: step.state.q + a * dq + b * dqd, qd: step.state.qd + c * dq + d * dqd }
+}

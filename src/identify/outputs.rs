@@ -1,0 +1,164 @@
+//! What an identifier publishes, by name: outputs of the FMU, columns of the command line's trace.
+
+use super::identifier::{Identifier, Status};
+use crate::law::Term;
+use serde::{Deserialize, Serialize};
+
+/// Stands for "not known" where a number has to stand: stds before the first law, instants that have not come.
+pub const UNKNOWN: f64 = 1e30;
+
+/// What kind of value an output has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputKind {
+    /// A real number, with its unit where it has one.
+    Real(Option<&'static str>),
+    /// A number of events.
+    Count,
+    /// True or false.
+    Flag,
+    /// A [`Status`].
+    Status,
+}
+
+/// An output's name and meaning.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutputDescription {
+    /// Its name: `coef.q_2_qd`, `switch.time`.
+    pub name: String,
+    /// What kind of value it has.
+    pub kind: OutputKind,
+    /// What it says.
+    pub description: String,
+}
+
+/// An output's value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OutputValue {
+    /// Of [`OutputKind::Real`].
+    Real(f64),
+    /// Of [`OutputKind::Count`].
+    Count(u32),
+    /// Of [`OutputKind::Flag`].
+    Flag(bool),
+    /// Of [`OutputKind::Status`].
+    Status(Status),
+}
+
+impl OutputValue {
+    /// As a number, for a table: flags are 0 and 1, a status its number.
+    pub fn number(self) -> f64 {
+        match self {
+            OutputValue::Real(value) => value,
+            OutputValue::Count(count) => f64::from(count),
+            OutputValue::Flag(flag) => f64::from(u8::from(flag)),
+            OutputValue::Status(status) => f64::from(status as u8),
+        }
+    }
+}
+
+/// The outputs of an identifier over a list of terms, which may hold terms that its model leaves out: their
+/// coefficient is 0 and their std [`UNKNOWN`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outputs {
+    /// For every listed term, its place among the identifier's coefficients.
+    places: Vec<Option<usize>>,
+}
+
+const SCALARS: [(&str, OutputKind, &str); 12] = [
+    ("switch.count", OutputKind::Count, "Switches detected so far"),
+    ("switch.time", OutputKind::Real(Some("s")), "Estimated instant at which the present stage began"),
+    (
+        "switch.detection_time",
+        OutputKind::Real(Some("s")),
+        "Time of the alarm that ended the last stage; 1e30 before the first alarm",
+    ),
+    ("status", OutputKind::Status, "What the identifier is doing"),
+    ("valid", OutputKind::Flag, "Whether the identifier vouches for the present law"),
+    ("deviation", OutputKind::Real(None), "Mean deviation of prediction from observation over deviation.interval"),
+    ("threshold", OutputKind::Real(None), "Deviation that is out of the ordinary"),
+    ("prediction.q", OutputKind::Real(None), "q that the present law predicts for the last sample"),
+    ("prediction.qd", OutputKind::Real(None), "qd that the present law predicts for the last sample"),
+    ("noise_estimate.q", OutputKind::Real(None), "Estimated std of the sensor noise on q; 1e30 while not known"),
+    ("noise_estimate.qd", OutputKind::Real(None), "Estimated std of the sensor noise on qd; 1e30 while not known"),
+    (
+        "identified_time",
+        OutputKind::Real(Some("s")),
+        "First time at which the identifier vouched for the present law; 1e30 before",
+    ),
+];
+
+impl Outputs {
+    /// The outputs for these terms, with the names that FMU and trace give them: all `coef.`, all `std.`, the rest.
+    pub fn describe(terms: &[Term]) -> Vec<OutputDescription> {
+        let real =
+            |name: String, description: String| OutputDescription { name, kind: OutputKind::Real(None), description };
+        let coefficients = terms.iter().map(|term| {
+            let description =
+                format!("Coefficient of {term} on the left-hand side; keeps its last value while unknown");
+            real(format!("coef.{}", term.fmu_name()), description)
+        });
+        let stds = terms.iter().map(|term| {
+            real(format!("std.{}", term.fmu_name()), format!("Std of the coefficient of {term}; 1e30 while unknown"))
+        });
+        let scalars =
+            SCALARS.map(|(name, kind, text)| OutputDescription { name: name.into(), kind, description: text.into() });
+        coefficients.chain(stds).chain(scalars).collect()
+    }
+
+    /// The outputs of this identifier over these terms.
+    pub fn new(terms: &[Term], identifier: &Identifier) -> Outputs {
+        let coefficients = identifier.coefficients();
+        let place = |term: &Term| coefficients.iter().position(|coefficient| coefficient.term == *term);
+        Outputs { places: terms.iter().map(place).collect() }
+    }
+
+    /// Every value, in the order of [`Outputs::describe`].
+    pub fn values<'a>(&'a self, identifier: &'a Identifier) -> impl Iterator<Item = OutputValue> + 'a {
+        let coefficients = identifier.coefficients();
+        let at = |place: &Option<usize>| place.and_then(|place| coefficients.get(place));
+        let values = self.places.iter().map(move |place| at(place).map_or(0.0, |found| found.value));
+        let stds = self.places.iter().map(move |place| at(place).and_then(|found| found.std).unwrap_or(UNKNOWN));
+        values.chain(stds).map(OutputValue::Real).chain(scalars(identifier))
+    }
+}
+
+fn scalars(identifier: &Identifier) -> [OutputValue; SCALARS.len()] {
+    let output = identifier.output();
+    let or_unknown = |value: Option<f64>| OutputValue::Real(value.unwrap_or(UNKNOWN));
+    [
+        OutputValue::Count(output.switch_count),
+        OutputValue::Real(output.switch_time),
+        or_unknown(output.detection_time),
+        OutputValue::Status(output.status),
+        OutputValue::Flag(output.valid),
+        OutputValue::Real(output.deviation),
+        OutputValue::Real(output.threshold),
+        OutputValue::Real(output.prediction_q),
+        OutputValue::Real(output.prediction_qd),
+        or_unknown(output.noise_q),
+        or_unknown(output.noise_qd),
+        or_unknown(output.identified_time),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Outputs, UNKNOWN};
+    use crate::identify::{Identifier, Settings};
+    use crate::law::{Model, Term};
+
+    #[test]
+    fn a_term_that_the_model_leaves_out_is_listed_as_unknown() {
+        let library = Model::cubic_library();
+        let terms: Vec<Term> = library.terms.iter().map(|entry| entry.term).collect();
+        let duffing = library.with_terms(["qdd", "qd", "q", "q^3"]).unwrap();
+        let identifier = Identifier::new(&duffing, Settings::default()).unwrap();
+        let outputs = Outputs::new(&terms, &identifier);
+        let names = Outputs::describe(&terms);
+        let values: Vec<f64> = outputs.values(&identifier).map(|value| value.number()).collect();
+        assert_eq!(values.len(), names.len());
+        let at = |name: &str| values[names.iter().position(|output| output.name == name).unwrap()];
+        assert_eq!((at("coef.q_2_qd"), at("std.q_2_qd")), (0.0, UNKNOWN));
+        assert_eq!((at("std.qdd"), at("status")), (UNKNOWN, 1.0));
+    }
+}

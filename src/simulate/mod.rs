@@ -1,0 +1,16 @@
+//! Plants whose law is known: schedules of stages, excitations, sensor noise.
+//!
+//! A [`Scenario`] says everything about a plant; [`Plant`] integrates it. The law switches at the start of each
+//! [`Stage`], exactly at the instant given; the excitation is evaluated on a grid `t_k = k · sample_time` and held from
+//! `t_k` to `t_{k+1}`, as in a sampled actuator. What a plant shows at time t is a function of t alone: it does not depend on the
+//! communication steps that led there. Measured values ([`Reading`]) and truth ([`Truth`]) are apart.
+
+mod builtin;
+mod noise;
+mod plant;
+mod random;
+mod scenario;
+
+pub use builtin::{Builtin, UnknownBuiltin};
+pub use plant::{Plant, PlantError, Reading, SimulateError, Truth, record};
+pub use scenario::{Excitation, ExcitationKind, Scenario, ScenarioError, SensorNoise, Stage};

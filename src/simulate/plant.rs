@@ -1,0 +1,227 @@
+//! A plant in motion.
+//!
+//! The inner integration runs on its own grid, the excitation's grid refined by a whole number of RK4 steps, and cuts a step
+//! in two where the law switches within it. A value between two points of the inner grid comes from a shortened step
+//! that is then thrown away, so that what a plant shows at t does not depend on the way there.
+
+use super::noise::{Stream, standard_normal};
+use super::scenario::{ExcitationKind, Scenario, ScenarioError};
+use crate::law::{Motion, State};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// What the sensors and the actuator show.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reading {
+    /// Time, s.
+    pub t: f64,
+    /// Displacement with its sensor noise.
+    pub q: f64,
+    /// Velocity with its sensor noise.
+    pub qd: f64,
+    /// The excitation that is held from this instant on.
+    pub excitation: f64,
+}
+
+/// What no estimator may see.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Truth<'a> {
+    /// Index of the present stage, from 0.
+    pub stage: usize,
+    /// Its coefficients, in the order of the scenario's terms.
+    pub coefficients: &'a [f64],
+    /// Displacement and velocity without noise.
+    pub state: State,
+}
+
+/// Why a plant did not advance; it stays as it was.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum PlantError {
+    /// No time.
+    #[error("a plant cannot advance to t = {t}")]
+    Time {
+        /// The time asked for, s.
+        t: f64,
+    },
+    /// A time that is past.
+    #[error("a plant at t = {present} s cannot go back to {t} s: restore a saved state instead")]
+    Backwards {
+        /// The time asked for, s.
+        t: f64,
+        /// The time reached, s.
+        present: f64,
+    },
+    /// The motion grew beyond all numbers.
+    #[error("the motion diverges before t = {t} s: the law has no bounded motion from this state")]
+    Diverged {
+        /// A time by which it had, s.
+        t: f64,
+    },
+}
+
+/// Share of a grid interval by which a caller's time may miss a grid point and still mean it.
+const TIME_JITTER: f64 = 1e-3;
+
+/// A plant: its scenario, which does not change, and where it is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plant {
+    scenario: Scenario,
+    /// Last point of the inner grid that was reached, and the state there.
+    node: u64,
+    at_node: State,
+    /// The time asked for last, and the state there.
+    t: f64,
+    state: State,
+}
+
+impl Plant {
+    /// A plant at t = 0.
+    ///
+    /// # Errors
+    /// What [`Scenario::check`] refuses.
+    pub fn new(scenario: Scenario) -> Result<Plant, ScenarioError> {
+        scenario.check()?;
+        let initial = scenario.initial;
+        Ok(Plant { scenario, node: 0, at_node: initial, t: 0.0, state: initial })
+    }
+
+    /// Moves to time t, s.
+    ///
+    /// # Errors
+    /// [`PlantError`]; the plant then stays where it was.
+    pub fn advance_to(&mut self, t: f64) -> Result<(), PlantError> {
+        if !t.is_finite() {
+            return Err(PlantError::Time { t });
+        }
+        let (node, rest) = self.locate(t);
+        if t < self.t - self.resolution(t) || node < self.node {
+            return Err(PlantError::Backwards { t, present: self.t });
+        }
+        let mut at_node = self.at_node;
+        for passed in self.node..node {
+            at_node = self.integrate(at_node, passed, self.node_time(passed + 1));
+        }
+        let state = if rest { self.integrate(at_node, node, t) } else { at_node };
+        if !(at_node.is_finite() && state.is_finite()) {
+            return Err(PlantError::Diverged { t });
+        }
+        (self.node, self.at_node, self.t, self.state) = (node, at_node, t, state);
+        Ok(())
+    }
+
+    /// What is measured now. Sensor noise is drawn once per interval of the excitation's grid.
+    pub fn reading(&self) -> Reading {
+        let index = self.interval(self.t);
+        let noise = |std: f64, stream| match std {
+            0.0 => 0.0,
+            std => std * standard_normal(self.scenario.seed, stream, index),
+        };
+        Reading {
+            t: self.t,
+            q: self.state.q + noise(self.scenario.noise.q, Stream::Displacement),
+            qd: self.state.qd + noise(self.scenario.noise.qd, Stream::Velocity),
+            excitation: self.held(index),
+        }
+    }
+
+    /// What is the case now.
+    pub fn truth(&self) -> Truth<'_> {
+        let stage = self.scenario.stage_at(self.t + self.resolution(self.t));
+        Truth { stage, coefficients: &self.scenario.stages[stage].coefficients, state: self.state }
+    }
+
+    /// The scenario it was built from.
+    pub fn scenario(&self) -> &Scenario {
+        &self.scenario
+    }
+
+    /// Differences of time that rounding explains, s.
+    fn resolution(&self, t: f64) -> f64 {
+        1e-9 * self.scenario.excitation.sample_time + 4.0 * f64::EPSILON * t.abs()
+    }
+
+    fn node_time(&self, node: u64) -> f64 {
+        let substeps = self.scenario.substeps();
+        let part = (node % substeps) as f64 / substeps as f64;
+        ((node / substeps) as f64 + part) * self.scenario.excitation.sample_time
+    }
+
+    /// The last inner point not after t, and whether t lies beyond it.
+    fn locate(&self, t: f64) -> (u64, bool) {
+        let position = t / self.scenario.excitation.sample_time * self.scenario.substeps() as f64;
+        let nearest = position.round().max(0.0) as u64;
+        if (t - self.node_time(nearest)).abs() <= self.resolution(t) {
+            return (nearest, false);
+        }
+        (position.floor().max(0.0) as u64, true)
+    }
+
+    /// The interval of the excitation's grid to which t belongs.
+    fn interval(&self, t: f64) -> u64 {
+        (t / self.scenario.excitation.sample_time + TIME_JITTER).floor().max(0.0) as u64
+    }
+
+    /// The excitation that is held over an interval of the grid. Its amplitude and frequency are those of the stage
+    /// at the interval's start: where a switch falls between two grid points, they follow at the next one.
+    fn held(&self, interval: u64) -> f64 {
+        let excitation = self.scenario.excitation;
+        let t = interval as f64 * excitation.sample_time;
+        match excitation.kind {
+            ExcitationKind::None => 0.0,
+            ExcitationKind::Sine => {
+                let stage = &self.scenario.stages[self.scenario.stage_at(t + self.resolution(t))];
+                stage.amplitude * (stage.omega * t).sin()
+            }
+            ExcitationKind::WhiteNoise => {
+                let std = (excitation.intensity / excitation.sample_time).sqrt();
+                std * standard_normal(self.scenario.seed, Stream::Excitation, interval)
+            }
+        }
+    }
+
+    /// From inner point `node` to time `end`, at most one inner step later, cut where the law switches.
+    fn integrate(&self, mut state: State, node: u64, end: f64) -> State {
+        let excitation = self.held(node / self.scenario.substeps());
+        let mut t = self.node_time(node);
+        let mut stage = self.scenario.stage_at(t + self.resolution(t));
+        while let Some(next) =
+            self.scenario.stages.get(stage + 1).filter(|next| next.start < end - self.resolution(end))
+        {
+            state = self.motion(stage).step_held(state, next.start - t, excitation);
+            t = next.start;
+            stage += 1;
+        }
+        self.motion(stage).step_held(state, end - t, excitation)
+    }
+
+    fn motion(&self, stage: usize) -> Motion<'_> {
+        Motion { terms: &self.scenario.terms, coefficients: &self.scenario.stages[stage].coefficients }
+    }
+}
+
+/// Why a scenario gives no record.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum SimulateError {
+    /// The scenario is refused.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// Its motion cannot be followed to the end.
+    #[error(transparent)]
+    Plant(#[from] PlantError),
+}
+
+/// The readings of a whole scenario, one per point of the excitation's grid, from 0 to its duration.
+///
+/// # Errors
+/// [`SimulateError`] for a scenario that [`Scenario::check`] refuses or whose motion has no bounds.
+pub fn record(scenario: &Scenario) -> Result<Vec<Reading>, SimulateError> {
+    let mut plant = Plant::new(scenario.clone())?;
+    let sample_time = scenario.excitation.sample_time;
+    let last = (scenario.duration / sample_time + TIME_JITTER).floor() as u64;
+    let mut readings = Vec::with_capacity(last as usize + 1);
+    for index in 0..=last {
+        plant.advance_to(index as f64 * sample_time)?;
+        readings.push(plant.reading());
+    }
+    Ok(readings)
+}
