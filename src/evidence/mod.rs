@@ -11,12 +11,10 @@
 //! - [`Information`]: sums of them, and their solution;
 //! - [`Bank`]: hypotheses that the law switched at one of many instants (Willsky and Jones, IEEE TAC 21, 1976).
 
-
 mod filter;
 mod information;
 mod pass;
 mod symmetric;
-
 
 pub use filter::{Channel, Filter, Innovation, Noise};
 pub use information::{Information, Solution};

@@ -7,10 +7,12 @@
 
 mod builtin;
 mod noise;
+mod parametric;
 mod plant;
 mod random;
 mod scenario;
 
 pub use builtin::{Builtin, UnknownBuiltin};
+pub use parametric::{LawParameter, ParametricLaw, ParametricLawError};
 pub use plant::{Plant, PlantError, Reading, SimulateError, Truth, record};
 pub use scenario::{Excitation, ExcitationKind, Scenario, ScenarioError, SensorNoise, Stage};

@@ -128,7 +128,8 @@ mod tests {
             qd.push(state.qd);
             excitation.push(force(k));
             for part in 0..8 {
-                let at = |x: f64| if hold == Hold::Zero { force(k) } else { force(k) + x / 8.0 * (force(k + 1) - force(k)) };
+                let at =
+                    |x: f64| if hold == Hold::Zero { force(k) } else { force(k) + x / 8.0 * (force(k + 1) - force(k)) };
                 state = motion.step_linear(state, dt / 8.0, at(f64::from(part)), at(f64::from(part) + 1.0));
             }
         }
@@ -156,8 +157,7 @@ mod tests {
     fn a_constant_times_the_slope_of_the_variation_integrates_to_zero() {
         let t: Vec<f64> = (0..=300).map(|k| 0.01 * f64::from(k)).collect();
         let [ones, zeros] = [vec![1.0; 301], vec![0.0; 301]];
-        let section =
-            Section { t: &t, q: &zeros, qd: &ones, qd_measured: true, excitation: &zeros, hold: Hold::Zero };
+        let section = Section { t: &t, q: &zeros, qd: &ones, qd_measured: true, excitation: &zeros, hold: Hold::Zero };
         let mut row = Row::new(1);
         row.integrate(&section, Variation::Polynomial { power: 4 }, &[Term::Inertia]);
         assert!(row.terms[0].abs() < 1e-12, "{}", row.terms[0]);

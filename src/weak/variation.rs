@@ -81,7 +81,10 @@ mod tests {
                 let [below, at, above] = [s - h, s, s + h].map(|s| variation.at(s));
                 let scale = at[2].abs().max(1.0);
                 assert!(((above[0] - below[0]) / (2.0 * h) - at[1]).abs() < 1e-7 * scale, "{variation:?} at {s}");
-                assert!(((above[1] - below[1]) / (2.0 * h) - at[2]).abs() < 1e-6 * scale.max(100.0), "{variation:?} at {s}");
+                assert!(
+                    ((above[1] - below[1]) / (2.0 * h) - at[2]).abs() < 1e-6 * scale.max(100.0),
+                    "{variation:?} at {s}"
+                );
             }
         }
     }

@@ -14,7 +14,7 @@ use std::process::Command;
 pub fn crosscheck(arguments: &[String]) -> Result<(), Error> {
     let mut steps = Steps::new(3);
     let interpreter = steps.run("Python environment (target/python)", python::environment)?;
-    steps.run("FMUs (target/fmu)", || Ok(fmu::build(&root())?))?;
+    steps.run("FMUs (target/fmu)", fmu::build)?;
     steps.run("cross-check", || {
         let mut command = harness(&interpreter);
         command.args(["-m", "switchid_harness", "--fmus", "target/fmu", "--out", "target/crosscheck"]).args(arguments);

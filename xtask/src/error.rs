@@ -63,6 +63,9 @@ pub enum Error {
         /// The file that names them.
         requirements: PathBuf,
     },
+    /// An FMU cannot be packed.
+    #[error(transparent)]
+    Package(#[from] switchid_fmu_package::PackageError),
     /// A document lacks what is tested.
     #[error("{path}: {text}")]
     Document {
@@ -77,9 +80,6 @@ pub enum Error {
         /// What is missing.
         text: String,
     },
-    /// The FMUs cannot be built.
-    #[error(transparent)]
-    Fmu(#[from] crate::fmu::FmuError),
     /// Some steps failed.
     #[error("{} of {total} steps failed: {}", failed.len(), failed.join(", "))]
     Steps {

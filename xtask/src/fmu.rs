@@ -1,83 +1,54 @@
 //! `cargo xtask fmu`: builds the binaries and packs the example FMUs under `target/fmu/`.
 
-use std::io;
+use crate::command::{cargo, root, run};
+use crate::error::Error;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitStatus};
 use switchid::law::Model;
-use switchid_fmu_package::{Fmu, LINUX64, PackageError, identifier};
-use thiserror::Error;
+use switchid_fmu_package::{DUFFING, Fmu, LINUX64, VAN_DER_POL, identifier, plant};
 
 /// Name of the default identifier.
 const IDENTIFIER: &str = "SwitchedIdentifier";
 
-/// Why FMUs cannot be built.
-#[derive(Debug, Error)]
-pub enum FmuError {
-    /// Cargo could not be run, or a file not be read or written.
-    #[error("{path}: {source}")]
-    File {
-        /// Which one.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
-    /// Cargo failed.
-    #[error("cargo build --release -p {package} failed ({status})")]
-    Build {
-        /// The package.
-        package: &'static str,
-        /// How it ended.
-        status: ExitStatus,
-    },
-    /// An FMU cannot be packed.
-    #[error(transparent)]
-    Package(#[from] PackageError),
-}
-
-/// Builds the binaries, apart from each other and from the rest so that no feature of the command line gets in, and
-/// writes the FMUs. Returns their paths.
+/// Builds the binaries, apart from the rest so that no feature of the command line gets in, writes the three FMUs into
+/// `target/fmu` and the default identifier's `modelDescription.xml` at the root.
 ///
 /// # Errors
-/// [`FmuError`].
-pub fn build(root: &Path) -> Result<Vec<PathBuf>, FmuError> {
-    let identifier_binary = build_binary(root, "switchid-fmu-identifier")?;
-    let fmus = [(IDENTIFIER, default_identifier()?.with_binary(LINUX64, "so", identifier_binary))];
-    fmus.into_iter().map(|(name, fmu)| write(&root.join(format!("target/fmu/{name}.fmu")), &fmu.to_bytes()?)).collect()
-}
-
-/// Writes `modelDescription.xml` of the default identifier at the root.
-///
-/// # Errors
-/// [`FmuError`].
-pub fn write_model_description(root: &Path) -> Result<PathBuf, FmuError> {
-    write(&root.join("modelDescription.xml"), default_identifier()?.xml().as_bytes())
-}
-
-fn default_identifier() -> Result<Fmu, PackageError> {
-    identifier(IDENTIFIER, &Model::cubic_library())
-}
-
-fn build_binary(root: &Path, package: &'static str) -> Result<Vec<u8>, FmuError> {
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let target = root.join("target");
-    let status = Command::new(&cargo)
-        .args(["build", "--release", "--package", package, "--target-dir"])
-        .arg(&target)
-        .current_dir(root)
-        .status()
-        .map_err(|source| FmuError::File { path: cargo.into(), source })?;
-    if !status.success() {
-        return Err(FmuError::Build { package, status });
+/// What cargo or the packaging says.
+pub fn build() -> Result<(), Error> {
+    let identifier_binary = build_binary("switchid-fmu-identifier")?;
+    let plant_binary = build_binary("switchid-fmu-plant")?;
+    let default = identifier(IDENTIFIER, &Model::cubic_library())?;
+    write(&root().join("modelDescription.xml"), default.xml().as_bytes())?;
+    for (fmu, binary) in
+        [(default, &identifier_binary), (plant(DUFFING)?, &plant_binary), (plant(VAN_DER_POL)?, &plant_binary)]
+    {
+        pack(fmu.with_binary(LINUX64, "so", binary.clone()))?;
     }
-    let path = target.join("release").join(format!("lib{}.so", package.replace('-', "_")));
-    std::fs::read(&path).map_err(|source| FmuError::File { path, source })
+    Ok(())
 }
 
-fn write(path: &Path, content: &[u8]) -> Result<PathBuf, FmuError> {
-    let failed = |source| FmuError::File { path: path.to_path_buf(), source };
-    if let Some(directory) = path.parent() {
-        std::fs::create_dir_all(directory).map_err(failed)?;
+fn pack(fmu: Fmu) -> Result<(), Error> {
+    let directory = root().join("target/fmu");
+    std::fs::create_dir_all(&directory).map_err(file("create", &directory))?;
+    write(&directory.join(format!("{}.fmu", fmu.name())), &fmu.to_bytes()?)
+}
+
+fn build_binary(package: &str) -> Result<Vec<u8>, Error> {
+    let target = root().join("target");
+    let mut command = cargo(&["build", "--quiet", "--release", "--package", package, "--target-dir"]);
+    run(command.arg(&target), "install Rust from https://rustup.rs")?;
+    let path: PathBuf = target.join("release").join(format!("lib{}.so", package.replace('-', "_")));
+    std::fs::read(&path).map_err(file("read", &path))
+}
+
+fn write(path: &Path, content: &[u8]) -> Result<(), Error> {
+    if std::fs::read(path).is_ok_and(|present| present == content) {
+        return Ok(());
     }
-    std::fs::write(path, content).map_err(failed)?;
-    Ok(path.to_path_buf())
+    std::fs::write(path, content).map_err(file("write", path))
+}
+
+fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Error {
+    let path = path.to_path_buf();
+    move |source| Error::File { action, path, source }
 }

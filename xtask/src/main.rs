@@ -20,8 +20,7 @@ usage: cargo xtask CHORE
                      steps plant and identifier FMUs together under fmpy, gates the figures,
                      writes target/crosscheck/report.html and report.json
   test               every test
-  fmu                builds SwitchedIdentifier.fmu, Duffing.fmu, VanDerPol.fmu into target/fmu,
-                     and writes the default identifier's modelDescription.xml anew
+  fmu                builds SwitchedIdentifier.fmu, Duffing.fmu, VanDerPol.fmu into target/fmu
   bench [ARGUMENT..] benchmarks; arguments go to cargo bench";
 
 fn main() -> ExitCode {
@@ -40,7 +39,7 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
     match (name.as_str(), rest) {
         ("crosscheck", rest) => crosscheck::crosscheck(rest),
         ("test", []) => test::test(),
-        ("fmu", []) => build_fmus(),
+        ("fmu", []) => fmu::build(),
         ("bench", rest) => command::run(command::cargo(&["bench"]).args(rest), "install Rust from https://rustup.rs"),
         ("--help" | "-h" | "help", _) => {
             println!("{USAGE}");
@@ -48,12 +47,4 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         }
         _ => Err(Error::Usage { text: format!("no such chore: \"{}\"", arguments.join(" ")) }),
     }
-}
-
-fn build_fmus() -> Result<(), Error> {
-    let root = command::root();
-    let description = fmu::write_model_description(&root)?;
-    let fmus = fmu::build(&root)?;
-    fmus.iter().chain([&description]).for_each(|path| println!("{}", path.display()));
-    Ok(())
 }

@@ -4,6 +4,7 @@ use crate::xml::model_description;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Write};
 use switchid::law::ModelError;
+use switchid::simulate::ParametricLawError;
 use switchid_fmu_slave::{Description, INTERFACE_FILE, Interface};
 use thiserror::Error;
 use zip::write::SimpleFileOptions;
@@ -24,6 +25,9 @@ pub enum PackageError {
     /// The model is refused.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// The law of a plant is refused.
+    #[error(transparent)]
+    Law(#[from] ParametricLawError),
     /// The name cannot name a binary.
     #[error("{name:?} cannot name an FMU: a letter, then letters, digits and underscores")]
     Name {
@@ -78,6 +82,11 @@ impl Fmu {
     pub fn with_binary(mut self, platform: &str, extension: &str, binary: Vec<u8>) -> Fmu {
         self.files.insert(format!("binaries/{platform}/{}.{extension}", self.name), binary);
         self
+    }
+
+    /// The model's name, which is the binary's too.
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
     /// `modelDescription.xml`.

@@ -6,9 +6,11 @@
 mod archive;
 mod documentation;
 mod identifier;
+mod plant;
 mod variables;
 mod xml;
 
 pub use archive::{Fmu, LINUX64, PackageError};
 pub use identifier::{identifier, identifier_description};
+pub use plant::{DUFFING, STAGES, VAN_DER_POL, plant, plant_description};
 pub use xml::model_description;

@@ -1,1 +1,10 @@
-//! To be written.
+//! A simulated plant with a switching law as an FMI 2.0 co-simulation slave.
+//!
+//! The law stands in `resources/plant.toml`, so that Duffing, van der Pol and any other law are the same binary with
+//! another file. Time counts from the start of the simulation. What the plant shows at an instant does not depend on the
+//! communication steps that led there.
+
+mod places;
+mod slave;
+
+switchid_fmu_slave::export!(slave::PlantSlave);

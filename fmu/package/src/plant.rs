@@ -1,0 +1,123 @@
+//! A plant's interface for a law with parameters.
+
+use crate::archive::{Fmu, PackageError};
+use crate::documentation;
+use crate::variables::{at_least, choice, output, real, units, variable};
+use switchid::simulate::ParametricLaw;
+use switchid_fmu_slave::{Description, Enumeration, Kind, Variability, Variable};
+
+/// The law file of the Duffing oscillator, eq. (5).
+pub const DUFFING: &str = include_str!("../laws/duffing.toml");
+
+/// The law file of the van der Pol circuit, eq. (9).
+pub const VAN_DER_POL: &str = include_str!("../laws/van_der_pol.toml");
+
+/// How many stages a plant can have.
+pub const STAGES: usize = 16;
+
+/// Start of a stage that does not occur, s.
+const NEVER: f64 = 1e30;
+
+/// A plant whose law is that file's, still without binaries.
+///
+/// # Errors
+/// [`PackageError`] where the law is refused or its name is no identifier.
+pub fn plant(law_file: &str) -> Result<Fmu, PackageError> {
+    let law = ParametricLaw::from_toml(law_file)?;
+    let description = plant_description(&law);
+    let text = "<p>Outputs <code>q</code>, <code>qd</code> carry sensor noise, <code>F</code> is the excitation that is \
+                held from this instant on; <code>true.*</code> is what no estimator may see. A stage begins at \
+                <code>stage[i].time</code>, counted from the start of the simulation; 1e30 = it does not occur. The inner \
+                integration does not depend on the communication step.</p>";
+    let page = documentation::page(&description, text);
+    Fmu::new(description, vec![("plant.toml".into(), law_file.as_bytes().to_vec())], page)
+}
+
+/// The variables of a plant: parameters, outputs, truth.
+pub fn plant_description(law: &ParametricLaw) -> Description {
+    let stages = (1..=STAGES).flat_map(|number| stage(law, number));
+    let variables: Vec<Variable> = general().into_iter().chain(stages).chain(measured()).chain(truth(law)).collect();
+    Description {
+        name: law.name.clone(),
+        description: law.description.clone(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        default_step: 1e-3,
+        default_duration: 30.0,
+        units: units(&variables),
+        enumerations: vec![excitations()],
+        variables,
+    }
+}
+
+fn excitations() -> Enumeration {
+    let items = [
+        ("none", "Free motion"),
+        ("sine", "P sin(omega t) with the numbers of the stage"),
+        ("white", "Gaussian white noise of intensity excitation.intensity"),
+    ];
+    let items = items.map(|(name, text)| (name.to_string(), text.to_string()));
+    Enumeration { name: "Excitation".into(), items: items.into() }
+}
+
+fn general() -> Vec<Variable> {
+    let grid = "Time between two points of the grid on which the excitation is evaluated and then held";
+    vec![
+        choice("excitation.kind", "Excitation", 2, "Which excitation acts"),
+        at_least(real("excitation.intensity", 3.0, None, "Intensity 2D of the white noise"), 0.0),
+        at_least(real("excitation.sample_time", 1e-3, Some("s"), grid), 1e-9),
+        at_least(real("noise.q", 0.0, None, "Std of the Gaussian sensor noise on q"), 0.0),
+        at_least(real("noise.qd", 0.0, None, "Std of the Gaussian sensor noise on qd"), 0.0),
+        variable(
+            "seed",
+            Kind::Integer { start: 1, min: Some(0), max: None },
+            "Seed of the white excitation and of the sensor noise",
+        ),
+        real("q0", 0.5, None, "Displacement at the start"),
+        real("qd0", 0.0, None, "Velocity at the start"),
+    ]
+}
+
+fn stage(law: &ParametricLaw, number: usize) -> Vec<Variable> {
+    let name = |field: &str| format!("stage[{number}].{field}");
+    let (start, text) = match number {
+        1 => (0.0, "Start of the first stage: 0".to_string()),
+        _ => (NEVER, format!("Start of stage {number}, after that of the stage before; 1e30 = it does not occur")),
+    };
+    let mut variables = vec![at_least(real(name("time"), start, Some("s"), text), 0.0)];
+    variables.extend(law.parameters.iter().map(|parameter| {
+        real(name(&parameter.name), parameter.start, None, format!("{} in stage {number}", parameter.description))
+    }));
+    variables.push(real(name("P"), law.amplitude, None, format!("Amplitude of the sine excitation in stage {number}")));
+    let omega = format!("Angular frequency of the sine excitation in stage {number}");
+    variables.push(real(name("omega"), law.omega, Some("rad/s"), omega));
+    variables
+}
+
+fn measured() -> [Variable; 3] {
+    let drive =
+        ["excitation.kind", "excitation.intensity", "excitation.sample_time", "seed", "stage[1].P", "stage[1].omega"];
+    [
+        continuous(output(real("q", 0.0, None, "Displacement with its sensor noise"), &["noise.q", "seed", "q0"])),
+        continuous(output(real("qd", 0.0, None, "Velocity with its sensor noise"), &["noise.qd", "seed", "qd0"])),
+        output(real("F", 0.0, None, "Excitation held from this instant on"), &drive),
+    ]
+}
+
+fn truth(law: &ParametricLaw) -> Vec<Variable> {
+    let stage = variable("true.stage", Kind::Integer { start: 1, min: None, max: None }, "Number of the present stage");
+    let mut variables = vec![
+        continuous(output(real("true.q", 0.0, None, "Displacement without noise"), &["q0"])),
+        continuous(output(real("true.qd", 0.0, None, "Velocity without noise"), &["qd0"])),
+        output(stage, &[]),
+    ];
+    variables.extend(law.terms().into_iter().map(|term| {
+        let depends: Vec<String> = law.depends_on(term).map(|name| format!("stage[1].{name}")).collect();
+        let text = format!("Coefficient of {term} on the left-hand side in the present stage");
+        Variable { depends_on: depends, ..output(real(format!("true.coef.{}", term.fmu_name()), 0.0, None, text), &[]) }
+    }));
+    variables
+}
+
+fn continuous(variable: Variable) -> Variable {
+    Variable { variability: Variability::Continuous, ..variable }
+}

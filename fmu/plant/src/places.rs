@@ -1,0 +1,113 @@
+//! Where a plant's variables stand, and the scenario that its parameters describe.
+
+use serde::{Deserialize, Serialize};
+use switchid::law::State;
+use switchid::simulate::{Excitation, ExcitationKind, ParametricLaw, Scenario, SensorNoise, Stage};
+use switchid_fmu_slave::{Description, ValueError, Values};
+
+/// A start from which on a stage does not occur, s.
+const NEVER: f64 = 1e29;
+
+/// Value references of all variables.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Places {
+    kind: usize,
+    intensity: usize,
+    sample_time: usize,
+    noise: [usize; 2],
+    seed: usize,
+    initial: [usize; 2],
+    stages: Vec<StagePlaces>,
+    /// `q`, `qd`, `F`, `true.q`, `true.qd`.
+    pub motion: [usize; 5],
+    /// `true.stage`.
+    pub stage: usize,
+    /// `true.coef.*`, in the order of the law's terms.
+    pub coefficients: Vec<usize>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct StagePlaces {
+    time: usize,
+    parameters: Vec<usize>,
+    amplitude: usize,
+    omega: usize,
+}
+
+impl Places {
+    /// Finds every variable of a plant with that law.
+    ///
+    /// # Errors
+    /// [`ValueError::NoSuchName`] when one is missing.
+    pub fn find(description: &Description, law: &ParametricLaw) -> Result<Places, ValueError> {
+        let find = |name: &str| position(description, name);
+        let coefficients = law.terms().into_iter().map(|term| find(&format!("true.coef.{}", term.fmu_name())));
+        let count = (1..).take_while(|number| description.position(&format!("stage[{number}].time")).is_some()).count();
+        Ok(Places {
+            kind: find("excitation.kind")?,
+            intensity: find("excitation.intensity")?,
+            sample_time: find("excitation.sample_time")?,
+            noise: [find("noise.q")?, find("noise.qd")?],
+            seed: find("seed")?,
+            initial: [find("q0")?, find("qd0")?],
+            stages: (1..=count).map(|number| find_stage(description, law, number)).collect::<Result<_, _>>()?,
+            motion: [find("q")?, find("qd")?, find("F")?, find("true.q")?, find("true.qd")?],
+            stage: find("true.stage")?,
+            coefficients: coefficients.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// The scenario that the parameters describe; not checked yet.
+    pub fn scenario(&self, law: &ParametricLaw, values: &Values) -> Scenario {
+        let [q, qd] = self.initial.map(|reference| values.real(reference));
+        let [noise_q, noise_qd] = self.noise.map(|reference| values.real(reference));
+        // A plant has no end: the duration is only there to be positive.
+        let mut scenario = Scenario::new(&law.name, law.terms(), self.schedule(law, values), NEVER);
+        scenario.seed = values.integer(self.seed).max(0) as u64;
+        scenario.initial = State { q, qd };
+        scenario.noise = SensorNoise { q: noise_q, qd: noise_qd };
+        scenario.excitation = Excitation {
+            kind: match values.integer(self.kind) {
+                1 => ExcitationKind::None,
+                2 => ExcitationKind::Sine,
+                _ => ExcitationKind::WhiteNoise,
+            },
+            intensity: values.real(self.intensity),
+            sample_time: values.real(self.sample_time),
+        };
+        scenario
+    }
+
+    /// All stages up to the last that occurs; one in between that does not is left for the scenario's check to refuse.
+    fn schedule(&self, law: &ParametricLaw, values: &Values) -> Vec<Stage> {
+        let occurs = |places: &StagePlaces| values.real(places.time) < NEVER;
+        let count = self.stages.iter().rposition(occurs).map_or(0, |last| last + 1);
+        self.stages[..count].iter().map(|places| places.stage(law, values)).collect()
+    }
+}
+
+impl StagePlaces {
+    fn stage(&self, law: &ParametricLaw, values: &Values) -> Stage {
+        let parameters: Vec<f64> = self.parameters.iter().map(|reference| values.real(*reference)).collect();
+        Stage {
+            start: values.real(self.time),
+            coefficients: law.coefficients(&parameters),
+            amplitude: values.real(self.amplitude),
+            omega: values.real(self.omega),
+        }
+    }
+}
+
+fn find_stage(description: &Description, law: &ParametricLaw, number: usize) -> Result<StagePlaces, ValueError> {
+    let find = |field: &str| position(description, &format!("stage[{number}].{field}"));
+    Ok(StagePlaces {
+        time: find("time")?,
+        parameters: law.parameters.iter().map(|parameter| find(&parameter.name)).collect::<Result<_, _>>()?,
+        amplitude: find("P")?,
+        omega: find("omega")?,
+    })
+}
+
+fn position(description: &Description, name: &str) -> Result<usize, ValueError> {
+    description.position(name).ok_or_else(|| ValueError::NoSuchName { name: name.into() })
+}

@@ -1,0 +1,309 @@
+//! The C interface with a toy slave: every cell of the allowed-call table, refusals, panics, the log.
+
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::ptr::{null, null_mut};
+use switchid_fmu_slave::host::{Functions, Instance, Request};
+use switchid_fmu_slave::{
+    Causality, Description, INTERFACE_FILE, Interface, Kind, Log, Slave, SlaveError, Value, Values, Variability,
+    Variable,
+};
+
+/// y(t + h) = y(t) + gain · u(t); panics where u is 13, refuses a gain of 7.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Toy {
+    sum: f64,
+}
+
+#[derive(Debug, thiserror::Error)]
+#[error("gain = 7 brings bad luck: take 8, 100 % safer")]
+struct BadLuck;
+
+impl Slave for Toy {
+    fn instantiate(_: &Path, _: &Description) -> Result<Toy, SlaveError> {
+        Ok(Toy { sum: 0.0 })
+    }
+
+    fn start(&mut self, time: f64, values: &mut Values, _: &mut Log) -> Result<(), SlaveError> {
+        if values.real(GAIN as usize) == 7.0 {
+            return Err(BadLuck.into());
+        }
+        self.sum = time;
+        values.put(Y as usize, Value::Real(self.sum));
+        Ok(())
+    }
+
+    fn step(&mut self, _: f64, _: f64, values: &mut Values, log: &mut Log) -> Result<(), SlaveError> {
+        let u = values.real(U as usize);
+        assert!(u != 13.0, "thirteen");
+        if u.is_nan() {
+            log.warn_rarely("u", || "u is NaN: 100 % useless".into());
+        } else {
+            self.sum += values.real(GAIN as usize) * u;
+        }
+        values.put(Y as usize, Value::Real(self.sum));
+        Ok(())
+    }
+}
+
+switchid_fmu_slave::export!(Toy);
+
+const U: u32 = 0;
+const GAIN: u32 = 1;
+const COUNT: u32 = 2;
+const FLAG: u32 = 3;
+const NOTE: u32 = 4;
+const Y: u32 = 5;
+
+const OK: u32 = 0;
+const ERROR: u32 = 3;
+const GUID: &str = "the-guid";
+
+fn toy_functions() -> Functions {
+    switchid_fmu_slave::linked_functions!(functions)
+}
+
+fn variable(name: &str, causality: Causality, kind: Kind) -> Variable {
+    let (description, variability, depends_on) = (String::new(), Variability::Discrete, Vec::new());
+    Variable { name: name.into(), description, causality, variability, kind, depends_on }
+}
+
+fn resources() -> tempfile::TempDir {
+    let real = |start| Kind::Real { start, min: None, max: Some(100.0), unit: None };
+    let variables = vec![
+        variable("u", Causality::Input, real(0.0)),
+        variable("gain", Causality::Parameter, real(2.0)),
+        variable("count", Causality::Parameter, Kind::Integer { start: 1, min: Some(0), max: None }),
+        variable("flag", Causality::Parameter, Kind::Boolean { start: true }),
+        variable("note", Causality::Parameter, Kind::String { start: "größe".into() }),
+        variable("y", Causality::Output, real(0.0)),
+    ];
+    let description = Description {
+        name: "Toy".into(),
+        description: String::new(),
+        version: String::new(),
+        default_step: 1.0,
+        default_duration: 1.0,
+        units: vec![],
+        enumerations: vec![],
+        variables,
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let interface = Interface { guid: GUID.into(), description };
+    std::fs::write(directory.path().join(INTERFACE_FILE), serde_json::to_vec(&interface).unwrap()).unwrap();
+    directory
+}
+
+fn toy() -> Instance {
+    let resources = resources();
+    let location = format!("file://{}", resources.path().display());
+    let request = Request { co_simulation: true, guid: GUID, location: Some(&location), logging: true };
+    Instance::new(toy_functions(), &request).unwrap()
+}
+
+fn running() -> Instance {
+    let instance = toy();
+    assert_eq!(instance.initialize(0.0), OK);
+    instance
+}
+
+fn last_message(instance: &Instance) -> String {
+    instance.messages().last().unwrap().2.clone()
+}
+
+/// A fresh instance in that state: i instantiated, n initialization, s step, t terminated, f failed.
+fn in_phase(phase: char) -> Instance {
+    let instance = toy();
+    match phase {
+        'i' => {}
+        'n' => assert_eq!(instance.enter(), OK),
+        's' => assert_eq!(instance.initialize(0.0), OK),
+        't' => assert_eq!(instance.initialize(0.0).max(instance.terminate()), OK),
+        _ => {
+            assert_eq!(instance.initialize(0.0).max(instance.set_reals(&[U], &[13.0])), OK);
+            assert_eq!(instance.step(0.0, 1.0), ERROR);
+        }
+    }
+    instance
+}
+
+type Action = fn(&Instance) -> u32;
+
+/// Which states allow the call.
+const TABLE: [(&str, &str, Action); 33] = [
+    ("set debug logging", "instf", |i| i.call(|f, c| unsafe { (f.set_debug_logging)(c, 1, 0, null()) })),
+    ("setup experiment", "i", |i| i.setup(0.0)),
+    ("enter initialization", "i", |i| i.enter()),
+    ("exit initialization", "n", |i| i.exit()),
+    ("terminate", "s", |i| i.terminate()),
+    ("reset", "instf", |i| i.reset()),
+    ("get real", "instf", |i| i.reals(&[Y]).err().unwrap_or(OK)),
+    ("get integer", "instf", |i| i.integer(COUNT).err().unwrap_or(OK)),
+    ("get boolean", "instf", |i| i.boolean(FLAG).err().unwrap_or(OK)),
+    ("get string", "instf", |i| i.text(NOTE).err().unwrap_or(OK)),
+    ("set real input", "ins", |i| i.set_reals(&[U], &[1.0])),
+    ("set real parameter", "in", |i| i.set_reals(&[GAIN], &[1.0])),
+    ("set integer parameter", "in", |i| i.set_integer(COUNT, 5)),
+    ("set boolean parameter", "in", |i| i.set_boolean(FLAG, 0)),
+    ("set string parameter", "in", |i| i.set_text(NOTE, "x")),
+    ("set an output", "", |i| i.set_reals(&[Y], &[1.0])),
+    ("get state", "instf", |i| i.save().map(|mut state| i.free(&mut state)).unwrap_or_else(|status| status)),
+    ("set state", "instf", |i| {
+        let mut state = i.save().unwrap();
+        i.restore(state).max(i.free(&mut state))
+    }),
+    ("serialise", "instf", |i| {
+        let mut state = i.save().unwrap();
+        i.pack(state).err().unwrap_or(OK).max(i.free(&mut state))
+    }),
+    ("deserialise", "instf", |i| {
+        let mut state = i.save().unwrap();
+        let mut copy = i.unpack(&i.pack(state).unwrap()).unwrap();
+        i.free(&mut state).max(i.free(&mut copy))
+    }),
+    ("directional derivative", "", |i| {
+        i.call(|f, c| unsafe { (f.directional_derivative)(c, null(), 0, null(), 0, null(), null_mut()) })
+    }),
+    ("no input derivatives", "ins", |i| i.call(|f, c| unsafe { (f.input_derivatives)(c, null(), 0, null(), null()) })),
+    ("an input derivative", "", |i| i.call(|f, c| unsafe { (f.input_derivatives)(c, &U, 1, &1, &0.0) })),
+    ("no output derivatives", "st", |i| {
+        i.call(|f, c| unsafe { (f.output_derivatives)(c, null(), 0, null(), null_mut()) })
+    }),
+    ("an output derivative", "", |i| i.call(|f, c| unsafe { (f.output_derivatives)(c, &Y, 1, &1, &mut 0.0) })),
+    ("do step", "s", |i| i.step(0.0, 1.0)),
+    ("cancel step", "", |i| i.call(|f, c| unsafe { (f.cancel_step)(c) })),
+    ("status of the step", "stf", |i| i.call(|f, c| unsafe { (f.get_status)(c, 0, &mut 0) })),
+    ("last successful time", "stf", |i| i.call(|f, c| unsafe { (f.get_real_status)(c, 2, &mut 0.0) })),
+    ("an integer status", "", |i| i.call(|f, c| unsafe { (f.get_integer_status)(c, 0, &mut 0) })),
+    ("terminated", "stf", |i| i.call(|f, c| unsafe { (f.get_boolean_status)(c, 3, &mut 0) })),
+    ("pending status", "stf", |i| i.call(|f, c| unsafe { (f.get_string_status)(c, 1, &mut null()) })),
+    ("an unknown status", "", |i| i.call(|f, c| unsafe { (f.get_status)(c, 9, &mut 0) })),
+];
+
+#[test]
+fn every_call_is_allowed_where_the_standard_says_and_nowhere_else() {
+    for (name, allowed, action) in TABLE {
+        for phase in "instf".chars() {
+            let instance = in_phase(phase);
+            let expected = if allowed.contains(phase) { OK } else { ERROR };
+            assert_eq!(action(&instance), expected, "{name} in {phase}: {:?}", instance.messages());
+        }
+    }
+}
+
+#[test]
+fn a_refused_call_says_why_and_changes_nothing() {
+    let instance = running();
+    assert_eq!(instance.set_reals(&[U, GAIN], &[5.0, 9.0]), ERROR);
+    assert!(last_message(&instance).contains("gain is a fixed parameter"), "{:?}", instance.messages());
+    assert_eq!(instance.reals(&[U, GAIN]), Ok(vec![0.0, 2.0]));
+    assert_eq!(instance.step(f64::NAN, 1.0), ERROR);
+    assert_eq!(instance.step(0.0, -1.0), ERROR);
+    assert_eq!(instance.reals(&[99]), Err(ERROR));
+    assert!(last_message(&instance).contains("99 is unknown"));
+    assert_eq!(instance.integer(Y), Err(ERROR));
+    assert!(last_message(&instance).contains("y is of type Real"));
+    assert_eq!(instance.step(0.0, 1.0), OK);
+}
+
+#[test]
+fn a_refused_parameter_can_be_mended() {
+    let instance = toy();
+    assert_eq!(instance.enter().max(instance.set_reals(&[GAIN], &[7.0])), OK);
+    assert_eq!(instance.exit(), ERROR);
+    assert_eq!(last_message(&instance), "gain = 7 brings bad luck: take 8, 100 % safer");
+    assert_eq!(instance.set_reals(&[GAIN], &[101.0]).max(instance.exit()), ERROR);
+    assert!(last_message(&instance).contains("100 or less"), "{:?}", instance.messages());
+    assert_eq!(instance.set_reals(&[GAIN], &[f64::NAN]).max(instance.exit()), ERROR);
+    assert_eq!(instance.set_reals(&[GAIN], &[3.0]).max(instance.exit()), OK);
+    assert_eq!(instance.set_reals(&[U], &[2.0]).max(instance.step(0.0, 1.0)), OK);
+    assert_eq!(instance.reals(&[Y]), Ok(vec![6.0]));
+}
+
+#[test]
+fn outputs_fit_the_parameters_before_the_first_step() {
+    let instance = toy();
+    assert_eq!(instance.setup(4.5).max(instance.enter()), OK);
+    assert_eq!(instance.reals(&[Y]), Ok(vec![4.5]));
+}
+
+#[test]
+fn a_panic_is_a_status_and_reset_heals() {
+    let (instance, other) = (running(), running());
+    assert_eq!(instance.set_reals(&[U], &[13.0]), OK);
+    assert_eq!(instance.step(0.0, 1.0), ERROR);
+    assert!(last_message(&instance).contains("thirteen"));
+    assert_eq!(instance.step(0.0, 1.0), ERROR);
+    assert_eq!(other.step(0.0, 1.0), OK);
+    assert_eq!(instance.reset().max(instance.initialize(0.0)).max(instance.step(0.0, 1.0)), OK);
+}
+
+#[test]
+fn recurring_warnings_do_not_flood() {
+    let instance = running();
+    assert_eq!(instance.set_reals(&[U], &[f64::NAN]), OK);
+    for step in 0..1000 {
+        assert_eq!(instance.step(f64::from(step), 1.0), OK);
+    }
+    let warnings: Vec<_> = instance.messages().into_iter().filter(|(status, ..)| *status == 1).collect();
+    assert_eq!(warnings.len(), 4, "{warnings:?}");
+    assert_eq!(warnings[0].1, "logStatusWarning");
+    assert!(warnings[3].2.contains("1000 times"));
+}
+
+#[test]
+fn muted_categories_stay_silent() {
+    let instance = running();
+    let error = c"logStatusError".as_ptr();
+    assert_eq!(instance.call(|f, c| unsafe { (f.set_debug_logging)(c, 0, 1, &error) }), OK);
+    assert_eq!(instance.reals(&[99]), Err(ERROR));
+    assert!(instance.messages().is_empty());
+}
+
+#[test]
+fn a_state_of_something_else_is_refused() {
+    let instance = running();
+    let mut state = instance.save().unwrap();
+    let mut bytes = instance.pack(state).unwrap();
+    assert_eq!(instance.call(|f, c| unsafe { (f.serialize)(c, state, bytes.as_mut_ptr().cast(), 3) }), ERROR);
+    bytes[1] ^= 1;
+    assert_eq!(instance.unpack(&bytes), Err(ERROR));
+    assert!(last_message(&instance).contains("GUID"), "{:?}", instance.messages());
+    assert_eq!(instance.unpack(b"nonsense"), Err(ERROR));
+    assert_eq!(instance.unpack(&[]), Err(ERROR));
+    assert_eq!(instance.restore(null_mut()), ERROR);
+    assert_eq!(instance.free(&mut state), OK);
+    assert!(state.is_null());
+    assert_eq!(instance.free(&mut state), OK);
+}
+
+#[test]
+fn null_pointers_are_refused() {
+    let instance = running();
+    assert_eq!(instance.call(|f, c| unsafe { (f.get_real)(c, null(), 1, null_mut()) }), ERROR);
+    assert_eq!(instance.call(|f, c| unsafe { (f.set_string)(c, &NOTE, 1, &null()) }), ERROR);
+    assert_eq!(instance.call(|f, _| unsafe { (f.do_step)(null_mut(), 0.0, 1.0, 1) }), ERROR);
+    instance.call(|f, _| unsafe { (f.free_instance)(null_mut()) });
+    assert_eq!(instance.call(|f, c| unsafe { (f.get_real)(c, null(), 0, null_mut()) }), OK);
+}
+
+#[test]
+fn an_instance_that_cannot_be_says_why() {
+    let resources = resources();
+    let location = format!("file://{}/", resources.path().display());
+    let good = Request { co_simulation: true, guid: GUID, location: Some(&location), logging: false };
+    assert!(Instance::new(toy_functions(), &Request { guid: "{the-guid}", ..good.clone() }).is_ok());
+    for (request, named) in [
+        (Request { guid: "another", ..good.clone() }, "another"),
+        (Request { location: None, ..good.clone() }, "NULL"),
+        (Request { location: Some("file:///nowhere/100%25"), ..good.clone() }, "/nowhere/100%"),
+        (Request { co_simulation: false, ..good.clone() }, "co-simulation only"),
+    ] {
+        let messages = Instance::new(toy_functions(), &request).err().unwrap();
+        let (status, category, text) = &messages[0];
+        assert_eq!((*status, category.as_str()), (ERROR, "logStatusError"));
+        assert!(text.contains(named), "{text}");
+    }
+    std::fs::write(resources.path().join(INTERFACE_FILE), "{").unwrap();
+    assert!(Instance::new(toy_functions(), &good).err().unwrap()[0].2.contains("line 1"));
+}
