@@ -47,9 +47,9 @@ def unpack(source: Path, directory: Path) -> dict[str, Fmu]:
     return {name: Fmu(source / name, directory / Path(name).stem) for name in FMUS}
 
 
-def work(scenario: Scenario, directory: Path) -> tuple[dict, dict]:
+def work(scenario: Scenario) -> tuple[dict, dict]:
     """One scenario in a worker process: figures and the report's traces."""
-    run = perform(scenario, directory, _fmus)
+    run = perform(scenario, _fmus)
     return run.figures, run_traces(run)
 
 
@@ -58,11 +58,11 @@ def keep(fmus: dict[str, Fmu]) -> None:
     _fmus.update(fmus)
 
 
-def run_all(chosen_scenarios: list[Scenario], directory: Path, jobs: int) -> list[tuple[dict, dict]]:
+def run_all(chosen_scenarios: list[Scenario], jobs: int) -> list[tuple[dict, dict]]:
     """Runs the scenarios side by side; results in the order of the scenarios."""
     begin = time.monotonic()
     with ProcessPoolExecutor(jobs, initializer=keep, initargs=(_fmus,)) as pool:
-        futures = {pool.submit(work, scenario, directory): scenario for scenario in chosen_scenarios}
+        futures = {pool.submit(work, scenario): scenario for scenario in chosen_scenarios}
         for done, future in enumerate(as_completed(futures), start=1):
             mark = "gates hold" if future.result()[0]["passed"] else "GATES FAIL"
             elapsed = time.monotonic() - begin
@@ -85,7 +85,7 @@ def main() -> int:
     options = arguments()
     options.out.mkdir(parents=True, exist_ok=True)
     keep(unpack(options.fmus, options.out / "unpacked"))
-    results = run_all(chosen(options.quick, options.seed), options.out, options.jobs)
+    results = run_all(chosen(options.quick, options.seed), options.jobs)
     runs = [figures for figures, _ in results]
     print("\n".join(table.block(run) for run in runs))
     document = {"seed": options.seed, "passed": all(run["passed"] for run in runs), "runs": runs}
