@@ -67,7 +67,7 @@ def test_saved_restored_and_serialised_states_go_on_the_same(fmus):
     reference = _step(one, samples[2500:], 2500)
     one.slave.setFMUState(state)
     assert _step(one, samples[2500:], 2500).tobytes() == reference.tobytes()
-    two.slave.setFMUState(two.slave.deSerializeFMUState(data))
+    two.slave.setFMUState(two.slave.deserializeFMUState(data))
     assert _step(two, samples[2500:], 2500).tobytes() == reference.tobytes()
     one.slave.freeFMUState(state)
     one.close()

@@ -68,6 +68,11 @@ def test_laws_are_written_with_the_digits_their_std_supports():
     assert text == "1.00042\u2009q̈ − 0.3000\u2009q̇ + 4.01\u2009q = F"
 
 
+def test_no_coefficient_is_no_law():
+    assert "no law" in equation({"q": 0.0, "qdd": 0.0}, {})
+
+
 def test_numbers():
     assert digits(0.0, None) == "0" and digits(123.456, 0.5) == "123.5"
+    assert power(0.0314) == "0.031" and power(1.0) == "1"
     assert power(1.04e-14) == "1.0 · 10<sup>−14</sup>" and power(None) == "–"

@@ -26,6 +26,8 @@ def power(value: float | None, decimals: int = 1) -> str:
         return "–"
     if value == 0.0:
         return "0"
+    if 0.01 <= abs(value) < 1000.0:
+        return f"{value:.{decimals + 1}g}".replace("-", "−")
     mantissa, exponent = f"{value:.{decimals}e}".split("e")
     return f"{mantissa} · 10<sup>{int(exponent)}</sup>".replace("-", "−")
 
@@ -41,7 +43,9 @@ def term_markup(term: str) -> str:
 
 
 def equation(coefficients: dict[str, float], std: dict[str, float]) -> str:
-    """`1.000 q̈ + 0.300 q̇ + … = F`, inertia first; terms with the coefficient 0 are left out."""
+    """`1.000 q̈ + 0.300 q̇ + … = F`, inertia first; terms with the coefficient 0 are left out; `no law` without any."""
+    if not any(coefficients.values()):
+        return "<i>no law</i>"
     parts = []
     for term in in_order(coefficients):
         value = coefficients[term]
@@ -51,4 +55,4 @@ def equation(coefficients: dict[str, float], std: dict[str, float]) -> str:
         lead = f"{sign} " if parts else sign.replace("+", "")
         symbol = "" if term == "const" else f"\u2009{term_markup(term)}"
         parts.append(f"<span>{lead}{digits(abs(value), std.get(term))}{symbol}</span>")
-    return " ".join([*(parts or ["<span>0</span>"]), "<span>= <i>F</i></span>"])
+    return " ".join([*parts, "<span>= <i>F</i></span>"])

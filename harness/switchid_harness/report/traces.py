@@ -53,8 +53,11 @@ def _shown_terms(run: Run) -> list[str]:
 
 def _method_traces(track: Track, error: np.ndarray, terms: list[str], method: str, kept: np.ndarray) -> dict:
     traces = {f"{method}.e": error[kept]}
-    for name in ("deviation", "threshold", "prediction.q", "prediction.qd"):
+    for name in ("deviation", "threshold"):
         traces[f"{method}.{name}"] = track.outputs[name][kept]
+    has_law = np.any(track.coefficients[kept] != 0.0, axis=1)
+    for name in ("prediction.q", "prediction.qd"):
+        traces[f"{method}.{name}"] = np.where(has_law, track.outputs[name][kept], np.nan)
     for term in terms:
         index = track.terms.index(term)
         traces[f"{method}.coef.{term}"] = track.coefficients[kept, index]

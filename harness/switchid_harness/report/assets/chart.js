@@ -101,11 +101,14 @@ class TimeChart {
   line(ctx, s, t, from, to, toX, toY) {
     ctx.strokeStyle = s.color; ctx.lineWidth = s.width || 1.5; ctx.setLineDash(s.dash || []); ctx.lineJoin = "round";
     ctx.beginPath();
-    let pen = false, last = 0;
+    let pen = false, last = 0, drawn = 0;
     for (let i = from; i < to; i++) {
       const v = s.values[i];
       if (!Number.isFinite(v)) { pen = false; continue; }
-      const x = toX(t[i]), y = Math.max(-2000, Math.min(4000, toY(v)));
+      const x = toX(t[i]);
+      if (pen && s.thin && x - drawn < 0.4) continue;
+      drawn = x;
+      const y = Math.max(-2000, Math.min(4000, toY(v)));
       if (pen && s.stair) ctx.lineTo(x, last);
       if (pen) ctx.lineTo(x, y); else ctx.moveTo(x, y);
       pen = true; last = y;

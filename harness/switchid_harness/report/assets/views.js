@@ -73,7 +73,7 @@ const mapped = (values, f) => values.map(f);
 
 function showState(run, view) {
   const parent = section("state"), t = run.traces, marks = marksOf(run, ["default"]);
-  const add = (title, values, color) => new TimeChart(parent, view, { title, height: 120, marks, series: [{ name: "observed", values, color, width: 1.2 }] });
+  const add = (title, values, color) => new TimeChart(parent, view, { title, height: 120, marks, series: [{ name: "observed", values, color, width: 1.2, thin: true }] });
   add("excitation <i>F</i>", t.F, "#475467");
   add("displacement <i>q</i>", t.q, "#0f766e");
   add("velocity <i>q̇</i>", t.qd, "#7c3aed");
