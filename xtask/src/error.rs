@@ -63,6 +63,14 @@ pub enum Error {
         /// The file that names them.
         requirements: PathBuf,
     },
+    /// The environment has no libclang.
+    #[error(
+        "no libclang in the Python environment: {reason}\nRemove target/python and run the command again, or set LIBCLANG_PATH"
+    )]
+    Libclang {
+        /// What Python says.
+        reason: String,
+    },
     /// An FMU cannot be packed.
     #[error(transparent)]
     Package(#[from] switchid_fmu_package::PackageError),

@@ -4,9 +4,20 @@ use serde::{Deserialize, Serialize};
 use switchid::law::State;
 use switchid::simulate::{Excitation, ExcitationKind, ParametricLaw, Scenario, SensorNoise, Stage};
 use switchid_fmu_slave::{Description, ValueError, Values};
+use thiserror::Error;
 
 /// A start from which on a stage does not occur, s.
 const NEVER: f64 = 1e29;
+
+/// A stage is left out before one that occurs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("stage[{set}].time is set but stage[{missing}].time is not: number the stages without a gap")]
+pub struct Gap {
+    /// Number of the stage that is left out.
+    missing: usize,
+    /// Number of one that occurs after it.
+    set: usize,
+}
 
 /// Value references of all variables.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -58,11 +69,14 @@ impl Places {
     }
 
     /// The scenario that the parameters describe; not checked yet.
-    pub fn scenario(&self, law: &ParametricLaw, values: &Values) -> Scenario {
+    ///
+    /// # Errors
+    /// [`Gap`] where the schedule has one.
+    pub fn scenario(&self, law: &ParametricLaw, values: &Values) -> Result<Scenario, Gap> {
         let [q, qd] = self.initial.map(|reference| values.real(reference));
         let [noise_q, noise_qd] = self.noise.map(|reference| values.real(reference));
         // A plant has no end: the duration is only there to be positive.
-        let mut scenario = Scenario::new(&law.name, law.terms(), self.schedule(law, values), NEVER);
+        let mut scenario = Scenario::new(&law.name, law.terms(), self.schedule(law, values)?, NEVER);
         scenario.seed = values.integer(self.seed).max(0) as u64;
         scenario.initial = State { q, qd };
         scenario.noise = SensorNoise { q: noise_q, qd: noise_qd };
@@ -75,14 +89,17 @@ impl Places {
             intensity: values.real(self.intensity),
             sample_time: values.real(self.sample_time),
         };
-        scenario
+        Ok(scenario)
     }
 
-    /// All stages up to the last that occurs; one in between that does not is left for the scenario's check to refuse.
-    fn schedule(&self, law: &ParametricLaw, values: &Values) -> Vec<Stage> {
+    /// All stages that occur.
+    fn schedule(&self, law: &ParametricLaw, values: &Values) -> Result<Vec<Stage>, Gap> {
         let occurs = |places: &StagePlaces| values.real(places.time) < NEVER;
-        let count = self.stages.iter().rposition(occurs).map_or(0, |last| last + 1);
-        self.stages[..count].iter().map(|places| places.stage(law, values)).collect()
+        let count = self.stages.iter().take_while(|places| occurs(places)).count();
+        if let Some(next) = self.stages[count..].iter().position(occurs) {
+            return Err(Gap { missing: count + 1, set: count + 1 + next });
+        }
+        Ok(self.stages[..count].iter().map(|places| places.stage(law, values)).collect())
     }
 }
 

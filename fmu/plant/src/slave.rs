@@ -48,7 +48,7 @@ impl Slave for PlantSlave {
     }
 
     fn start(&mut self, time: f64, values: &mut Values, _log: &mut Log) -> Result<(), SlaveError> {
-        let plant = Plant::new(self.places.scenario(&self.law, values))?;
+        let plant = Plant::new(self.places.scenario(&self.law, values)?)?;
         show(&self.places, &plant, values);
         self.start_time = time;
         self.plant = Some(plant);

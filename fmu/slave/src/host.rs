@@ -1,10 +1,9 @@
-//! A small FMI 2.0 importer for tests: loads a slave's library, or takes its functions linked in, and calls them.
+//! A small FMI 2.0 importer for tests: takes a slave's functions linked in, and calls them.
 //!
 //! It is no simulator: it does what it is told, also what the standard forbids, and keeps every message.
 
 use crate::ctypes::*;
 use std::ffi::{CStr, CString, c_void};
-use std::path::Path;
 use std::ptr::null_mut;
 use std::sync::Mutex;
 
@@ -18,21 +17,7 @@ macro_rules! function_table {
             $(#[doc = concat!("`", stringify!($symbol), "`.")] pub $field: unsafe extern "C" fn($($argument),*) -> $result,)*
         }
 
-        impl Functions {
-            /// The functions of a dynamic library, which stays loaded for good.
-            ///
-            /// # Errors
-            /// A file that is no library, or a function that is missing.
-            pub fn load(path: &Path) -> Result<Functions, libloading::Error> {
-                // SAFETY: a slave's library has no initialisers, and its functions have these types.
-                unsafe {
-                    let library = Box::leak(Box::new(libloading::Library::new(path)?));
-                    Ok(Functions { $($field: *library.get(concat!(stringify!($symbol), "\0"))?,)* })
-                }
-            }
-        }
-
-        /// The [`Functions`](switchid_fmu_slave::host::Functions) that [`export!`](crate::export!) made in that module.
+        /// The [`Functions`](switchid_fmu_slave::host::Functions) that [`export!`](crate::export!) made in that module, which must be in scope.
         #[macro_export]
         macro_rules! linked_functions {
             ($module:ident) => { $crate::host::Functions { $($field: $module::$symbol,)* } };

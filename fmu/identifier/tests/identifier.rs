@@ -1,0 +1,178 @@
+//! The identifier's library through the C interface.
+
+mod contract;
+
+use contract::{Drive, OK, Subject};
+use switchid::identify::{Identifier, Outputs, Sample, Settings};
+use switchid::law::{Model, Term};
+use switchid::simulate::{Builtin, Reading, Stage, record};
+use switchid_fmu_identifier::functions;
+use switchid_fmu_package::identifier;
+use switchid_fmu_slave::host::Instance;
+use switchid_fmu_slave::linked_functions;
+
+const TERMS: &str = "qdd qd q q^3";
+
+fn subject() -> Subject {
+    let fmu = identifier("SwitchedIdentifier", &Model::cubic_library()).unwrap();
+    Subject::new(linked_functions!(functions), &fmu)
+}
+
+/// Duffing, 8 s at 1 kHz, a switch after 6 s.
+fn readings() -> Vec<Reading> {
+    let mut scenario = Builtin::DuffingSine.scenario().with_noise(0.01);
+    scenario.duration = 8.0;
+    scenario.stages.truncate(1);
+    let next = Stage { start: 6.0, coefficients: vec![1.2, 0.6, 6.0, 3.0], ..scenario.stages[0].clone() };
+    scenario.stages.push(next);
+    record(&scenario).unwrap()
+}
+
+fn prepare(subject: &Subject, instance: &Instance) {
+    assert_eq!(instance.set_text(subject.reference("terms"), TERMS), OK);
+    assert_eq!(instance.initialize(0.0), OK, "{:?}", instance.messages());
+}
+
+fn sample(subject: &Subject, instance: &Instance, reading: &Reading, t: f64, step: f64) {
+    let inputs = ["q", "qd", "F"].map(|name| subject.reference(name));
+    assert_eq!(instance.set_reals(&inputs, &[reading.q, reading.qd, reading.excitation]), OK);
+    assert_eq!(instance.step(t, step), OK, "{:?}", instance.messages());
+}
+
+fn feed<'a>(subject: &Subject, instance: &Instance, readings: impl IntoIterator<Item = &'a Reading>) {
+    readings.into_iter().for_each(|reading| sample(subject, instance, reading, reading.t, 1e-3));
+}
+
+/// The record read by the library's identifier.
+fn through_library(readings: &[Reading]) -> Vec<f64> {
+    let library = Model::cubic_library();
+    let terms: Vec<Term> = library.terms.iter().map(|entry| entry.term).collect();
+    let model = library.with_terms(TERMS.split(' ')).unwrap();
+    let mut identifier = Identifier::new(&model, Settings::default()).unwrap();
+    for reading in readings {
+        let (q, qd, excitation) = (reading.q, reading.qd, reading.excitation);
+        identifier.step(Sample { t: reading.t, q, qd, excitation }).unwrap();
+    }
+    Outputs::new(&terms, &identifier).values(&identifier).map(|value| value.number()).collect()
+}
+
+fn numbers(subject: &Subject, instance: &Instance) -> Vec<f64> {
+    let terms: Vec<Term> = Model::cubic_library().terms.iter().map(|entry| entry.term).collect();
+    let outputs = Outputs::describe(&terms);
+    let read = |name: &str| {
+        let reference = subject.reference(name);
+        match name {
+            "switch.count" | "status" => f64::from(instance.integer(reference).unwrap()),
+            "valid" => f64::from(instance.boolean(reference).unwrap()),
+            _ => instance.reals(&[reference]).unwrap()[0],
+        }
+    };
+    outputs.iter().map(|output| read(&output.name)).collect()
+}
+
+#[test]
+fn the_contract_holds() {
+    let subject = subject();
+    let readings = readings();
+    let thinned: Vec<Reading> = readings.into_iter().step_by(4).collect();
+    let drive = Drive {
+        prepare: &|instance| prepare(&subject, instance),
+        step: &|instance, k| {
+            let reading = &thinned[k as usize];
+            sample(&subject, instance, reading, reading.t, 4e-3);
+        },
+        steps: thinned.len() as u32,
+    };
+    contract::check(&subject, &drive);
+}
+
+#[test]
+fn the_same_samples_give_the_library_s_bits() {
+    let (subject, readings) = (subject(), readings());
+    let instance = subject.instance();
+    prepare(&subject, &instance);
+    feed(&subject, &instance, &readings);
+    assert_eq!(numbers(&subject, &instance), through_library(&readings));
+}
+
+#[test]
+fn a_sample_that_is_no_number_is_skipped() {
+    let (subject, readings) = (subject(), readings());
+    let instance = subject.instance();
+    prepare(&subject, &instance);
+    for (index, reading) in readings.iter().enumerate() {
+        let broken = match index {
+            500 => Reading { q: f64::NAN, ..*reading },
+            700 => Reading { qd: f64::INFINITY, ..*reading },
+            900 => Reading { excitation: f64::NAN, ..*reading },
+            _ => *reading,
+        };
+        sample(&subject, &instance, &broken, reading.t, 1e-3);
+    }
+    let mut kept = readings;
+    for index in [900, 700, 500] {
+        kept.remove(index);
+    }
+    assert_eq!(numbers(&subject, &instance), through_library(&kept));
+    let warnings: Vec<_> = instance.messages().into_iter().filter(|(status, ..)| *status == 1).collect();
+    assert_eq!(warnings.len(), 3, "{warnings:?}");
+    assert!(warnings[0].2.contains("t = 0.5 s has a q that"), "{warnings:?}");
+}
+
+#[test]
+fn jittering_and_split_steps_are_taken() {
+    let (subject, readings) = (subject(), readings());
+    let instance = subject.instance();
+    prepare(&subject, &instance);
+    let mut t = 0.0;
+    for reading in &readings[..3000] {
+        sample(&subject, &instance, reading, t, 1e-3);
+        sample(&subject, &instance, reading, t, 0.0);
+        t += 1e-3;
+    }
+    sample(&subject, &instance, &readings[3000], t, 0.09999999999999998);
+    let warnings = instance.messages().into_iter().filter(|(status, ..)| *status == 1).count();
+    assert_eq!(warnings, 4, "{:?}", instance.messages());
+    assert!(numbers(&subject, &instance).iter().all(|value| value.is_finite()));
+}
+
+#[test]
+fn a_faster_stream_is_thinned_and_said_once() {
+    let (subject, readings) = (subject(), readings());
+    let instance = subject.instance();
+    assert_eq!(instance.set_reals(&[subject.reference("sample_time")], &[4e-3]), OK);
+    prepare(&subject, &instance);
+    feed(&subject, &instance, &readings[..2000]);
+    let warnings: Vec<_> = instance.messages().into_iter().filter(|(status, ..)| *status == 1).collect();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].2.contains("sample_time"));
+}
+
+#[test]
+fn refused_parameters_are_named() {
+    let subject = subject();
+    for (terms, named) in [
+        ("qdd foo", "unknown term \"foo\""),
+        ("qdd q^5", "no output coef.q_5"),
+        ("qd q", "no inertia"),
+        ("qdd q linear_stiffness", "the same term"),
+    ] {
+        let instance = subject.instance();
+        assert_eq!(instance.set_text(subject.reference("terms"), terms), OK);
+        assert_ne!(instance.initialize(0.0), OK);
+        assert!(instance.messages()[0].2.contains(named), "{:?}", instance.messages());
+    }
+    let instance = subject.instance();
+    assert_eq!(instance.set_reals(&[subject.reference("max_window")], &[0.01]), OK);
+    assert_ne!(instance.initialize(0.0), OK);
+    assert!(instance.messages()[0].2.contains("max_window"), "{:?}", instance.messages());
+}
+
+#[test]
+fn missing_resources_are_named() {
+    let subject = subject();
+    for resource in ["interface.json", "model.toml"] {
+        let refusal = subject.refusal_without(resource);
+        assert!(refusal.contains(resource), "{refusal}");
+    }
+}

@@ -1,0 +1,120 @@
+//! The XML, its GUID, the archive.
+
+use std::io::{Cursor, Read};
+use switchid::identify::{Outputs, Parameter};
+use switchid::law::{Given, Model, Term};
+use switchid_fmu_package::{DUFFING, Fmu, LINUX64, PackageError, STAGES, VAN_DER_POL, identifier, plant};
+
+fn default_identifier() -> Fmu {
+    identifier("SwitchedIdentifier", &Model::cubic_library()).unwrap()
+}
+
+#[test]
+fn the_xml_at_the_root_is_the_default_identifier_s() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../modelDescription.xml");
+    let at_root = std::fs::read_to_string(path).unwrap();
+    assert!(at_root == default_identifier().xml(), "modelDescription.xml is stale: run cargo xtask fmu");
+}
+
+#[test]
+fn the_guid_tells_interfaces_and_resources_apart() {
+    let guid = |name: &str, known: f64| {
+        let terms = [(Term::Inertia, Given::Known(known)), (Term::power(1, 0), Given::Fit)];
+        identifier(name, &Model::of("model", terms)).unwrap().guid().to_string()
+    };
+    assert_eq!(guid("A", 1.0), guid("A", 1.0));
+    assert_ne!(guid("A", 1.0), guid("B", 1.0));
+    assert_ne!(guid("A", 1.0), guid("A", 2.0));
+}
+
+#[test]
+fn every_setting_and_every_output_is_a_variable() {
+    let fmu = default_identifier();
+    let terms: Vec<Term> = Model::cubic_library().terms.iter().map(|entry| entry.term).collect();
+    let parameters = Parameter::ALL.iter().map(|parameter| parameter.name.to_string());
+    let outputs = Outputs::describe(&terms).into_iter().map(|output| output.name);
+    let others = ["q", "qd", "F", "terms", "method", "hold"].map(String::from);
+    for name in parameters.chain(outputs).chain(others) {
+        assert_eq!(fmu.xml().matches(&format!("<ScalarVariable name=\"{name}\" ")).count(), 1, "{name}");
+    }
+}
+
+/// (name, attributes of its type) of every variable, and the indices of the two lists of unknowns.
+fn read(xml: &str) -> (Vec<&str>, Vec<usize>, Vec<usize>) {
+    let names = xml.split("<ScalarVariable name=\"").skip(1).map(|rest| rest.split('"').next().unwrap()).collect();
+    let indices = |part: &str| {
+        part.split("<Unknown index=\"").skip(1).map(|rest| rest.split('"').next().unwrap().parse().unwrap()).collect()
+    };
+    let outputs = xml.split("<Outputs>").nth(1).unwrap().split("</Outputs>").next().unwrap();
+    let initial = xml.split("<InitialUnknowns>").nth(1).unwrap();
+    (names, indices(outputs), indices(initial))
+}
+
+#[test]
+fn structure_counts_from_one_and_names_every_output() {
+    for fmu in [default_identifier(), plant(DUFFING).unwrap(), plant(VAN_DER_POL).unwrap()] {
+        let (_, outputs, initial) = read(fmu.xml());
+        let causalities = fmu.xml().split("<ScalarVariable ").skip(1).zip(1..);
+        let expected: Vec<usize> = causalities
+            .filter(|(variable, _)| variable.contains("causality=\"output\""))
+            .map(|(_, index): (_, usize)| index)
+            .collect();
+        assert_eq!(outputs, expected);
+        assert_eq!(initial, expected);
+    }
+}
+
+#[test]
+fn initial_dependencies_point_at_their_parameters() {
+    let fmu = plant(VAN_DER_POL).unwrap();
+    let (names, ..) = read(fmu.xml());
+    let position = |name: &str| names.iter().position(|known| *known == name).unwrap() + 1;
+    let (alpha, a) = (position("stage[1].alpha"), position("stage[1].a"));
+    let unknown = format!("<Unknown index=\"{}\" dependencies=\"{alpha} {a}\"/>", position("true.coef.qd"));
+    assert!(fmu.xml().contains(&unknown), "{unknown}");
+}
+
+#[test]
+fn a_plant_has_sixteen_stages() {
+    let fmu = plant(DUFFING).unwrap();
+    assert_eq!(STAGES, 16);
+    assert!(fmu.xml().contains("name=\"stage[16].k3\""));
+    assert!(!fmu.xml().contains("stage[17]") && !fmu.xml().contains("stage[0]"));
+}
+
+#[test]
+fn the_archive_holds_what_importers_look_for_and_is_reproducible() {
+    let archive = || plant(DUFFING).unwrap().with_binary(LINUX64, "so", b"binary".to_vec()).to_bytes().unwrap();
+    assert_eq!(archive(), archive());
+    let mut zip = zip::ZipArchive::new(Cursor::new(archive())).unwrap();
+    let names: Vec<String> = zip.file_names().map(|name| name.unwrap().into_owned()).collect();
+    for path in [
+        "modelDescription.xml",
+        "binaries/linux64/Duffing.so",
+        "resources/interface.json",
+        "resources/plant.toml",
+        "documentation/index.html",
+        "documentation/licenses/LICENSE-MIT",
+        "documentation/licenses/LICENSE-APACHE",
+    ] {
+        assert!(names.iter().any(|name| name == path), "{path} is not among {names:?}");
+    }
+    let mut xml = String::new();
+    zip.by_name("modelDescription.xml").unwrap().read_to_string(&mut xml).unwrap();
+    assert_eq!(xml, plant(DUFFING).unwrap().xml());
+}
+
+#[test]
+fn text_in_the_xml_is_escaped() {
+    let law = DUFFING.replace("Cubic stiffness", "k3 < 0 & \\\"soft\\\"");
+    assert!(plant(&law).unwrap().xml().contains("k3 &lt; 0 &amp; &quot;soft&quot; in stage 1"));
+}
+
+#[test]
+fn what_cannot_be_packed_is_refused() {
+    let refused = identifier("no name", &Model::cubic_library());
+    assert!(matches!(refused, Err(PackageError::Name { .. })));
+    let no_inertia = Model::of("m", [(Term::power(1, 0), Given::Fit)]);
+    assert!(matches!(identifier("A", &no_inertia), Err(PackageError::Model(_))));
+    assert!(matches!(plant("name = 1"), Err(PackageError::Law(_))));
+}

@@ -1,0 +1,159 @@
+//! The plants' library through the C interface.
+
+#[path = "../../identifier/tests/contract/mod.rs"]
+mod contract;
+
+use contract::{Drive, OK, Subject};
+use switchid::simulate::{Builtin, ExcitationKind, Plant, Scenario};
+use switchid_fmu_package::{DUFFING, VAN_DER_POL, plant};
+use switchid_fmu_plant::functions;
+use switchid_fmu_slave::host::Instance;
+use switchid_fmu_slave::linked_functions;
+
+const WHITE: i32 = 3;
+
+fn subject(law: &str) -> Subject {
+    Subject::new(linked_functions!(functions), &plant(law).unwrap())
+}
+
+fn set(subject: &Subject, instance: &Instance, values: &[(&str, f64)]) {
+    for (name, value) in values {
+        assert_eq!(instance.set_reals(&[subject.reference(name)], &[*value]), OK, "{name}");
+    }
+}
+
+/// Two stages, white excitation, noisy sensors.
+fn prepare(subject: &Subject, instance: &Instance) {
+    set(subject, instance, &[("stage[2].time", 0.15), ("stage[2].P", 9.0), ("noise.q", 0.1), ("noise.qd", 0.2)]);
+    assert_eq!(instance.set_integer(subject.reference("excitation.kind"), WHITE), OK);
+    assert_eq!(instance.set_integer(subject.reference("seed"), 5), OK);
+    assert_eq!(instance.initialize(0.0), OK, "{:?}", instance.messages());
+}
+
+fn real(subject: &Subject, instance: &Instance, name: &str) -> f64 {
+    instance.reals(&[subject.reference(name)]).unwrap()[0]
+}
+
+#[test]
+fn the_contract_holds() {
+    for law in [DUFFING, VAN_DER_POL] {
+        let subject = subject(law);
+        let drive = Drive {
+            prepare: &|instance| prepare(&subject, instance),
+            step: &|instance, k| assert_eq!(instance.step(f64::from(k) * 1e-3, 1e-3), OK),
+            steps: 200,
+        };
+        contract::check(&subject, &drive);
+    }
+}
+
+#[test]
+fn what_it_shows_does_not_depend_on_the_communication_step() {
+    let subject = subject(DUFFING);
+    let (fine, coarse) = (subject.instance(), subject.instance());
+    prepare(&subject, &fine);
+    prepare(&subject, &coarse);
+    let mut t = 0.0;
+    for _ in 0..300 {
+        assert_eq!(fine.step(t, 1e-3).max(fine.step(t + 1e-3, 0.0)), OK);
+        t += 1e-3;
+    }
+    assert_eq!(coarse.step(0.0, 0.3 * (1.0 - 1e-15)), OK);
+    assert_eq!(subject.outputs(&fine), subject.outputs(&coarse));
+}
+
+/// The built-in scenario through the library and through the FMU.
+fn agrees(law: &str, builtin: Builtin, names: [&str; 4], circuit: impl Fn(&[f64]) -> [f64; 4]) {
+    let subject = subject(law);
+    let instance = subject.instance();
+    let scenario: Scenario = builtin.scenario().with_seed(3).with_noise(0.02);
+    for (number, stage) in (1..).zip(&scenario.stages) {
+        let named = names.into_iter().zip(circuit(&stage.coefficients));
+        let all = named.chain([("time", stage.start), ("P", stage.amplitude), ("omega", stage.omega)]);
+        for (name, value) in all {
+            set(&subject, &instance, &[(&format!("stage[{number}].{name}"), value)]);
+        }
+    }
+    set(&subject, &instance, &[("noise.q", 0.02), ("noise.qd", 0.02), ("q0", 0.5)]);
+    let kind = if scenario.excitation.kind == ExcitationKind::Sine { 2 } else { WHITE };
+    assert_eq!(instance.set_integer(subject.reference("excitation.kind"), kind), OK);
+    assert_eq!(instance.set_integer(subject.reference("seed"), 3), OK);
+    assert_eq!(instance.initialize(0.0), OK, "{:?}", instance.messages());
+    let mut plant = Plant::new(scenario).unwrap();
+    for k in 0..60 {
+        let t = f64::from(k);
+        assert_eq!(instance.step(t, 1.0), OK);
+        plant.advance_to(t + 1.0).unwrap();
+        let (reading, truth) = (plant.reading(), plant.truth());
+        assert_eq!(real(&subject, &instance, "q").to_bits(), reading.q.to_bits(), "t = {t}");
+        assert_eq!(real(&subject, &instance, "qd"), reading.qd);
+        assert_eq!(real(&subject, &instance, "F"), reading.excitation);
+        assert_eq!(real(&subject, &instance, "true.q"), truth.state.q);
+        assert_eq!(instance.integer(subject.reference("true.stage")), Ok(truth.stage as i32 + 1));
+        assert_eq!(real(&subject, &instance, "true.coef.qdd"), truth.coefficients[0]);
+    }
+}
+
+#[test]
+fn a_schedule_gives_the_library_s_motion() {
+    let as_they_are = |c: &[f64]| [c[0], c[1], c[2], c[3]];
+    agrees(DUFFING, Builtin::DuffingSine, ["m", "c", "k1", "k3"], as_they_are);
+    agrees(DUFFING, Builtin::DuffingWhite, ["m", "c", "k1", "k3"], as_they_are);
+}
+
+#[test]
+fn van_der_pol_s_terms_are_products_of_its_circuit() {
+    let subject = subject(VAN_DER_POL);
+    let instance = subject.instance();
+    let circuit = [("L", 1.5), ("alpha", 0.5), ("a", -2.0), ("C", 4.0)];
+    for (name, value) in circuit {
+        set(&subject, &instance, &[(&format!("stage[1].{name}"), value)]);
+    }
+    assert_eq!(instance.initialize(0.0), OK);
+    let truth = ["qdd", "qd", "q_2_qd", "q"].map(|term| real(&subject, &instance, &format!("true.coef.{term}")));
+    assert_eq!(truth, [1.5, 1.0, 0.5, 0.25]);
+}
+
+#[test]
+fn time_counts_from_the_start() {
+    let subject = subject(DUFFING);
+    let (early, late) = (subject.instance(), subject.instance());
+    assert_eq!(early.initialize(0.0).max(late.initialize(128.0)), OK);
+    assert_eq!(early.step(0.0, 0.25).max(late.step(128.0, 0.25)), OK);
+    assert_eq!(subject.outputs(&early), subject.outputs(&late));
+}
+
+#[test]
+fn refused_schedules_are_named() {
+    let subject = subject(DUFFING);
+    for (name, value, named) in [
+        ("stage[1].time", 1.0, "stage 1"),
+        ("stage[4].time", 2.0, "stage[3].time"),
+        ("stage[1].m", 0.0, "mass"),
+        ("excitation.sample_time", 0.0, "excitation.sample_time"),
+    ] {
+        let instance = subject.instance();
+        set(&subject, &instance, &[("stage[2].time", 1.5), (name, value)]);
+        assert_ne!(instance.initialize(0.0), OK, "{name}");
+        assert!(instance.messages()[0].2.contains(named), "{:?}", instance.messages());
+    }
+}
+
+#[test]
+fn going_back_in_time_is_refused_but_a_saved_state_goes_back() {
+    let subject = subject(DUFFING);
+    let instance = subject.instance();
+    assert_eq!(instance.initialize(0.0), OK);
+    let mut state = instance.save().unwrap();
+    assert_eq!(instance.step(0.0, 1.0), OK);
+    assert_ne!(instance.step(0.2, 0.1), OK);
+    assert!(instance.messages().last().unwrap().2.contains("saved state"));
+    assert_eq!(instance.restore(state).max(instance.step(0.0, 0.1)).max(instance.free(&mut state)), OK);
+}
+
+#[test]
+fn missing_resources_are_named() {
+    let subject = subject(DUFFING);
+    let refusal = subject.refusal_without("plant.toml");
+    assert!(refusal.contains("plant.toml"), "{refusal}");
+}
