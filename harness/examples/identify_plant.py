@@ -1,6 +1,7 @@
 """Steps a plant FMU and the identifier together and prints the law: python identify_plant.py target/fmu [SECONDS]"""
 
 import sys
+
 from fmpy import extract, instantiate_fmu, read_model_description
 
 
@@ -19,7 +20,9 @@ for slave in (plant, identifier):
     slave.enterInitializationMode()
     slave.exitInitializationMode()
 for step in range(1000 * int(sys.argv[2] if len(sys.argv) > 2 else 12)):
-    identifier.setReal([ref[name] for name in ("q", "qd", "F")], plant.getReal([out[name] for name in ("q", "qd", "F")]))
+    identifier.setReal(
+        [ref[name] for name in ("q", "qd", "F")], plant.getReal([out[name] for name in ("q", "qd", "F")])
+    )
     for slave in (identifier, plant):
         slave.doStep(currentCommunicationPoint=step / 1000, communicationStepSize=0.001)
 for name in ("qdd", "qd", "q", "q_3"):

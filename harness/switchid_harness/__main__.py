@@ -24,7 +24,9 @@ def arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(prog="cargo xtask crosscheck", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="seed of the second, randomly drawn set (default 1)")
-    parser.add_argument("--quick", action="store_true", help="only the documented set without noise and the publication's cases")
+    parser.add_argument(
+        "--quick", action="store_true", help="only the documented set without noise and the publication's cases"
+    )
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes side by side (default: all cores)")
     parser.add_argument("--fmus", type=Path, default=Path("target/fmu"), help=argparse.SUPPRESS)
     parser.add_argument("--out", type=Path, default=Path("target/crosscheck"), help=argparse.SUPPRESS)
@@ -67,7 +69,9 @@ def run_all(chosen_scenarios: list[Scenario], jobs: int) -> list[tuple[dict, dic
             mark = "gates hold" if future.result()[0]["passed"] else "GATES FAIL"
             elapsed = time.monotonic() - begin
             scenario = futures[future]
-            print(f"[{elapsed:6.1f} s] {done}/{len(futures)} {scenario.title} ({scenario.group}): {mark}", file=sys.stderr)
+            print(
+                f"[{elapsed:6.1f} s] {done}/{len(futures)} {scenario.title} ({scenario.group}): {mark}", file=sys.stderr
+            )
         return [future.result() for future in futures]
 
 

@@ -69,5 +69,7 @@ _SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 def symbol(term: str) -> str:
     """The term as it is written in a law, `q² q̇`; `1` for the constant."""
-    written = [_SYMBOLS.get(base, base) + (str(n).translate(_SUPERSCRIPTS) if n > 1 else "") for base, n in factors(term)]
+    written = [
+        _SYMBOLS.get(base, base) + (str(n).translate(_SUPERSCRIPTS) if n > 1 else "") for base, n in factors(term)
+    ]
     return " ".join(written) or "1"

@@ -34,7 +34,8 @@ def coefficients(run: dict, method: str, index: int) -> list[tuple[str, str]]:
 
 def alarms(figures: dict) -> str:
     """Missed switches and false alarms of one method, in words."""
-    return f"{count(figures['missed_switches'], 'missed switch', 'es')}, {count(len(figures['false_alarms']), 'false alarm', 's')}"
+    missed = count(figures["missed_switches"], "missed switch", "es")
+    return f"{missed}, {count(len(figures['false_alarms']), 'false alarm', 's')}"
 
 
 def count(number: int, noun: str, plural: str) -> str:

@@ -64,16 +64,20 @@ class FakePlant:
 
 
 class Puppet:
-    """Alarms `detection` s after every switch (None: never), then coefficients that settle with the given time constant."""
+    """Alarms `detection` s after every switch (None: never), then coefficients settle with the given time constant."""
 
-    def __init__(self, scenario: Scenario, detection: float | None, settling: float, residue: float, false_alarms: tuple = ()):
+    def __init__(
+        self, scenario: Scenario, detection: float | None, settling: float, residue: float, false_alarms: tuple = ()
+    ):
         self.scenario, self.settling, self.residue = scenario, settling, residue
         starts = [stage.start for stage in scenario.stages]
         self.known_from = [0.0] + [start + (math.inf if detection is None else detection) for start in starts[1:]]
         self.laws = [scenario.law.coefficients(stage.parameters) for stage in scenario.stages]
         self.false_alarms = false_alarms
         self.state = {f"coef.{term}": 0.0 for term in TERMS} | {f"std.{term}": 1e30 for term in TERMS}
-        self.state |= dict.fromkeys(["q", "qd", "F", "switch.time", "switch.count", "prediction.q", "prediction.qd"], 0.0)
+        self.state |= dict.fromkeys(
+            ["q", "qd", "F", "switch.time", "switch.count", "prediction.q", "prediction.qd"], 0.0
+        )
         self.state |= {"switch.detection_time": 0.0, "deviation": 1e-4, "threshold": 0.05, "status": 1, "valid": 0}
 
     def port(self, names: list[str]) -> FakePort:

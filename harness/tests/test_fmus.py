@@ -49,7 +49,9 @@ def test_several_instances_in_one_process_do_not_disturb_each_other(fmus):
 
 def _step(slave: Slave, samples: np.ndarray, first: int) -> np.ndarray:
     inputs = slave.port(["q", "qd", "F"])
-    outputs = slave.port([name for name, v in slave.fmu.variables.items() if v.causality == "output" and v.type == "Real"])
+    outputs = slave.port(
+        [name for name, v in slave.fmu.variables.items() if v.causality == "output" and v.type == "Real"]
+    )
     rows = []
     for index, sample in enumerate(samples, start=first):
         inputs.write(sample)

@@ -46,7 +46,10 @@ def test_a_good_run_passes_while_the_published_method_is_only_shown():
     figures = _run({})
     assert figures["passed"] and _failed(figures) == set()
     assert figures["methods"]["publication"]["missed_switches"] == 2
-    assert [s["detection_delay"] for s in figures["methods"]["default"]["stages"]] == [None, *[pytest.approx(0.2, abs=2e-3)] * 2]
+    assert [s["detection_delay"] for s in figures["methods"]["default"]["stages"]] == [
+        None,
+        *[pytest.approx(0.2, abs=2e-3)] * 2,
+    ]
 
 
 @pytest.mark.parametrize(
@@ -75,7 +78,10 @@ def test_the_first_stage_is_gated_on_e_but_has_no_tracking_delay():
 
 def test_with_noise_only_the_alarms_are_gated_and_the_publications_cases_on_e():
     noisy = scenarios.documented()[1]
-    assert {gate.name for gate in gates(noisy, [{"e": 1.0, "tracking_delay": None}] * 5, 0, 0)} == {"missed switches", "false alarms"}
+    assert {gate.name for gate in gates(noisy, [{"e": 1.0, "tracking_delay": None}] * 5, 0, 0)} == {
+        "missed switches",
+        "false alarms",
+    }
     for case, floor in zip(scenarios.publication_cases(), (2.58e-4, 1e-2)):
         assert gates(case, [{"e": floor * 1.01, "tracking_delay": None}], 0, 0)[-1].passed is False
 

@@ -64,7 +64,9 @@ def test_report_json_has_no_nan(results):
 
 
 def test_laws_are_written_with_the_digits_their_std_supports():
-    text = re.sub(r"<[^>]+>", "", equation({"q": 4.0123, "qdd": 1.00042, "qd": -0.3, "q_3": 0.0}, {"qdd": 1e-5, "q": 0.2}))
+    text = re.sub(
+        r"<[^>]+>", "", equation({"q": 4.0123, "qdd": 1.00042, "qd": -0.3, "q_3": 0.0}, {"qdd": 1e-5, "q": 0.2})
+    )
     assert text == "1.00042\u2009q̈ − 0.3000\u2009q̇ + 4.01\u2009q = F"
 
 

@@ -46,7 +46,12 @@ def test_coefficients_follow_from_parameters():
     assert VAN_DER_POL.coefficients({"L": 1.2, "alpha": 0.9, "a": -0.5, "C": 0.8}) == pytest.approx(
         {"qdd": 1.2, "qd": 0.45, "q_2_qd": 0.9, "q": 1.25}
     )
-    assert DUFFING.coefficients({"m": 1.4, "c": 0.4, "k1": 3.0, "k3": 1.5}) == {"qdd": 1.4, "qd": 0.4, "q": 3.0, "q_3": 1.5}
+    assert DUFFING.coefficients({"m": 1.4, "c": 0.4, "k1": 3.0, "k3": 1.5}) == {
+        "qdd": 1.4,
+        "qd": 0.4,
+        "q": 3.0,
+        "q_3": 1.5,
+    }
 
 
 def test_terms_are_read_and_ordered_as_laws_are_written():

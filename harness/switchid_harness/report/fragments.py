@@ -38,8 +38,9 @@ def overview_row(run: dict) -> str:
     """One run in one row: worst figures of both methods."""
     methods = "".join(_method_cells(run, method) for method, _ in _METHODS)
     outcome = "ok" if run["passed"] else "FAIL"
+    name = f"{escape(run['title'])}<small>{escape(run['set'])}</small>"
     return (
-        f'<tr data-run="{escape(run["id"])}" tabindex="0"><th scope="row">{escape(run["title"])}<small>{escape(run["set"])}</small></th>'
+        f'<tr data-run="{escape(run["id"])}" tabindex="0"><th scope="row">{name}</th>'
         f"{methods}<td>{_pill(outcome)}</td></tr>"
     )
 
@@ -70,10 +71,8 @@ def _stage_card(run: dict, index: int) -> str:
         f'<div class="law {kind}"><span>{name}</span><div>{markup}</div><em>{error}</em></div>'
         for kind, name, markup, error in rows
     )
-    return (
-        f'<article class="card stage-{index % 6}"><h4>Stage {index + 1}'
-        f"<small>{stage['start']:g} – {stage['end']:g} s · {escape(_drive(run, stage['parameters']))}</small></h4>{lines}</article>"
-    )
+    when = f"{stage['start']:g} – {stage['end']:g} s · {escape(_drive(run, stage['parameters']))}"
+    return f'<article class="card stage-{index % 6}"><h4>Stage {index + 1}<small>{when}</small></h4>{lines}</article>'
 
 
 def _coefficient_cell(run: dict, method: str, index: int) -> str:
@@ -104,14 +103,20 @@ def _stage_row(run: dict, index: int) -> str:
     return f"<tr>{''.join(cells)}<td>{_pill(table.verdict(run, index + 1))}</td></tr>"
 
 
+_COLUMNS = (
+    "<th>e</th><th>detected<small>after</small></th><th>tracked<small>after</small></th>"
+    "<th>vouched<small>at</small></th>"
+)
+_HEAD = (
+    '<thead><tr><th rowspan="2">stage</th><th rowspan="2" class="left">coefficient ± std, truth</th>'
+    '<th colspan="4" class="default">ours</th><th colspan="4" class="publication">published method</th>'
+    f'<th rowspan="2">gate</th></tr><tr>{_COLUMNS}{_COLUMNS}</tr></thead>'
+)
+
+
 def _stage_table(run: dict) -> str:
-    columns = "<th>e</th><th>detected<small>after</small></th><th>tracked<small>after</small></th><th>vouched<small>at</small></th>"
-    head = (
-        '<thead><tr><th rowspan="2">stage</th><th rowspan="2" class="left">coefficient ± std, truth</th><th colspan="4" class="default">ours</th>'
-        f'<th colspan="4" class="publication">published method</th><th rowspan="2">gate</th></tr><tr>{columns}{columns}</tr></thead>'
-    )
     rows = "".join(_stage_row(run, index) for index in range(len(run["stages"])))
-    return f'<table class="wide">{head}<tbody>{rows}</tbody></table><p class="note">{_alarms(run)}</p>{_gates(run)}'
+    return f'<table class="wide">{_HEAD}<tbody>{rows}</tbody></table><p class="note">{_alarms(run)}</p>{_gates(run)}'
 
 
 def _alarms(run: dict) -> str:
@@ -132,7 +137,6 @@ def _gates(run: dict) -> str:
         f"<td>{_pill('ok' if gate['passed'] else 'FAIL')}</td></tr>"
         for gate in run["gates"]
     )
-    return (
-        f'<details class="gates"><summary>{len(run["gates"])} gates of this run</summary><table><thead><tr><th>gate</th><th>figure</th>'
-        f"<th>floor</th><th></th></tr></thead><tbody>{rows}</tbody></table></details>"
-    )
+    head = "<thead><tr><th>gate</th><th>figure</th><th>floor</th><th></th></tr></thead>"
+    title = f"{len(run['gates'])} gates of this run"
+    return f'<details class="gates"><summary>{title}</summary><table>{head}<tbody>{rows}</tbody></table></details>'
