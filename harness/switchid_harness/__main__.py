@@ -24,7 +24,9 @@ def arguments() -> argparse.Namespace:
     """The command line."""
     parser = argparse.ArgumentParser(prog="cargo xtask crosscheck", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="seed of the second, randomly drawn set (default 1)")
-    parser.add_argument("--quick", action="store_true", help="only the documented set without noise and the publication's cases")
+    parser.add_argument(
+        "--quick", action="store_true", help="only the documented set without noise and the publication's cases"
+    )
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes side by side (default: all cores)")
     parser.add_argument("--fmus", type=Path, default=Path("target/fmu"), help=argparse.SUPPRESS)
     parser.add_argument("--out", type=Path, default=Path("target/crosscheck"), help=argparse.SUPPRESS)
@@ -47,9 +49,9 @@ def unpack(source: Path, directory: Path) -> dict[str, Fmu]:
     return {name: Fmu(source / name, directory / Path(name).stem) for name in FMUS}
 
 
-def work(scenario: Scenario, directory: Path) -> tuple[dict, dict]:
+def work(scenario: Scenario) -> tuple[dict, dict]:
     """One scenario in a worker process: figures and the report's traces."""
-    run = perform(scenario, directory, _fmus)
+    run = perform(scenario, _fmus)
     return run.figures, run_traces(run)
 
 
@@ -58,16 +60,18 @@ def keep(fmus: dict[str, Fmu]) -> None:
     _fmus.update(fmus)
 
 
-def run_all(chosen_scenarios: list[Scenario], directory: Path, jobs: int) -> list[tuple[dict, dict]]:
+def run_all(chosen_scenarios: list[Scenario], jobs: int) -> list[tuple[dict, dict]]:
     """Runs the scenarios side by side; results in the order of the scenarios."""
     begin = time.monotonic()
     with ProcessPoolExecutor(jobs, initializer=keep, initargs=(_fmus,)) as pool:
-        futures = {pool.submit(work, scenario, directory): scenario for scenario in chosen_scenarios}
+        futures = {pool.submit(work, scenario): scenario for scenario in chosen_scenarios}
         for done, future in enumerate(as_completed(futures), start=1):
             mark = "gates hold" if future.result()[0]["passed"] else "GATES FAIL"
             elapsed = time.monotonic() - begin
             scenario = futures[future]
-            print(f"[{elapsed:6.1f} s] {done}/{len(futures)} {scenario.title} ({scenario.group}): {mark}", file=sys.stderr)
+            print(
+                f"[{elapsed:6.1f} s] {done}/{len(futures)} {scenario.title} ({scenario.group}): {mark}", file=sys.stderr
+            )
         return [future.result() for future in futures]
 
 
@@ -85,7 +89,7 @@ def main() -> int:
     options = arguments()
     options.out.mkdir(parents=True, exist_ok=True)
     keep(unpack(options.fmus, options.out / "unpacked"))
-    results = run_all(chosen(options.quick, options.seed), options.out, options.jobs)
+    results = run_all(chosen(options.quick, options.seed), options.jobs)
     runs = [figures for figures, _ in results]
     print("\n".join(table.block(run) for run in runs))
     document = {"seed": options.seed, "passed": all(run["passed"] for run in runs), "runs": runs}

@@ -8,7 +8,7 @@ Terms stand on the left-hand side, the excitation on the right (DESIGN section 2
 Terms carry their FMU names: `qdd`, `qd`, `q`, `q_3`, `q_2_qd`, `const`.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 Coefficients = dict[str, float]
@@ -52,11 +52,24 @@ def factors(term: str) -> list[tuple[str, int]]:
     return result
 
 
+def in_order(terms: Iterable[str]) -> list[str]:
+    """The terms as laws are written: inertia, then damping, then stiffness, the constant last; low powers first."""
+
+    def rank(term: str) -> tuple:
+        powers = dict(factors(term))
+        degree = sum(powers.values())
+        return ("qdd" not in powers, degree == 0, "qd" not in powers, degree, -powers.get("q", 0))
+
+    return sorted(terms, key=rank)
+
+
 _SYMBOLS = {"qdd": "q̈", "qd": "q̇"}
 _SUPERSCRIPTS = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def symbol(term: str) -> str:
     """The term as it is written in a law, `q² q̇`; `1` for the constant."""
-    written = [_SYMBOLS.get(base, base) + (str(n).translate(_SUPERSCRIPTS) if n > 1 else "") for base, n in factors(term)]
+    written = [
+        _SYMBOLS.get(base, base) + (str(n).translate(_SUPERSCRIPTS) if n > 1 else "") for base, n in factors(term)
+    ]
     return " ".join(written) or "1"

@@ -1,7 +1,6 @@
 """One scenario: set up the FMUs, step them, and take the figures."""
 
 from dataclasses import asdict, dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -14,7 +13,6 @@ from .stepping import Record, Track, step_together
 METHODS = {"default": "ours", "publication": "published"}
 UNKNOWN_STD = 1e29
 """The FMU says std = 1e30 while a coefficient is unknown."""
-MAX_STAGES = 16
 
 
 @dataclass
@@ -52,7 +50,7 @@ def truth(scenario: Scenario, terms: list[str]) -> np.ndarray:
     return np.array([[law.get(term, 0.0) for term in terms] for law in laws])
 
 
-def perform(scenario: Scenario, directory: Path, fmus: dict[str, Fmu]) -> Run:
+def perform(scenario: Scenario, fmus: dict[str, Fmu]) -> Run:
     """Steps the scenario's plant, our identifier and the published method together."""
     plant = Slave(fmus[scenario.law.fmu], "plant", plant_parameters(scenario))
     identifier = fmus["SwitchedIdentifier.fmu"]

@@ -18,7 +18,7 @@ MAX_E_WITHOUT_NOISE = 1e-6
 
 @dataclass(frozen=True)
 class Stage:
-    """One law with one excitation, from `start` (s) on; `P` and `omega` (rad/s) of the sine stand among the parameters."""
+    """One law with one excitation, from `start` (s) on; the sine's `P` and `omega` (rad/s) are parameters too."""
 
     start: float
     parameters: dict[str, float]
@@ -121,7 +121,16 @@ def _four(group: str, prefix: str, schedules: list[tuple[tuple[Stage, ...], floa
     scenarios = []
     for index, ((name, title, law, kind, intensity, delay), (stages, end)) in enumerate(zip(kinds, schedules)):
         base = Scenario(
-            f"{prefix}{name}", title, group, law, kind, stages, end, intensity, seed=seed + index, floors=Floors(None, delay)
+            f"{prefix}{name}",
+            title,
+            group,
+            law,
+            kind,
+            stages,
+            end,
+            intensity,
+            seed=seed + index,
+            floors=Floors(None, delay),
         )
         scenarios += _with_and_without_noise(base)
     return scenarios
@@ -144,12 +153,43 @@ def publication_cases() -> list[Scenario]:
     van_der_pol = _stages(_VAN_DER_POL_NAMES, _VAN_DER_POL_SINE[:1], [0.0])
     group = "publication's noise cases"
     return [
-        Scenario("duffing-0.1", "Duffing, noise 0.1, 12 s", group, DUFFING, "sine", duffing, 12.0, 0.0, 0.1, 11, Floors(2.58e-4)),
-        Scenario("vanderpol-0.05", "van der Pol, noise 0.05, 24 s", group, VAN_DER_POL, "sine", van_der_pol, 24.0, 0.0, 0.05, 12, Floors(1e-2)),
+        Scenario(
+            "duffing-0.1",
+            "Duffing, noise 0.1, 12 s",
+            group,
+            DUFFING,
+            "sine",
+            duffing,
+            12.0,
+            0.0,
+            0.1,
+            11,
+            Floors(2.58e-4),
+        ),
+        Scenario(
+            "vanderpol-0.05",
+            "van der Pol, noise 0.05, 24 s",
+            group,
+            VAN_DER_POL,
+            "sine",
+            van_der_pol,
+            24.0,
+            0.0,
+            0.05,
+            12,
+            Floors(1e-2),
+        ),
     ]
 
 
-_DUFFING_RANGES = {"m": (0.7, 1.4), "c": (0.15, 0.7), "k1": (3.0, 6.0), "k3": (1.0, 4.0), "P": (1.5, 2.8), "omega": (1.1, 2.1)}
+_DUFFING_RANGES = {
+    "m": (0.7, 1.4),
+    "c": (0.15, 0.7),
+    "k1": (3.0, 6.0),
+    "k3": (1.0, 4.0),
+    "P": (1.5, 2.8),
+    "omega": (1.1, 2.1),
+}
 _VAN_DER_POL_RANGES = {"L": (0.8, 1.25), "alpha": (0.3, 1.2), "C": (0.8, 1.25), "P": (1.0, 1.5), "omega": (0.8, 1.4)}
 _CYCLE, _FOCUS = (0.8, 1.2), (-0.7, -0.3)
 _LEAST_CHANGE = 0.1

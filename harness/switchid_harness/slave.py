@@ -24,7 +24,7 @@ class Fmu:
         shutil.rmtree(directory, ignore_errors=True)
         extract(str(path), unzipdir=str(directory))
         self.name = Path(path).name
-        self.directory = directory
+        self.directory = directory.resolve()
         self.description = read_model_description(str(directory), validate=False)
         self.variables = {variable.name: variable for variable in self.description.modelVariables}
 

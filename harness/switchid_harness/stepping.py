@@ -77,4 +77,6 @@ def step_together(plant, identifiers: dict[str, object], terms: list[str], end: 
         for tap in taps.values():
             tap.take(index, time, observed[index])
         plant.step(time, STEP)
-    return Record(sampled, np.arange(1, samples + 1) / RATE, observed, {name: tap.track() for name, tap in taps.items()})
+    return Record(
+        sampled, np.arange(1, samples + 1) / RATE, observed, {name: tap.track() for name, tap in taps.items()}
+    )

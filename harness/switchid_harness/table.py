@@ -1,6 +1,6 @@
 """The table on the terminal: one block per run, one row per stage."""
 
-from .laws import symbol
+from .laws import in_order, symbol
 
 _HEAD = ["stage", "from", "e", "detected", "tracked", "e", "detected", "tracked", "gate"]
 _WIDTHS = [5, 8, 9, 9, 9, 9, 9, 9, 5]
@@ -25,11 +25,22 @@ def coefficient(value: float, std: float | None, truth: float) -> str:
 def coefficients(run: dict, method: str, index: int) -> list[tuple[str, str]]:
     """Symbol and text of the coefficients of a stage that are not 0 or should not be."""
     stage, laws = run["methods"][method]["stages"][index], run["stages"][index]["coefficients"]
-    shown = [term for term in run["terms"] if stage["coefficients"][term] != 0.0 or term in laws]
+    shown = [term for term in in_order(run["terms"]) if stage["coefficients"][term] != 0.0 or term in laws]
     return [
         (symbol(term), coefficient(stage["coefficients"][term], stage["std"].get(term), laws.get(term, 0.0)))
         for term in shown
     ]
+
+
+def alarms(figures: dict) -> str:
+    """Missed switches and false alarms of one method, in words."""
+    missed = count(figures["missed_switches"], "missed switch", "es")
+    return f"{missed}, {count(len(figures['false_alarms']), 'false alarm', 's')}"
+
+
+def count(number: int, noun: str, plural: str) -> str:
+    """`1 run`, `2 runs`."""
+    return f"{number} {noun}{'' if number == 1 else plural}"
 
 
 def verdict(run: dict, number: int | None) -> str:
@@ -57,8 +68,7 @@ def _stage_lines(run: dict, index: int) -> list[str]:
 def _alarm_line(run: dict) -> str:
     parts = []
     for method, name in (("default", "ours"), ("publication", "published")):
-        figures = run["methods"][method]
-        parts.append(f"{name}: {figures['missed_switches']} missed, {len(figures['false_alarms'])} false alarms")
+        parts.append(f"{name}: {alarms(run['methods'][method])}")
     return f"  {'; '.join(parts)}; gate {verdict(run, None)}"
 
 

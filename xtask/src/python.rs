@@ -22,11 +22,11 @@ const HAS_ENSUREPIP: &str = "import ensurepip";
 /// # Errors
 /// [`Error::Environment`], [`Error::Packages`], [`Error::File`]: each says what would mend it.
 pub fn environment() -> Result<PathBuf, Error> {
-    make(&root().join("target/python"), &root().join("harness/requirements.txt"))
+    let program = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
+    make(&Host::find(program)?, &root().join("target/python"), &root().join("harness/requirements.txt"))
 }
 
-fn make(directory: &Path, requirements: &Path) -> Result<PathBuf, Error> {
-    let host = Host::find()?;
+fn make(host: &Host, directory: &Path, requirements: &Path) -> Result<PathBuf, Error> {
     let interpreter = directory.join("bin/python");
     let stamp = directory.join("made-from");
     let wanted = format!("{} {}\n{}", host.program, host.version, read(requirements)?);
@@ -47,8 +47,7 @@ struct Host {
 }
 
 impl Host {
-    fn find() -> Result<Host, Error> {
-        let program = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
+    fn find(program: String) -> Result<Host, Error> {
         let (recent, version) = probe(Command::new(&program).args(["-c", IS_RECENT]), NO_PYTHON)?;
         let host = Host { program, version };
         if recent { Ok(host) } else { Err(host.error("Python 3.10 or later is needed".into())) }
@@ -108,4 +107,60 @@ fn remove(directory: &Path) -> Result<(), Error> {
         path: directory.into(),
         source,
     })
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::PermissionsExt;
+
+    /// A directory of the test's own, with a shell script in it that stands in for Python.
+    fn stand_in(name: &str, script: &str) -> (PathBuf, String) {
+        let directory = std::env::temp_dir().join(format!("switchid-xtask-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(directory.join("environment/bin")).unwrap();
+        let program = directory.join("python");
+        std::fs::write(&program, format!("#!/bin/sh\n{script}\n")).unwrap();
+        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+        std::fs::write(directory.join("requirements.txt"), "fmpy==0.3.32\n").unwrap();
+        (directory, program.display().to_string())
+    }
+
+    const NO_VENV: &str = r#"case "$*" in *venv*) echo "No module named venv"; exit 1;; *) echo 3.12.1;; esac"#;
+
+    #[test]
+    fn a_missing_interpreter_is_named_with_what_to_install() {
+        let text = Host::find("/nowhere/python3".into()).err().unwrap().to_string();
+        assert!(text.contains("/nowhere/python3") && text.contains("apt-get install python3"), "{text}");
+    }
+
+    #[test]
+    fn an_old_interpreter_is_refused_with_its_version() {
+        let (directory, program) = stand_in("old", "echo 3.8.19; exit 1");
+        let text = Host::find(program).err().unwrap().to_string();
+        assert!(text.contains("3.8.19") && text.contains("3.10"), "{text}");
+        std::fs::remove_dir_all(directory).unwrap();
+    }
+
+    #[test]
+    fn a_python_without_venv_says_which_package_to_install() {
+        let (directory, program) = stand_in("no-venv", NO_VENV);
+        let host = Host::find(program).unwrap();
+        let text =
+            make(&host, &directory.join("environment"), &directory.join("requirements.txt")).unwrap_err().to_string();
+        assert!(text.contains("No module named venv") && text.contains("python3-venv"), "{text}");
+        std::fs::remove_dir_all(directory).unwrap();
+    }
+
+    #[test]
+    fn an_environment_is_kept_until_its_requirements_change() {
+        let (directory, program) = stand_in("kept", NO_VENV);
+        let (environment, requirements) = (directory.join("environment"), directory.join("requirements.txt"));
+        let host = Host::find(program.clone()).unwrap();
+        std::fs::write(environment.join("bin/python"), "").unwrap();
+        std::fs::write(environment.join("made-from"), format!("{program} 3.12.1\nfmpy==0.3.32\n")).unwrap();
+        assert_eq!(make(&host, &environment, &requirements).unwrap(), environment.join("bin/python"));
+        std::fs::write(&requirements, "fmpy==0.3.33\n").unwrap();
+        assert!(make(&host, &environment, &requirements).is_err());
+        std::fs::remove_dir_all(directory).unwrap();
+    }
 }

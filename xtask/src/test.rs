@@ -22,7 +22,7 @@ pub fn test() -> Result<(), Error> {
     steps.check("clippy", || cargo_run(&clippy(&["--workspace", "--exclude", CHECK, "--all-targets"])));
     steps.check("clippy, heart alone", || cargo_run(&clippy(&["--package", "switchid", "--no-default-features"])));
     steps.check("documentation", documentation);
-    steps.check("Rust tests", || cargo_run(&["test", "--release", "--quiet"]));
+    steps.check("Rust tests", || cargo_run(&["test", "--release", "--quiet", "--no-fail-fast"]));
     steps.check("FMUs", fmu::build);
     steps.check("FMUs through the fmi crate", fmi_crate);
     steps.check("README's commands", readme::commands);

@@ -1,56 +1,58 @@
-"""Laws typeset as MathML."""
+"""Laws and figures typeset for the page, in plain HTML: any font with combining dots shows them well."""
 
 import math
 
-from ..laws import factors
+from ..laws import factors, in_order
 
-_DOTS = {"qdd": "¨", "qd": "˙"}
+_BASES = {"qdd": "q̈", "qd": "q̇"}
 
 
 def digits(value: float, std: float | None) -> str:
-    """`value` ≥ 0 with as many digits as its std supports, three significant ones at least."""
+    """`value` ≥ 0 with as many digits as its std supports, three significant ones at least, six at most."""
+    if value == 0.0:
+        return "0"
     wanted = 4
     if std and value > 0.0:
         wanted = min(max(math.ceil(math.log10(value / std)) + 1, 3), 6)
-    if value == 0.0:
-        return "0"
     exponent = math.floor(math.log10(value))
     if not -4 <= exponent < 6:
-        return f"{value:.2e}"
+        return power(value)
     return f"{value:.{max(wanted - 1 - exponent, 0)}f}"
 
 
-def _number(text: str) -> str:
-    if "e" not in text:
-        return f"<mn>{text}</mn>"
-    mantissa, exponent = text.split("e")
-    return f"<mn>{mantissa}</mn><mo>·</mo><msup><mn>10</mn><mn>{int(exponent)}</mn></msup>".replace("<mn>-", "<mn>−")
+def power(value: float | None, decimals: int = 1) -> str:
+    """`1.0 · 10⁻⁶` for figures that span decades; `–` where there is none."""
+    if value is None:
+        return "–"
+    if value == 0.0:
+        return "0"
+    if 0.01 <= abs(value) < 1000.0:
+        return f"{value:.{decimals + 1}g}".replace("-", "−")
+    mantissa, exponent = f"{value:.{decimals}e}".split("e")
+    return f"{mantissa} · 10<sup>{int(exponent)}</sup>".replace("-", "−")
 
 
 def _factor(base: str, exponent: int) -> str:
-    dots = _DOTS.get(base)
-    body = f'<mover accent="true"><mi>q</mi><mo>{dots}</mo></mover>' if dots else f"<mi>{base}</mi>"
-    return body if exponent == 1 else f"<msup>{body}<mn>{exponent}</mn></msup>"
-
-
-def _term(term: str) -> str:
-    return '<mspace width="0.12em"/>'.join(_factor(base, exponent) for base, exponent in factors(term))
+    raised = f"<sup>{exponent}</sup>" if exponent > 1 else ""
+    return f"<i>{_BASES.get(base, base)}</i>{raised}"
 
 
 def term_markup(term: str) -> str:
     """The term alone; 1 for the constant."""
-    return f"<math>{_term(term) or '<mn>1</mn>'}</math>"
+    return "\u200a".join(_factor(base, exponent) for base, exponent in factors(term)) or "1"
 
 
 def equation(coefficients: dict[str, float], std: dict[str, float]) -> str:
-    """`1.000 q̈ + 0.300 q̇ + … = F`; terms with the coefficient 0 are left out."""
+    """`1.000 q̈ + 0.300 q̇ + … = F`, inertia first; terms with the coefficient 0 are left out; `no law` without any."""
+    if not any(coefficients.values()):
+        return "<i>no law</i>"
     parts = []
-    for term, value in coefficients.items():
+    for term in in_order(coefficients):
+        value = coefficients[term]
         if value == 0.0:
             continue
-        sign = "−" if value < 0.0 else ("+" if parts else "")
-        form = "" if parts or not sign else ' form="prefix"'
-        operator = f"<mo{form}>{sign}</mo>" if sign else ""
-        parts.append(f'<mrow>{operator}{_number(digits(abs(value), std.get(term)))}<mspace width="0.17em"/>{_term(term)}</mrow>')
-    left = "".join(parts) or "<mn>0</mn>"
-    return f"<math>{left}<mrow><mo>=</mo><mi>F</mi></mrow></math>"
+        sign = "−" if value < 0.0 else "+"
+        lead = f"{sign} " if parts else sign.replace("+", "")
+        symbol = "" if term == "const" else f"\u2009{term_markup(term)}"
+        parts.append(f"<span>{lead}{digits(abs(value), std.get(term))}{symbol}</span>")
+    return " ".join([*parts, "<span>= <i>F</i></span>"])

@@ -4,7 +4,8 @@ from collections.abc import Iterable
 from html import escape
 
 from .. import table
-from .equations import digits, equation, term_markup
+from ..laws import in_order
+from .equations import digits, equation, power, term_markup
 
 _METHODS = (("default", "ours"), ("publication", "published"))
 
@@ -25,7 +26,7 @@ def _method_cells(run: dict, method: str) -> str:
     figures = run["methods"][method]
     stages = figures["stages"]
     cells = [
-        table.scientific(_worst(stage["e"] for stage in stages)),
+        power(_worst(stage["e"] for stage in stages)),
         table.seconds(_worst(stage["detection_delay"] for stage in stages[1:])),
         table.seconds(_worst(stage["tracking_delay"] for stage in stages[1:])),
         f"{figures['missed_switches']} / {len(figures['false_alarms'])}",
@@ -37,8 +38,9 @@ def overview_row(run: dict) -> str:
     """One run in one row: worst figures of both methods."""
     methods = "".join(_method_cells(run, method) for method, _ in _METHODS)
     outcome = "ok" if run["passed"] else "FAIL"
+    name = f"{escape(run['title'])}<small>{escape(run['set'])}</small>"
     return (
-        f'<tr data-run="{escape(run["id"])}" tabindex="0"><th scope="row">{escape(run["title"])}<small>{escape(run["set"])}</small></th>'
+        f'<tr data-run="{escape(run["id"])}" tabindex="0"><th scope="row">{name}</th>'
         f"{methods}<td>{_pill(outcome)}</td></tr>"
     )
 
@@ -60,33 +62,27 @@ def _drive(run: dict, parameters: dict[str, float]) -> str:
 
 def _stage_card(run: dict, index: int) -> str:
     stage = run["stages"][index]
-    rows = [("truth", "truth", equation(_in_order(run, stage["coefficients"]), {}), "")]
+    rows = [("truth", "truth", equation(stage["coefficients"], {}), "")]
     for method, name in _METHODS:
         found = run["methods"][method]["stages"][index]
-        error = f"e = {table.scientific(found['e'])}"
+        error = f"e = {power(found['e'])}"
         rows.append((method, name, equation(found["coefficients"], found["std"]), error))
     lines = "".join(
         f'<div class="law {kind}"><span>{name}</span><div>{markup}</div><em>{error}</em></div>'
         for kind, name, markup, error in rows
     )
-    return (
-        f'<article class="card stage-{index % 6}"><h4>Stage {index + 1}'
-        f"<small>{stage['start']:g} – {stage['end']:g} s · {escape(_drive(run, stage['parameters']))}</small></h4>{lines}</article>"
-    )
-
-
-def _in_order(run: dict, coefficients: dict[str, float]) -> dict[str, float]:
-    return {term: coefficients[term] for term in run["terms"] if term in coefficients}
+    when = f"{stage['start']:g} – {stage['end']:g} s · {escape(_drive(run, stage['parameters']))}"
+    return f'<article class="card stage-{index % 6}"><h4>Stage {index + 1}<small>{when}</small></h4>{lines}</article>'
 
 
 def _coefficient_cell(run: dict, method: str, index: int) -> str:
     found, truth = run["methods"][method]["stages"][index], run["stages"][index]["coefficients"]
     lines = []
-    for term in run["terms"]:
+    for term in in_order(run["terms"]):
         value, std = found["coefficients"][term], found["std"].get(term)
         if value == 0.0 and term not in truth:
             continue
-        spread = "unknown" if std is None else f"± {std:.1e}"
+        spread = "unknown" if std is None else f"± {power(std)}"
         sign = "−" if value < 0.0 else ""
         lines.append(
             f"<tr><td>{term_markup(term)}</td><td>{sign}{digits(abs(value), std)}</td><td>{spread}</td>"
@@ -101,20 +97,26 @@ def _stage_row(run: dict, index: int) -> str:
         found = run["methods"][method]["stages"][index]
         if method == "default":
             cells.append(f"<td>{_coefficient_cell(run, method, index)}</td>")
-        texts = [table.scientific(found["e"])]
+        texts = [power(found["e"])]
         texts += [table.seconds(found[key]) for key in ("detection_delay", "tracking_delay", "identified")]
         cells += [f'<td class="{method}">{text}</td>' for text in texts]
     return f"<tr>{''.join(cells)}<td>{_pill(table.verdict(run, index + 1))}</td></tr>"
 
 
+_COLUMNS = (
+    "<th>e</th><th>detected<small>after</small></th><th>tracked<small>after</small></th>"
+    "<th>vouched<small>at</small></th>"
+)
+_HEAD = (
+    '<thead><tr><th rowspan="2">stage</th><th rowspan="2" class="left">coefficient ± std, truth</th>'
+    '<th colspan="4" class="default">ours</th><th colspan="4" class="publication">published method</th>'
+    f'<th rowspan="2">gate</th></tr><tr>{_COLUMNS}{_COLUMNS}</tr></thead>'
+)
+
+
 def _stage_table(run: dict) -> str:
-    columns = "<th>e</th><th>detected<small>after</small></th><th>tracked<small>after</small></th><th>vouched<small>at</small></th>"
-    head = (
-        '<thead><tr><th rowspan="2">stage</th><th rowspan="2">coefficient ± std, truth</th><th colspan="4" class="default">ours</th>'
-        f'<th colspan="4" class="publication">published method</th><th rowspan="2">gate</th></tr><tr>{columns}{columns}</tr></thead>'
-    )
     rows = "".join(_stage_row(run, index) for index in range(len(run["stages"])))
-    return f'<table class="wide">{head}<tbody>{rows}</tbody></table><p class="note">{_alarms(run)}</p>{_gates(run)}'
+    return f'<table class="wide">{_HEAD}<tbody>{rows}</tbody></table><p class="note">{_alarms(run)}</p>{_gates(run)}'
 
 
 def _alarms(run: dict) -> str:
@@ -124,7 +126,7 @@ def _alarms(run: dict) -> str:
         times = ", ".join(f"{time:.2f} s" for time in figures["false_alarms"][:8])
         more = " …" if len(figures["false_alarms"]) > 8 else ""
         at = f" (at {times}{more})" if times else ""
-        parts.append(f"{name}: {figures['missed_switches']} missed switches, {len(figures['false_alarms'])} false alarms{at}")
+        parts.append(f"{name}: {table.alarms(figures)}{at}")
     return escape("; ".join(parts)) + "."
 
 
@@ -135,7 +137,6 @@ def _gates(run: dict) -> str:
         f"<td>{_pill('ok' if gate['passed'] else 'FAIL')}</td></tr>"
         for gate in run["gates"]
     )
-    return (
-        f'<details class="gates"><summary>{len(run["gates"])} gates of this run</summary><table><thead><tr><th>gate</th><th>figure</th>'
-        f"<th>floor</th><th></th></tr></thead><tbody>{rows}</tbody></table></details>"
-    )
+    head = "<thead><tr><th>gate</th><th>figure</th><th>floor</th><th></th></tr></thead>"
+    title = f"{len(run['gates'])} gates of this run"
+    return f'<details class="gates"><summary>{title}</summary><table>{head}<tbody>{rows}</tbody></table></details>'

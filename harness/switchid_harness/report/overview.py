@@ -2,11 +2,7 @@
 
 from html import escape
 
-from ..table import failures
-
-
-def _plural(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+from ..table import count, failures
 
 
 def summary(seed: int, runs: list[dict]) -> str:
@@ -17,7 +13,7 @@ def summary(seed: int, runs: list[dict]) -> str:
     switches = sum(len(run["stages"]) - 1 for run in runs)
     seconds = sum(run["end"] for run in runs)
     facts = [
-        f"{_plural(len(runs), 'run')}, {switches} switches, {seconds:.0f} s of record at 1 kHz",
+        f"{count(len(runs), 'run', 's')}, {count(switches, 'switch', 'es')}, {seconds:.0f} s of record at 1 kHz",
         f"one default configuration; drawn parameters from seed {seed}",
     ]
     items = "".join(f"<li>{escape(line)}</li>" for line in failed)

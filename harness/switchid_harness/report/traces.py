@@ -10,6 +10,7 @@ import zlib
 
 import numpy as np
 
+from ..laws import in_order
 from ..run import UNKNOWN_STD, Run
 from ..stepping import Track
 
@@ -47,13 +48,16 @@ def _shown_terms(run: Run) -> list[str]:
     used = {term for stage in run.figures["stages"] for term in stage["coefficients"]}
     for track in run.record.tracks.values():
         used |= {term for i, term in enumerate(track.terms) if np.any(track.coefficients[:, i] != 0.0)}
-    return [term for term in run.figures["terms"] if term in used]
+    return in_order(used)
 
 
 def _method_traces(track: Track, error: np.ndarray, terms: list[str], method: str, kept: np.ndarray) -> dict:
     traces = {f"{method}.e": error[kept]}
-    for name in ("deviation", "threshold", "prediction.q", "prediction.qd"):
+    for name in ("deviation", "threshold"):
         traces[f"{method}.{name}"] = track.outputs[name][kept]
+    has_law = np.any(track.coefficients[kept] != 0.0, axis=1)
+    for name in ("prediction.q", "prediction.qd"):
+        traces[f"{method}.{name}"] = np.where(has_law, track.outputs[name][kept], np.nan)
     for term in terms:
         index = track.terms.index(term)
         traces[f"{method}.coef.{term}"] = track.coefficients[kept, index]

@@ -1,0 +1,27 @@
+"""The FMUs under test: `target/fmu` of this workspace, or the directory that SWITCHID_FMUS names."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from switchid_harness.slave import Fmu
+
+ROOT = Path(__file__).resolve().parents[2]
+DIRECTORY = Path(os.environ.get("SWITCHID_FMUS", ROOT / "target/fmu"))
+FILES = ["SwitchedIdentifier.fmu", "Duffing.fmu", "VanDerPol.fmu"]
+
+
+@pytest.fixture(scope="session")
+def fmu_directory() -> Path:
+    """Directory that holds the three FMUs."""
+    missing = [name for name in FILES if not (DIRECTORY / name).is_file()]
+    assert not missing, f"{missing} not in {DIRECTORY}: run `cargo xtask fmu`"
+    return DIRECTORY
+
+
+@pytest.fixture(scope="session")
+def fmus(fmu_directory: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Fmu]:
+    """The three FMUs, unpacked."""
+    directory = tmp_path_factory.mktemp("unpacked")
+    return {name: Fmu(fmu_directory / name, directory / Path(name).stem) for name in FILES}
