@@ -6,7 +6,6 @@
 mod deviation;
 mod identification;
 mod identifier;
-mod identifier;
 mod outputs;
 mod parameters;
 mod problem;
