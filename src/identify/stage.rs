@@ -27,6 +27,12 @@ const SETTLED: f64 = 1.0;
 /// Largest gain in log-likelihood that another noise level may still promise, nats.
 const GAIN: f64 = 3.0;
 
+/// A law is confirmed when the record has grown by this factor …
+const TRIAL: f64 = 1.25;
+
+/// … and the coefficients have moved by less than this, as e of eq. (8).
+const STOOD: f64 = 0.05 * 0.05;
+
 /// Smallest sensor noise std, relative to the largest value measured: rounding and the integration's own error.
 const NOISE_FLOOR: f64 = 1e-7;
 
@@ -62,6 +68,9 @@ pub struct Stage {
     pub passes: u32,
     /// Passes in a row that changed little.
     calm: u32,
+    /// Whether the law has stood while the record grew by [`TRIAL`].
+    confirmed: bool,
+    trial: Trial,
     /// What is known beside the record, about `coefficients`.
     prior: Information,
     pass: Pass,
@@ -108,6 +117,13 @@ impl InertiaPrior {
     }
 }
 
+/// All coefficients as they were when the record had some length.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Trial {
+    length: u64,
+    all: Vec<f64>,
+}
+
 /// Information from the first half of a long record, to be folded into the prior.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Checkpoint {
@@ -132,6 +148,8 @@ impl Stage {
             likelihood: f64::NEG_INFINITY,
             passes: 0,
             calm: 0,
+            confirmed: false,
+            trial: Trial { length: 0, all: vec![0.0; problem.terms.len()] },
             prior: Information::none(n),
             pass: Pass::new(n),
             next: 0,
@@ -163,6 +181,7 @@ impl Stage {
         self.known_noise = noise.sensor;
         self.known_noise_weight = prior.noise_weight;
         (self.passes, self.calm) = (0, 0);
+        (self.confirmed, self.trial.length) = (false, 0);
         self.decrement = f64::INFINITY;
         self.closed_at = start;
         self.prior.clear();
@@ -219,6 +238,11 @@ impl Stage {
     /// Whether the last passes agree: the estimate is at the likelihood's maximum, to within a fraction of its std.
     pub fn settled(&self) -> bool {
         self.calm >= 2
+    }
+
+    /// Whether the law has stood while its record grew by [`TRIAL`].
+    pub fn confirmed(&self) -> bool {
+        self.confirmed
     }
 
     /// Whether the last pass changed little, by its own standard.
@@ -283,7 +307,22 @@ impl Stage {
         self.decrement = self.information.quadratic(&self.previous) / active as f64;
         self.follow_noise(problem, settings, &track);
         self.calm = if self.is_calm() { self.calm + 1 } else { 0 };
+        self.confirm();
         self.fold(window);
+    }
+
+    /// Lets the law stand trial: statistics that a wrong structure or a wrong minimum makes up do not survive more data.
+    fn confirm(&mut self) {
+        let length = self.length(self.next);
+        if self.confirmed || !self.settled() || (length as f64) < TRIAL * self.trial.length as f64 {
+            return;
+        }
+        let pairs = self.all.iter().zip(&self.trial.all);
+        let change: f64 = pairs.map(|(new, old)| (new - old).powi(2)).sum();
+        let squares: f64 = self.all.iter().map(|value| value * value).sum();
+        self.confirmed = self.trial.length > 0 && change < STOOD * squares;
+        self.trial.length = length;
+        self.trial.all.copy_from_slice(&self.all);
     }
 
     /// The pass has left what can be integrated: it is repeated from the last coefficients with the filter closer to the data.

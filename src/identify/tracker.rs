@@ -331,12 +331,21 @@ impl Tracker {
                 self.stage.all
             );
         }
-        let usable = self.stage.is_calm();
-        let trusted = self.stage.settled() && self.stage.stated_error() < TRUSTED && self.stage.full_error() < TRUSTED;
-        if !trusted && !(usable && self.live.running) {
-            self.stage.begin_pass(problem, &self.window);
-            return;
+        let worth_showing = self.stage.settled() && self.stage.stated_error() < TRUSTED;
+        let worth_monitoring = worth_showing && self.stage.full_error() < TRUSTED && self.stage.confirmed();
+        if worth_showing {
+            self.set_spread(problem);
+            self.publish(problem, published, output);
         }
+        if worth_monitoring || (self.live.running && self.stage.is_calm()) {
+            self.monitor_new_law(problem);
+        } else {
+            self.stage.begin_pass(problem, &self.window);
+        }
+    }
+
+    /// From now on switches are weighed against the stage's new estimate.
+    fn monitor_new_law(&mut self, problem: &Problem) {
         if self.live.running {
             for (index, change) in self.change.iter_mut().enumerate() {
                 *change = self.stage.coefficients[index] - self.live.all[problem.free[index]];
@@ -348,9 +357,7 @@ impl Tracker {
         }
         self.live.adopt(problem, &mut self.stage, &self.window);
         self.set_spread(problem);
-        let spread: &[f64] = &self.spread;
-        self.bank.set_spread(spread);
-        self.publish(problem, published, output);
+        self.bank.set_spread(&self.spread);
     }
 
     fn publish(&mut self, problem: &Problem, published: &mut [Coefficient], output: &mut Output) {
@@ -362,7 +369,8 @@ impl Tracker {
         }
         output.noise_q = problem.channels.q.then(|| self.stage.noise.sensor[0].sqrt());
         output.noise_qd = problem.channels.qd.then(|| self.stage.noise.sensor[1].sqrt());
-        if self.stage.settled() && self.stage.stated_error() < VOUCHED && self.stage.full_error() < TRUSTED {
+        let vouched = self.stage.confirmed() && self.stage.full_error() < TRUSTED;
+        if vouched && self.stage.stated_error() < VOUCHED {
             output.valid = true;
             output.identified_time.get_or_insert(self.now());
             if output.status != Status::SwitchSuspected {
