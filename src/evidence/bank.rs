@@ -206,12 +206,19 @@ impl Bank {
         }
     }
 
-    /// The latest start that is within `margin` nats of the best one: a switch after it is not plausible.
+    /// The latest start whose evidence is within `margin` nats of the suspect's.
     pub fn latest_start(&self, suspect: &Suspect, margin: f64) -> u64 {
-        let plausible = |hypothesis: &&Hypothesis| hypothesis.evidence > suspect.evidence - margin;
-        let next = self.hypotheses[..self.count].iter().rposition(|hypothesis| plausible(&hypothesis));
-        let index = next.unwrap_or(suspect.index);
-        self.hypotheses[(index + 1).min(self.count - 1)].start.max(suspect.start)
+        self.hypotheses[self.latest(suspect, margin)].start
+    }
+
+    /// The first start that is too late by `margin` nats: a switch after it is not plausible.
+    pub fn after(&self, suspect: &Suspect, margin: f64) -> u64 {
+        self.hypotheses[(self.latest(suspect, margin) + 1).min(self.count - 1)].start
+    }
+
+    fn latest(&self, suspect: &Suspect, margin: f64) -> usize {
+        let plausible = |hypothesis: &Hypothesis| hypothesis.evidence >= suspect.evidence - margin;
+        self.hypotheses[..self.count].iter().rposition(plausible).unwrap_or(suspect.index)
     }
 
     /// Writes the most plausible change of the coefficients under the suspect into `change`.

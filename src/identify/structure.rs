@@ -3,13 +3,29 @@
 //! At the maximum of the likelihood, dropping a term of coefficient θ_j with variance v_j costs θ_j²/v_j in twice the
 //! log-likelihood. The cheapest term goes while that is below its price, 2 ln N for N scalar measurements; the rest is solved
 //! anew. After a switch the old structure is the likelier one: a term that the old law had is cheaper by [`LOYALTY`], one that it
-//! had not dearer.
+//! had not dearer. Where the information is too near to singular for that, the search starts from the terms of the law as it is, and
+//! adds before it drops.
 
 use crate::evidence::{Information, Solution};
 use serde::{Deserialize, Serialize};
 
 /// What the old law's structure counts for, in twice nats.
 const LOYALTY: f64 = 20.0;
+
+/// Smallest share of its own that a term must have beside the others, for the information to be trusted with all of them.
+const CLEAR: f64 = 1e-9;
+
+/// The terms of the law as it was, once there was one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Present(Vec<bool>);
+
+impl Present {
+    /// Takes the flags; returns whether they are a choice at all.
+    fn clone_from_flags(&mut self, active: &[bool]) -> bool {
+        self.0.copy_from_slice(active);
+        !active.iter().all(|active| *active)
+    }
+}
 
 /// Room for the elimination.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,6 +34,7 @@ pub struct Structure {
     values: Vec<f64>,
     /// What the price of each term adds to 2 ln N.
     surcharge: Vec<f64>,
+    present: Present,
     /// Relative error of eq. (8) that the last solution with all terms states.
     pub full_error: f64,
 }
@@ -29,6 +46,7 @@ impl Structure {
             information: Information::none(n),
             values: vec![0.0; n],
             surcharge: vec![0.0; n],
+            present: Present(vec![true; n]),
             full_error: f64::INFINITY,
         }
     }
@@ -57,18 +75,73 @@ impl Structure {
         solution: &mut Solution,
     ) {
         let price = 2.0 * measurements.max(2.0).ln();
+        let present = self.present.clone_from_flags(active);
         active.fill(true);
-        loop {
-            self.solve(information, coefficients, active, solution);
-            if active.iter().all(|active| *active) {
-                self.full_error = stated(&self.values, solution);
+        self.solve(information, coefficients, active, solution);
+        self.full_error = stated(&self.values, solution);
+        let clear = solution.smallest_pivot() > CLEAR;
+        if !clear && present {
+            active.copy_from_slice(&self.present.0);
+            self.add_missing(information, price, coefficients, active, solution);
+        }
+        self.drop_needless(information, maybe, price, coefficients, active, solution);
+        coefficients.copy_from_slice(&self.values);
+    }
+
+    /// Adds terms one by one while the best of them gains more than its price.
+    fn add_missing(
+        &mut self,
+        information: &Information,
+        price: f64,
+        from: &[f64],
+        active: &mut [bool],
+        solution: &mut Solution,
+    ) {
+        for _ in 0..active.len() {
+            self.solve(information, from, active, solution);
+            let excess = |index: usize| self.gain(index, active, solution) - self.surcharge[index];
+            let candidates = (0..active.len()).filter(|index| !active[*index]);
+            let best = candidates.map(|index| (index, excess(index))).max_by(|a, b| a.1.total_cmp(&b.1));
+            match best {
+                Some((index, excess)) if excess > price => active[index] = true,
+                _ => break,
             }
+        }
+    }
+
+    /// Drops terms one by one while the cheapest of them costs less than its price; leaves the solution of the rest.
+    fn drop_needless(
+        &mut self,
+        information: &Information,
+        maybe: &[bool],
+        price: f64,
+        from: &[f64],
+        active: &mut [bool],
+        solution: &mut Solution,
+    ) {
+        loop {
+            self.solve(information, from, active, solution);
             match self.cheapest(maybe, active, solution) {
                 Some((index, excess)) if excess < price => active[index] = false,
                 _ => break,
             }
         }
-        coefficients.copy_from_slice(&self.values);
+    }
+
+    /// What a term that is not active would add to twice the log-likelihood; 0 where rounding hides what it has of its own.
+    fn gain(&self, index: usize, active: &[bool], solution: &Solution) -> f64 {
+        let n = active.len();
+        let entry = |a: usize, b: usize| self.information.matrix[a.max(b) * n + a.min(b)];
+        let others = || (0..n).filter(|other| active[*other]);
+        let explained: f64 = others().map(|k| entry(index, k) * solution.step[k]).sum();
+        let shared: f64 = others()
+            .map(|row| {
+                let sum: f64 = others().map(|column| solution.covariance[row * n + column] * entry(index, column)).sum();
+                entry(index, row) * sum
+            })
+            .sum();
+        let own = entry(index, index) - shared;
+        if own > CLEAR * entry(index, index) { (self.information.score[index] - explained).powi(2) / own } else { 0.0 }
     }
 
     /// Solves with the terms that are not active at 0.

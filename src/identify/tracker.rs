@@ -271,9 +271,10 @@ impl Tracker {
                 self.live.all
             );
         }
-        let Some(suspect) = self.bank.suspect().or(Some(*suspect)) else { return };
+        let suspect = self.bank.suspect().unwrap_or(*suspect);
         let last = self.window.ready() - 1;
-        let start = (self.bank.latest_start(&suspect, 5.0) + 1).min(last);
+        let instant = self.bank.latest_start(&suspect, (0.1 * suspect.evidence).max(0.5));
+        let start = (self.bank.after(&suspect, (0.3 * suspect.evidence).max(5.0)) + 1).min(last);
         self.bank.change(&suspect, &mut self.change);
         self.set_spread(problem);
         let plausible = self.change.iter().zip(&self.spread).all(|(change, spread)| change.abs() < 2.0 * spread);
@@ -302,7 +303,7 @@ impl Tracker {
         self.deviation.clear();
         self.usual_deviation = 0.0;
         output.switch_count += 1;
-        output.switch_time = self.window.sample(suspect.start).t;
+        output.switch_time = self.window.sample(instant).t;
         output.detection_time = Some(self.now());
         output.identified_time = None;
         output.valid = false;
