@@ -64,6 +64,8 @@ pub struct Stage {
     pub gain: f64,
     /// Log-likelihood per measurement of the last pass.
     pub likelihood: f64,
+    /// Whether the record speaks for process noise: the law does not explain it down to the sensors' noise.
+    pub process_matters: bool,
     /// Passes closed in this stage.
     pub passes: u32,
     /// Passes in a row that changed little.
@@ -146,6 +148,7 @@ impl Stage {
             decrement: f64::INFINITY,
             gain: f64::INFINITY,
             likelihood: f64::NEG_INFINITY,
+            process_matters: false,
             passes: 0,
             calm: 0,
             confirmed: false,
@@ -380,11 +383,15 @@ impl Stage {
         }
         let mean = (track.squares[0] + track.squares[1]) / track.total().max(1.0);
         let likelihoods = self.pass.rivals.map(|rival| rival.log_likelihood());
-        let best = if likelihoods[0] >= likelihoods[1] { 0 } else { 1 };
-        self.gain = likelihoods[best] - track.log_likelihood();
+        let [less, more] = likelihoods.map(|likelihood| likelihood - track.log_likelihood());
+        self.gain = less.max(more);
         self.likelihood = track.log_likelihood() / track.total().max(1.0);
-        let better = self.gain > 0.0;
-        let ratio = if better { RIVALS[best] } else { 1.0 };
+        self.process_matters = less < -GAIN;
+        let ratio = match (less >= more, less > -0.1, more > 0.1) {
+            (true, true, _) => RIVALS[0],
+            (false, _, true) => RIVALS[1],
+            _ => 1.0,
+        };
         let force = settings.noise_excitation / self.all[problem.inertia];
         let floor = force * force * settings.sample_time + f64::MIN_POSITIVE;
         self.noise.process = (self.noise.process * ratio * mean).max(floor);

@@ -167,8 +167,11 @@ impl Structure {
     }
 }
 
-/// tr Cov ÷ Σθ².
+/// tr Cov ÷ Σθ²; infinite where a coefficient is not determined.
 fn stated(values: &[f64], solution: &Solution) -> f64 {
+    if !solution.determined.iter().all(|determined| *determined) {
+        return f64::INFINITY;
+    }
     let squares: f64 = values.iter().map(|value| value * value).sum();
     (0..values.len()).map(|index| solution.variance(index)).sum::<f64>() / squares
 }

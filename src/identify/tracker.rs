@@ -41,6 +41,9 @@ const PRIOR_WIDTH: f64 = 3.0;
 /// Std of the logarithm of an inertia after a switch, or about a first guess.
 const INERTIA_SPREAD: f64 = 0.5;
 
+/// Passes after which a challenger that has not settled gives up.
+const PATIENCE: u32 = 40;
+
 /// A first law is tried when the weak start predicts its force this well.
 const START_ERROR: f64 = 0.3;
 
@@ -65,6 +68,7 @@ pub struct Tracker {
     usual_deviation: f64,
     phase: Phase,
     next_guess: u64,
+    next_noise_challenge: u64,
     spread: Vec<f64>,
     noise_weight: f64,
     all_active: Vec<bool>,
@@ -121,6 +125,7 @@ impl Tracker {
             usual_deviation: 0.0,
             phase: Phase::Gathering,
             next_guess: 0,
+            next_noise_challenge: 0,
             spread: vec![1.0; n],
             noise_weight: 0.0,
             all_active: vec![true; n],
@@ -151,8 +156,9 @@ impl Tracker {
         self.follow(problem, settings, output);
         if !output.valid {
             self.challenge(problem, settings);
-            self.refine_challenger(problem, settings);
         }
+        self.challenge_noise(problem, settings);
+        self.refine_challenger(problem, settings);
         if self.phase == Phase::Refining {
             self.refine(problem, settings, published, output);
         }
@@ -166,7 +172,7 @@ impl Tracker {
     fn challenge(&mut self, problem: &Problem, settings: &Settings) {
         self.start.feed(problem, &self.window, 4);
         let (window, since) = (&self.window, self.challenged_from);
-        let long_enough = self.now() - window.sample(window.oldest()).t >= settings.initial_window;
+        let long_enough = !self.challenging && self.now() - window.sample(window.oldest()).t >= settings.initial_window;
         if !long_enough || window.end() < self.next_guess || since < window.oldest() {
             return;
         }
@@ -206,6 +212,30 @@ impl Tracker {
         self.phase = Phase::Refining;
     }
 
+    /// A fit with much process noise may be a maximum of the likelihood without being the largest: the other kind, all error in
+    /// the sensors, is tried from the same coefficients each time the record has doubled.
+    fn challenge_noise(&mut self, problem: &Problem, settings: &Settings) {
+        let end = self.window.ready();
+        let due = end >= self.next_noise_challenge && self.phase == Phase::Refining && !self.challenging;
+        if !due || !self.stage.process_matters || !self.stage.settled() {
+            return;
+        }
+        self.next_noise_challenge = end + self.stage.length(end);
+        let sensor = first_noise(problem, settings, &self.window);
+        let noise = Noise { sensor, process: 1e-6 * self.stage.noise.process };
+        self.set_spread(problem);
+        self.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
+        let prior = Prior {
+            centre: &self.stage.coefficients,
+            std: &self.spread,
+            log_inertia: INERTIA_SPREAD,
+            structure: None,
+            noise_weight: 0.0,
+        };
+        self.challenger.begin(problem, &self.window, self.stage.start, &self.stage.coefficients, prior, noise);
+        self.challenging = true;
+    }
+
     /// Refines the challenger; it takes the stage's place when it explains the record better.
     fn refine_challenger(&mut self, problem: &Problem, settings: &Settings) {
         if !self.challenging || !self.challenger.refine(problem, settings, &self.window, BUDGET[1]) {
@@ -217,6 +247,8 @@ impl Tracker {
             if self.challenger.likelihood > self.stage.likelihood + 3.0 / measurements {
                 std::mem::swap(&mut self.challenger, &mut self.stage);
             }
+        } else if self.challenger.passes > PATIENCE {
+            self.challenging = false;
         }
         self.challenger.begin_pass(problem, &self.window);
     }
@@ -297,7 +329,8 @@ impl Tracker {
         };
         self.stage.begin(problem, &self.window, start, &self.change, prior, noise);
         self.start.begin(start);
-        (self.challenging, self.challenged_from, self.next_guess) = (false, start, 0);
+        (self.challenging, self.challenged_from) = (false, start);
+        (self.next_guess, self.next_noise_challenge) = (0, 0);
         self.live.running = false;
         self.bank.clear();
         self.deviation.clear();
