@@ -32,8 +32,8 @@ pub struct Track {
     pub count: [f64; 2],
     /// Σ ε²/s by channel.
     pub squares: [f64; 2],
-    /// Σ ln s.
-    pub log_variance: f64,
+    /// Σ ln s by channel.
+    pub log_variance: [f64; 2],
 }
 
 impl Track {
@@ -41,7 +41,7 @@ impl Track {
     fn add(&mut self, channel: Channel, innovation: &Innovation) {
         self.count[channel as usize] += 1.0;
         self.squares[channel as usize] += innovation.residual * innovation.residual / innovation.variance;
-        self.log_variance += innovation.variance.ln();
+        self.log_variance[channel as usize] += innovation.variance.ln();
     }
 
     /// Mean of ε²/s in the channel: by how much its stated variance is too small; 1 where nothing was measured.
@@ -53,7 +53,13 @@ impl Track {
     /// Log-likelihood with each channel's scale at its own maximum, up to a constant.
     pub fn log_likelihood(&self) -> f64 {
         let profile = Channel::ALL.map(|channel| self.count[channel as usize] * self.scale(channel).max(1e-300).ln());
-        -0.5 * (self.log_variance + profile[0] + profile[1])
+        -0.5 * (self.log_variance[0] + self.log_variance[1] + profile[0] + profile[1])
+    }
+
+    /// Geometric mean of s in the channel; 0 where nothing was measured.
+    pub fn variance(&self, channel: Channel) -> f64 {
+        let count = self.count[channel as usize];
+        if count > 0.0 { (self.log_variance[channel as usize] / count).exp() } else { 0.0 }
     }
 
     /// Number of scalar measurements.

@@ -3,6 +3,7 @@
 //! [`Settings`] are checked once at construction; [`Identifier`] is plain data that clones, compares and serialises.
 //! A step does a bounded amount of work, allocates nothing, and cannot fail.
 
+mod blocks;
 mod deviation;
 mod identification;
 mod identifier;

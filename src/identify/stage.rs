@@ -6,6 +6,7 @@
 //! coefficients; the likelihood then takes the process noise down, pass by pass, to where the data want it, and the fit
 //! becomes the maximum likelihood of the trajectory without passing through its wrong minima.
 
+use super::blocks::Blocks;
 use super::problem::Problem;
 use super::scales::Scales;
 use super::settings::Settings;
@@ -32,6 +33,12 @@ const TRIAL: f64 = 1.25;
 
 /// … and the coefficients have moved by less than this, as e of eq. (8).
 const STOOD: f64 = 0.05 * 0.05;
+
+/// Variance of an innovation ÷ that of its sensor from which on the law's own error counts.
+const PROCESS_SHARE: f64 = 2.0;
+
+/// Overdispersion that is no chance: with 16 blocks and 4 coefficients it is 1 ± 0.2 under the right law.
+const LASTING: f64 = 2.0;
 
 /// Smallest sensor noise std, relative to the largest value measured: rounding and the integration's own error.
 const NOISE_FLOOR: f64 = 1e-7;
@@ -66,6 +73,8 @@ pub struct Stage {
     pub likelihood: f64,
     /// Whether the record speaks for process noise: the law does not explain it down to the sensors' noise.
     pub process_matters: bool,
+    /// Factor by which error that lasts makes the covariance larger than stated; 1 where the law explains its record.
+    pub overdispersion: f64,
     /// Passes closed in this stage.
     pub passes: u32,
     /// Passes in a row that changed little.
@@ -84,6 +93,7 @@ pub struct Stage {
     largest: [f64; 2],
     running_scales: Scales,
     inertia_prior: Option<InertiaPrior>,
+    blocks: Blocks,
     known_noise: [f64; 2],
     known_noise_weight: f64,
 }
@@ -149,6 +159,8 @@ impl Stage {
             gain: f64::INFINITY,
             likelihood: f64::NEG_INFINITY,
             process_matters: false,
+            overdispersion: 1.0,
+            blocks: Blocks::new(n),
             passes: 0,
             calm: 0,
             confirmed: false,
@@ -222,6 +234,7 @@ impl Stage {
             let observation = window.observation(self.next);
             self.pass.step(&motion, &problem.free_terms, &self.noise, &observation);
             self.running_scales.add(problem, &self.all, &self.pass, &observation);
+            self.blocks.step(&self.pass.information);
             for (largest, measured) in self.largest.iter_mut().zip(observation.measured) {
                 *largest = largest.max(measured.unwrap_or(0.0).abs());
             }
@@ -253,6 +266,14 @@ impl Stage {
         self.passes >= 2 && self.decrement.abs() < SETTLED && self.gain < GAIN
     }
 
+    /// Std of the free coefficient; infinite where the data do not determine it.
+    pub fn std(&self, free: usize) -> f64 {
+        match self.solution.determined[free] {
+            true => (self.overdispersion * self.solution.variance(free)).sqrt(),
+            false => f64::INFINITY,
+        }
+    }
+
     /// The variance that the estimate states for e of eq. (8), relative: tr Cov ÷ Σθ².
     pub fn stated_error(&self) -> f64 {
         let squares: f64 = self.all.iter().map(|value| value * value).sum();
@@ -260,7 +281,7 @@ impl Stage {
         let trace: f64 = active
             .map(|index| if self.solution.determined[index] { self.solution.variance(index) } else { f64::INFINITY })
             .sum();
-        trace / squares
+        self.overdispersion * trace / squares
     }
 
     /// The same with every "maybe" term in the law: what the estimate would be worth, had it picked the wrong ones.
@@ -368,6 +389,11 @@ impl Stage {
 
     /// Sensor noise follows the innovations, process noise the likelihood.
     fn follow_noise(&mut self, problem: &Problem, settings: &Settings, track: &Track) {
+        self.process_matters = Channel::ALL
+            .iter()
+            .any(|channel| track.variance(*channel) > PROCESS_SHARE * self.noise.sensor[*channel as usize]);
+        let overdispersion = self.blocks.overdispersion(&self.pass.information);
+        self.overdispersion = if overdispersion > LASTING { overdispersion } else { 1.0 };
         let given = [settings.noise_q, settings.noise_qd];
         for channel in Channel::ALL {
             let index = channel as usize;
@@ -386,7 +412,6 @@ impl Stage {
         let [less, more] = likelihoods.map(|likelihood| likelihood - track.log_likelihood());
         self.gain = less.max(more);
         self.likelihood = track.log_likelihood() / track.total().max(1.0);
-        self.process_matters = less < -GAIN;
         let ratio = match (less >= more, less > -0.1, more > 0.1) {
             (true, true, _) => RIVALS[0],
             (false, _, true) => RIVALS[1],
@@ -415,6 +440,7 @@ impl Stage {
         self.pass.begin(first_state(problem, window, self.start, &self.noise));
         self.next = self.start + 1;
         self.running_scales.clear();
+        self.blocks.begin(length);
     }
 }
 

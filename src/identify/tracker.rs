@@ -44,6 +44,9 @@ const INERTIA_SPREAD: f64 = 0.5;
 /// Passes after which a challenger that has not settled gives up.
 const PATIENCE: u32 = 40;
 
+/// Samples for which a suspicion keeps the law in use from being renewed: what comes may belong to another law.
+const SUSPENSE: u64 = 1000;
+
 /// A first law is tried when the weak start predicts its force this well.
 const START_ERROR: f64 = 0.3;
 
@@ -68,6 +71,8 @@ pub struct Tracker {
     usual_deviation: f64,
     phase: Phase,
     next_guess: u64,
+    suspected: u64,
+    renewed: bool,
     next_noise_challenge: u64,
     spread: Vec<f64>,
     noise_weight: f64,
@@ -125,6 +130,8 @@ impl Tracker {
             usual_deviation: 0.0,
             phase: Phase::Gathering,
             next_guess: 0,
+            suspected: 0,
+            renewed: true,
             next_noise_challenge: 0,
             spread: vec![1.0; n],
             noise_weight: 0.0,
@@ -241,6 +248,7 @@ impl Tracker {
         if !self.challenging || !self.challenger.refine(problem, settings, &self.window, BUDGET[1]) {
             return;
         }
+        if std::env::var("DBG").is_ok() { let c = &self.challenger; eprintln!("CHAL {} t {:.3} n {} dec {:.1e} s {:.2e} Q {:.1e} gain {:.1e} L {:.5} vs {:.5} th {:?}", c.passes, self.now(), c.length(self.window.ready()), c.decrement, c.noise.sensor[0].sqrt(), c.noise.process, c.gain, c.likelihood, self.stage.likelihood, c.all); }
         if self.challenger.settled() {
             self.challenging = false;
             let measurements = 2.0 * self.challenger.length(self.window.ready()) as f64;
@@ -277,13 +285,16 @@ impl Tracker {
 
     /// Alarm, suspicion, or neither.
     fn judge(&mut self, problem: &Problem, settings: &Settings, suspect: &Suspect, output: &mut Output) {
-        let level = (settings.false_alarm_interval / settings.sample_time).ln().max(3.0);
+        let level = self.stage.overdispersion * (settings.false_alarm_interval / settings.sample_time).ln().max(3.0);
         let given = settings.deviation_threshold;
         let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
         if suspect.evidence > level || deviates {
             self.switch(problem, suspect, output);
         } else if output.status == Status::Tracking && suspect.evidence > 0.5 * level {
             output.status = Status::SwitchSuspected;
+            if self.renewed {
+                (self.suspected, self.renewed) = (self.window.end(), false);
+            }
         } else if output.status == Status::SwitchSuspected && suspect.evidence <= 0.5 * level {
             output.status = Status::Tracking;
         }
@@ -346,7 +357,8 @@ impl Tracker {
     fn refine(&mut self, problem: &Problem, settings: &Settings, published: &mut [Coefficient], output: &mut Output) {
         let young = !output.valid || self.stage.length(self.window.ready()) < YOUNG;
         let budget = BUDGET[usize::from(young)];
-        if output.status == Status::SwitchSuspected || !self.stage.refine(problem, settings, &self.window, budget) {
+        let suspense = output.status == Status::SwitchSuspected && self.window.end() < self.suspected + SUSPENSE;
+        if suspense || !self.stage.refine(problem, settings, &self.window, budget) {
             return;
         }
         if std::env::var("DBG").is_ok() {
@@ -380,6 +392,7 @@ impl Tracker {
 
     /// From now on switches are weighed against the stage's new estimate.
     fn monitor_new_law(&mut self, problem: &Problem) {
+        self.renewed = true;
         if self.live.running {
             for (index, change) in self.change.iter_mut().enumerate() {
                 *change = self.stage.coefficients[index] - self.live.all[problem.free[index]];
@@ -415,12 +428,11 @@ impl Tracker {
 
     #[doc(hidden)]
     fn publish_free(&self, free: usize, coefficient: &mut Coefficient) {
+        let std = self.stage.std(free);
         if !self.stage.active[free] {
             (coefficient.value, coefficient.std) = (0.0, Some(0.0));
-        } else if self.stage.solution.determined[free] && self.stage.solution.variance(free).sqrt() < self.spread[free]
-        {
-            coefficient.value = self.stage.coefficients[free];
-            coefficient.std = Some(self.stage.solution.variance(free).sqrt());
+        } else if std < self.spread[free] {
+            (coefficient.value, coefficient.std) = (self.stage.coefficients[free], Some(std));
         } else {
             coefficient.std = None;
         }
