@@ -38,7 +38,7 @@ const STOOD: f64 = 0.05 * 0.05;
 const PROCESS_SHARE: f64 = 2.0;
 
 /// Overdispersion that is no chance: with 16 blocks and 4 coefficients it is 1 ± 0.2 under the right law.
-const LASTING: f64 = 2.0;
+const LASTING: f64 = 1.5;
 
 /// Smallest sensor noise std, relative to the largest value measured: rounding and the integration's own error.
 const NOISE_FLOOR: f64 = 1e-7;
@@ -263,7 +263,7 @@ impl Stage {
 
     /// Whether the last pass changed little, by its own standard.
     pub fn is_calm(&self) -> bool {
-        self.passes >= 2 && self.decrement.abs() < SETTLED && self.gain < GAIN
+        self.passes >= 2 && self.decrement.abs() < SETTLED * self.overdispersion && self.gain < GAIN
     }
 
     /// Std of the free coefficient; infinite where the data do not determine it.

@@ -47,6 +47,10 @@ const PATIENCE: u32 = 40;
 /// Samples for which a suspicion keeps the law in use from being renewed: what comes may belong to another law.
 const SUSPENSE: u64 = 1000;
 
+/// A law from this many samples needs twice the evidence: its information is that of a linearisation, whose error falls as the
+/// record grows.
+const DOUBT: f64 = 2000.0;
+
 /// A first law is tried when the weak start predicts its force this well.
 const START_ERROR: f64 = 0.3;
 
@@ -285,7 +289,8 @@ impl Tracker {
 
     /// Alarm, suspicion, or neither.
     fn judge(&mut self, problem: &Problem, settings: &Settings, suspect: &Suspect, output: &mut Output) {
-        let level = self.stage.overdispersion * (settings.false_alarm_interval / settings.sample_time).ln().max(3.0);
+        let doubt = self.stage.overdispersion * (1.0 + DOUBT / self.stage.length(self.window.ready()).max(1) as f64);
+        let level = doubt * (settings.false_alarm_interval / settings.sample_time).ln().max(3.0);
         let given = settings.deviation_threshold;
         let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
         if suspect.evidence > level || deviates {
