@@ -3,12 +3,15 @@
 //! [`Settings`] are checked once at construction; [`Identifier`] is plain data that clones, compares and serialises.
 //! A step does a bounded amount of work, allocates nothing, and cannot fail.
 
+mod capture;
 mod deviation;
+mod equations;
 mod identification;
 mod identifier;
 mod outputs;
 mod parameters;
 mod problem;
+mod publication;
 mod recording;
 mod scales;
 mod settings;
