@@ -22,7 +22,7 @@ const VARIATIONS: [Variation; 4] = [
 ];
 
 /// Samples integrated over in one step, ended by the row that passes it.
-const BUDGET: usize = 4000;
+const BUDGET: usize = 1000;
 
 /// The overdetermined system of a captured record, formed over several steps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
