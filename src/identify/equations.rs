@@ -13,13 +13,12 @@ use std::ops::RangeInclusive;
 /// Each interval is half as long as one of the level above.
 const LEVELS: usize = 3;
 
-/// The variations over every interval: smooth enough at its ends that quadrature does not hide what the data leave open, and wide
-/// to narrow.
+/// The variations over every interval: smooth enough at its ends that quadrature does not hide what the data leave open.
 const VARIATIONS: [Variation; 4] = [
     Variation::Polynomial { power: 6 },
-    Variation::Polynomial { power: 9 },
-    Variation::Polynomial { power: 14 },
-    Variation::Polynomial { power: 24 },
+    Variation::SmoothSine { mode: 2 },
+    Variation::SmoothSine { mode: 3 },
+    Variation::SmoothSine { mode: 4 },
 ];
 
 /// Samples integrated over in one step, ended by the row that passes it.
