@@ -1,7 +1,8 @@
 //! The identifier's face to its callers.
 
 use super::problem::Problem;
-use super::settings::{Settings, SettingsError};
+use super::publication::Publication;
+use super::settings::{Method, Settings, SettingsError};
 use super::tracker::Tracker;
 use crate::law::{Model, ModelError, Term};
 use serde::{Deserialize, Serialize};
@@ -126,12 +127,29 @@ pub enum BuildError {
     Model(#[from] ModelError),
 }
 
+/// The procedure at work.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+enum Engine {
+    Default(Box<Tracker>),
+    Publication(Box<Publication>),
+}
+
+impl Engine {
+    fn new(problem: &Problem, settings: &Settings) -> Engine {
+        match settings.method {
+            Method::Default => Engine::Default(Box::new(Tracker::new(problem, settings))),
+            Method::Publication => Engine::Publication(Box::new(Publication::new(problem, settings))),
+        }
+    }
+}
+
 /// The streaming identifier of one model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Identifier {
     settings: Settings,
     problem: Problem,
-    tracker: Tracker,
+    engine: Engine,
+    potential: Vec<Term>,
     coefficients: Vec<Coefficient>,
     output: Output,
     last: Option<f64>,
@@ -148,7 +166,8 @@ impl Identifier {
         let coefficients =
             model.terms.iter().map(|entry| Coefficient { term: entry.term, value: 0.0, std: None }).collect();
         let problem = Problem::new(model, &settings);
-        let tracker = Tracker::new(&problem, &settings);
+        let engine = Engine::new(&problem, &settings);
+        let potential = model.potential.clone();
         let output = Output {
             switch_count: 0,
             switch_time: 0.0,
@@ -163,7 +182,7 @@ impl Identifier {
             noise_q: None,
             noise_qd: None,
         };
-        Ok(Identifier { settings, problem, tracker, coefficients, output, last: None })
+        Ok(Identifier { settings, problem, engine, potential, coefficients, output, last: None })
     }
 
     /// Takes one sample.
@@ -173,7 +192,11 @@ impl Identifier {
     pub fn step(&mut self, sample: Sample) -> Result<(), Skipped> {
         self.accept(&sample)?;
         self.last = Some(sample.t);
-        self.tracker.step(&self.problem, &self.settings, sample, &mut self.coefficients, &mut self.output);
+        let Identifier { settings, problem, engine, coefficients, output, .. } = self;
+        match engine {
+            Engine::Default(tracker) => tracker.step(problem, settings, sample, coefficients, output),
+            Engine::Publication(publication) => publication.step(problem, settings, sample, coefficients, output),
+        }
         Ok(())
     }
 
@@ -212,8 +235,13 @@ impl Identifier {
     }
 
     /// What the data since the present stage's start cannot determine: single terms, or combinations such as
-    /// `qdd and q together`.
+    /// `qdd and q together`; and the model's total time derivatives in U₀, which no data can.
     pub fn unidentifiable(&self) -> Vec<String> {
-        Vec::new()
+        let from_data = match &self.engine {
+            Engine::Default(_) => Vec::new(),
+            Engine::Publication(publication) => publication.unidentifiable(&self.problem),
+        };
+        let always = self.potential.iter().map(|term| format!("{term} in [potential]"));
+        from_data.into_iter().chain(always).collect()
     }
 }

@@ -4,12 +4,15 @@
 //! A step does a bounded amount of work, allocates nothing, and cannot fail.
 
 mod blocks;
+mod capture;
 mod deviation;
+mod equations;
 mod identification;
 mod identifier;
 mod outputs;
 mod parameters;
 mod problem;
+mod publication;
 mod recording;
 mod scales;
 mod settings;

@@ -17,6 +17,11 @@ pub enum Variation {
         /// k ≥ 1.
         mode: u8,
     },
+    /// (4 s (1 − s))⁶ sin(k π s): sines as smooth at both ends as the polynomials.
+    SmoothSine {
+        /// k ≥ 1.
+        mode: u8,
+    },
 }
 
 impl Variation {
@@ -29,6 +34,7 @@ impl Variation {
                 [angle.sin().powi(2), PI * (2.0 * angle).sin(), 2.0 * PI * PI * (2.0 * angle).cos()]
             }
             Variation::Sine { mode } => product(Variation::Sine { mode: 1 }.at(s), sine(s, f64::from(mode))),
+            Variation::SmoothSine { mode } => product(polynomial(s, 6), sine(s, f64::from(mode))),
         }
     }
 }
@@ -55,12 +61,13 @@ fn product(f: [f64; 3], g: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    const FAMILIES: [Variation; 5] = [
+    const FAMILIES: [Variation; 6] = [
         Variation::Polynomial { power: 2 },
         Variation::Polynomial { power: 5 },
         Variation::Sine { mode: 1 },
         Variation::Sine { mode: 2 },
         Variation::Sine { mode: 5 },
+        Variation::SmoothSine { mode: 3 },
     ];
 
     #[test]
