@@ -78,10 +78,14 @@ impl System {
         for (row, target) in self.rows.chunks_exact_mut(self.lanes).enumerate() {
             let range = row * n + WIDTH * (row / WIDTH)..row * n + WIDTH * lanes;
             let target = &mut target[row / WIDTH..lanes];
-            target.copy_from_slice(first[range.clone()].as_chunks().0);
-            if let Some(second) = second {
-                for (sums, terms) in target.iter_mut().zip(second[range].as_chunks::<WIDTH>().0) {
-                    (0..WIDTH).for_each(|lane| sums[lane] += terms[lane]);
+            let first = first[range.clone()].as_chunks::<WIDTH>().0;
+            match second {
+                None => target.copy_from_slice(first),
+                Some(second) => {
+                    let pairs = first.iter().zip(second[range].as_chunks::<WIDTH>().0);
+                    for (sums, (a, b)) in target.iter_mut().zip(pairs) {
+                        *sums = std::array::from_fn(|lane| a[lane] + b[lane]);
+                    }
                 }
             }
         }

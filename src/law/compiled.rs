@@ -159,18 +159,19 @@ impl Compiled {
         self.inverse_mass = self.mass[0].recip();
     }
 
-    /// The law's factors at a point.
+    /// Writes the law's factors at a point.
     #[inline]
-    pub(super) fn table(&self, state: State, excitation: f64) -> Table {
-        Table::new(self.reach, state, excitation)
+    pub(super) fn fill(&self, table: &mut Table, state: State, excitation: f64) {
+        table.fill(self.reach, state, excitation);
     }
 
-    /// The law's and the free terms' factors at a point.
+    /// Writes the law's and the free terms' factors at a point.
     #[inline]
-    pub(super) fn full_table(&self, state: State, excitation: f64) -> Table {
+    pub(super) fn fill_all(&self, table: &mut Table, state: State, excitation: f64) {
         let (law, free) = (self.reach, self.free_reach);
         let excited = law.excitation.max(free.excitation);
-        Table::new(Reach { q: law.q.max(free.q), qd: law.qd.max(free.qd), excitation: excited }, state, excitation)
+        let reach = Reach { q: law.q.max(free.q), qd: law.qd.max(free.qd), excitation: excited };
+        table.fill(reach, state, excitation);
     }
 
     /// (q̈, 1 ÷ mass).
@@ -187,14 +188,23 @@ impl Compiled {
     /// \[∂/∂q, ∂/∂q̇\] of the law's force.
     #[inline]
     pub(super) fn gradient(&self, table: &Table, state: State) -> [f64; 2] {
-        let derivatives = Table { q: [0.0; FACTORS], qd: [0.0; FACTORS], excitation: table.excitation };
-        let derivatives = derivatives.differentiated(table, self.reach, state);
+        let (mut by_q, mut by_qd) = ([0.0; FACTORS], [0.0; FACTORS]);
+        differentiate(&mut by_q, &table.q, self.reach.q);
+        differentiate(&mut by_qd, &table.qd, self.reach.qd);
+        if self.reach.q >= EFFECTS {
+            let slots = &mut by_q[usize::from(EFFECTS)..];
+            OF_Q.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.gradient(state.q, 0.0).0);
+        }
+        if self.reach.qd >= EFFECTS {
+            let slots = &mut by_qd[usize::from(EFFECTS)..];
+            OF_QD.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.gradient(0.0, state.qd).1);
+        }
         let mut gradient = [0.0; 2];
         for Part { places, coefficient } in &self.parts[..self.count] {
             let scaled = coefficient * table.excitation[usize::from(places.excitation) & MASK];
             let (q, qd) = (usize::from(places.q) & MASK, usize::from(places.qd) & MASK);
-            gradient[0] += scaled * derivatives.q[q] * table.qd[qd];
-            gradient[1] += scaled * table.q[q] * derivatives.qd[qd];
+            gradient[0] += scaled * by_q[q] * table.qd[qd];
+            gradient[1] += scaled * table.q[q] * by_qd[qd];
         }
         gradient
     }
@@ -211,44 +221,27 @@ impl Compiled {
 }
 
 impl Table {
+    pub(super) const EMPTY: Table = Table { q: [0.0; FACTORS], qd: [0.0; FACTORS], excitation: [0.0; FACTORS] };
+
     #[inline]
-    fn new(reach: Reach, state: State, excitation: f64) -> Table {
-        let mut table = Table { q: [0.0; FACTORS], qd: [0.0; FACTORS], excitation: [0.0; FACTORS] };
-        powers(&mut table.q, state.q, reach.q);
-        powers(&mut table.qd, state.qd, reach.qd);
-        powers(&mut table.excitation, excitation, reach.excitation);
+    fn fill(&mut self, reach: Reach, state: State, excitation: f64) {
+        powers(&mut self.q, state.q, reach.q);
+        powers(&mut self.qd, state.qd, reach.qd);
+        powers(&mut self.excitation, excitation, reach.excitation);
         if reach.q >= EFFECTS {
-            OF_Q.iter()
-                .zip(&mut table.q[usize::from(EFFECTS)..])
-                .for_each(|(effect, slot)| *slot = effect.force(state.q, 0.0));
+            let slots = &mut self.q[usize::from(EFFECTS)..];
+            OF_Q.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.force(state.q, 0.0));
         }
         if reach.qd >= EFFECTS {
-            let slots = &mut table.qd[usize::from(EFFECTS)..];
+            let slots = &mut self.qd[usize::from(EFFECTS)..];
             OF_QD.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.force(0.0, state.qd));
         }
-        table
     }
 
     #[inline]
     fn force(&self, places: Places) -> f64 {
         let product = self.q[usize::from(places.q) & MASK] * self.qd[usize::from(places.qd) & MASK];
         product * self.excitation[usize::from(places.excitation) & MASK]
-    }
-
-    /// The derivatives of the factors of q and q̇.
-    #[inline]
-    fn differentiated(mut self, table: &Table, reach: Reach, state: State) -> Table {
-        differentiate(&mut self.q, &table.q, reach.q);
-        differentiate(&mut self.qd, &table.qd, reach.qd);
-        if reach.q >= EFFECTS {
-            let slots = &mut self.q[usize::from(EFFECTS)..];
-            OF_Q.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.gradient(state.q, 0.0).0);
-        }
-        if reach.qd >= EFFECTS {
-            let slots = &mut self.qd[usize::from(EFFECTS)..];
-            OF_QD.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.gradient(0.0, state.qd).1);
-        }
-        self
     }
 }
 
@@ -294,7 +287,8 @@ mod tests {
         compiled.compile(&motion);
         for (q, qd, excitation) in [(0.7, -1.2, 0.4), (-1.1, 0.3, -0.8)] {
             let state = State { q, qd };
-            let table = compiled.full_table(state, excitation);
+            let mut table = Table::EMPTY;
+            compiled.fill_all(&mut table, state, excitation);
             let (acceleration, inverse) = compiled.acceleration(&table, excitation);
             let expected = motion.acceleration(state, excitation);
             assert!((acceleration / expected - 1.0).abs() < 1e-13, "{acceleration} against {expected}");

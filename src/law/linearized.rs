@@ -4,6 +4,7 @@
 //! itself is integrated with order 4; A and B are taken at the middle of the step (order 2), which leaves a Gauss–Newton
 //! fixed point where it is: only the path to it depends on them.
 
+use super::compiled::Table;
 use super::{Compiled, State};
 
 /// A step and what it is linear about.
@@ -26,17 +27,22 @@ impl Compiled {
     pub fn linearized_step(&self, state: State, dt: f64, excitation: [f64; 3], slopes: &mut [f64]) -> Linearized {
         let half = 0.5 * dt;
         let [from, middle, to] = excitation;
-        let at = |state: State, excitation: f64| self.acceleration(&self.table(state, excitation), excitation).0;
+        let mut table = Table::EMPTY;
+        let mut at = |state: State, excitation: f64| {
+            self.fill(&mut table, state, excitation);
+            self.acceleration(&table, excitation).0
+        };
         let a1 = at(state, from);
         let s2 = State { q: state.q + half * state.qd, qd: state.qd + half * a1 };
         let a2 = at(s2, middle);
         let s3 = State { q: state.q + half * s2.qd, qd: state.qd + half * a2 };
-        let table = self.full_table(s3, middle);
+        self.fill_all(&mut table, s3, middle);
         let (a3, inverse_mass) = self.acceleration(&table, middle);
-        let s4 = State { q: state.q + dt * s3.qd, qd: state.qd + dt * a3 };
-        let a4 = at(s4, to);
         self.slopes(&table, a3, inverse_mass, slopes);
         let [by_q, by_qd] = self.gradient(&table, s3).map(|slope| -slope * inverse_mass);
+        let s4 = State { q: state.q + dt * s3.qd, qd: state.qd + dt * a3 };
+        self.fill(&mut table, s4, to);
+        let a4 = self.acceleration(&table, to).0;
         let half2 = half * dt;
         Linearized {
             state: State {
