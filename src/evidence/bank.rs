@@ -16,7 +16,7 @@
 use super::filter::Innovation;
 use super::information::Information;
 use super::pass::IntervalMap;
-use super::symmetric;
+use super::symmetric::{Lane, System, WIDTH};
 use serde::{Deserialize, Serialize};
 
 /// Pivots this far below their diagonal are rounding.
@@ -57,14 +57,26 @@ struct Hypothesis {
     age: u32,
     next_look: u32,
     evidence: f64,
-    sensitivity: Vec<[f64; 2]>,
+    /// ∂q/∂δ and ∂q̇/∂δ, each n long and filled up with zeros.
+    sensitivity: [Vec<Lane>; 2],
     information: Information,
-    /// Λ of "no switch", lower triangle.
+    /// Λ of "no switch", as [`Information::matrix`].
     prior: Vec<f64>,
     /// μ of "no switch": what has been added to the coefficients in use since the start, with a minus.
     mean: Vec<f64>,
+    /// Λμ.
+    pull: Vec<f64>,
     prior_log_determinant: f64,
     active: Vec<bool>,
+}
+
+/// What a step of the stream does to every hypothesis alike.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Shared {
+    /// What the interval adds to ∂q/∂δ and ∂q̇/∂δ.
+    input: [Vec<Lane>; 2],
+    /// ∂ε/∂δ by channel, with a minus.
+    rows: [Vec<Lane>; 2],
 }
 
 /// A bounded set of hypotheses, ordered by start, the youngest last.
@@ -76,24 +88,24 @@ pub struct Bank {
     /// 1/τ² by coefficient, the prior of "switch".
     spread: Vec<f64>,
     spread_log_determinant: f64,
-    row: Vec<f64>,
-    matrix: Vec<f64>,
-    vector: Vec<f64>,
-    looked: usize,
+    shared: Shared,
+    system: System,
 }
 
 impl Bank {
     /// Room for `capacity` ≥ 4 hypotheses on `n` coefficients.
     pub fn new(n: usize, capacity: usize) -> Bank {
+        let lanes = || vec![[0.0; WIDTH]; n.div_ceil(WIDTH)];
         let hypothesis = Hypothesis {
             start: 0,
             age: 0,
             next_look: 0,
             evidence: 0.0,
-            sensitivity: vec![[0.0; 2]; n],
+            sensitivity: [lanes(), lanes()],
             information: Information::none(n),
-            prior: vec![0.0; n * n],
+            prior: Information::none(n).matrix,
             mean: vec![0.0; n],
+            pull: vec![0.0; n],
             prior_log_determinant: 0.0,
             active: vec![false; n],
         };
@@ -103,10 +115,8 @@ impl Bank {
             count: 0,
             spread: vec![1.0; n],
             spread_log_determinant: 0.0,
-            row: vec![0.0; n],
-            matrix: vec![0.0; n * n],
-            vector: vec![0.0; n],
-            looked: 0,
+            shared: Shared { input: [lanes(), lanes()], rows: [lanes(), lanes()] },
+            system: System::new(n),
         }
     }
 
@@ -133,19 +143,21 @@ impl Bank {
         let hypothesis = &mut self.hypotheses[self.count];
         (hypothesis.start, hypothesis.age, hypothesis.next_look) = (start, 0, YOUNGEST);
         hypothesis.evidence = 0.0;
-        hypothesis.sensitivity.fill([0.0; 2]);
+        hypothesis.sensitivity.iter_mut().for_each(|channel| channel.fill([0.0; WIDTH]));
         hypothesis.information.clear();
         hypothesis.mean.fill(0.0);
+        hypothesis.pull.fill(0.0);
         hypothesis.prior.iter_mut().zip(&law.information.matrix).for_each(|(slot, entry)| *slot = CAUTION * entry);
         for (index, (slot, active)) in hypothesis.active.iter_mut().zip(law.active).enumerate() {
             *slot = *active && law.information.matrix[index * n + index] > 0.0;
         }
-        isolate(&mut self.matrix, &hypothesis.prior, &hypothesis.active, n);
-        symmetric::cholesky(&mut self.matrix, n, TOLERANCE);
-        for index in 0..n {
-            hypothesis.active[index] &= self.matrix[index * n + index].is_finite();
+        self.system.load(&hypothesis.prior, None);
+        hypothesis.isolate_inactive(&mut self.system);
+        self.system.eliminate(TOLERANCE);
+        for (index, active) in hypothesis.active.iter_mut().enumerate() {
+            *active &= self.system.is_solved(index);
         }
-        hypothesis.prior_log_determinant = symmetric::log_determinant(&self.matrix, n);
+        hypothesis.prior_log_determinant = self.system.log_determinant();
         self.count += 1;
     }
 
@@ -158,22 +170,22 @@ impl Bank {
 
     /// Takes what one interval did and what its measurements said.
     pub fn step(&mut self, map: &IntervalMap, innovations: &[Option<Innovation>; 2]) {
+        self.shared.set_input(map);
+        let said = innovations.map(|innovation| innovation.map_or(Said::NOTHING, Said::from));
         for hypothesis in &mut self.hypotheses[..self.count] {
-            map.carry(&mut hypothesis.sensitivity);
             hypothesis.age += 1;
-            for (channel, innovation) in innovations.iter().enumerate() {
-                if let Some(innovation) = innovation {
-                    hypothesis.take(channel, innovation, &mut self.row);
-                }
-            }
+            self.shared.carry(&map.transition, &said, &mut hypothesis.sensitivity);
+            let [q, qd] = &self.shared.rows;
+            let [first, second] = &said;
+            let (residuals, weights) = ([first.residual, second.residual], [first.weight, second.weight]);
+            hypothesis.information.add_pair([q, qd], residuals, weights);
         }
     }
 
     /// The coefficients in use have become those plus `step`.
     pub fn shift(&mut self, step: &[f64]) {
         for hypothesis in &mut self.hypotheses[..self.count] {
-            hypothesis.information.shift(step);
-            hypothesis.mean.iter_mut().zip(step).for_each(|(mean, step)| *mean -= step);
+            hypothesis.shift(step);
         }
     }
 
@@ -224,8 +236,7 @@ impl Bank {
     /// Writes the most plausible change of the coefficients under the suspect into `change`.
     pub fn change(&mut self, suspect: &Suspect, change: &mut [f64]) {
         self.switched(suspect.index);
-        change.copy_from_slice(&self.vector);
-        symmetric::backward(&self.matrix, self.n, change);
+        self.system.solve(change);
     }
 
     fn evidence(&mut self, index: usize) -> f64 {
@@ -233,40 +244,29 @@ impl Bank {
         switched - self.unswitched(index)
     }
 
-    /// Log-evidence of a switch; leaves L and L⁻¹(g + Λμ) behind.
+    /// Log-evidence of a switch; leaves the eliminated system behind.
     fn switched(&mut self, index: usize) -> f64 {
-        let (n, hypothesis) = (self.n, &self.hypotheses[index]);
-        self.matrix.copy_from_slice(&hypothesis.information.matrix);
+        let information = &self.hypotheses[index].information;
+        self.system.load(&information.matrix, None);
         for (row, spread) in self.spread.iter().enumerate() {
-            self.matrix[row * n + row] += spread;
+            self.system.row(row)[row] += spread;
         }
-        symmetric::cholesky(&mut self.matrix, n, TOLERANCE);
-        self.vector.copy_from_slice(&hypothesis.information.score);
-        symmetric::forward(&self.matrix, n, &mut self.vector);
-        let squares: f64 = self.vector.iter().map(|v| v * v).sum();
-        0.5 * (squares - symmetric::log_determinant(&self.matrix, n) + self.spread_log_determinant)
+        self.system.set_right(information.score.iter().copied());
+        self.system.eliminate(TOLERANCE);
+        0.5 * (self.system.squares() - self.system.log_determinant() + self.spread_log_determinant)
     }
 
     /// Log-evidence of no switch.
     fn unswitched(&mut self, index: usize) -> f64 {
-        let (n, hypothesis) = (self.n, &self.hypotheses[index]);
-        isolate(&mut self.matrix, &hypothesis.prior, &hypothesis.active, n);
-        let mut at_mean = 0.0;
-        for row in 0..n {
-            let pull = if hypothesis.active[row] { row_times(&self.matrix, n, row, &hypothesis.mean) } else { 0.0 };
-            at_mean += pull * hypothesis.mean[row];
-            self.vector[row] = if hypothesis.active[row] { hypothesis.information.score[row] + pull } else { 0.0 };
-        }
-        for row in (0..n).filter(|row| hypothesis.active[*row]) {
-            for column in (0..=row).filter(|column| hypothesis.active[*column]) {
-                self.matrix[row * n + column] += hypothesis.information.matrix[row * n + column];
-            }
-        }
-        symmetric::cholesky(&mut self.matrix, n, TOLERANCE);
-        symmetric::forward(&self.matrix, n, &mut self.vector);
-        let squares: f64 = self.vector.iter().map(|v| v * v).sum();
-        let log_determinant = symmetric::log_determinant(&self.matrix, n);
-        0.5 * (squares - at_mean - log_determinant + hypothesis.prior_log_determinant)
+        let hypothesis = &self.hypotheses[index];
+        self.system.load(&hypothesis.information.matrix, Some(&hypothesis.prior));
+        self.system
+            .set_right(hypothesis.information.score.iter().zip(&hypothesis.pull).map(|(score, pull)| score + pull));
+        hypothesis.isolate_inactive(&mut self.system);
+        self.system.eliminate(TOLERANCE);
+        let at_mean: f64 = hypothesis.mean.iter().zip(&hypothesis.pull).map(|(mean, pull)| mean * pull).sum();
+        let log_determinants = self.system.log_determinant() - hypothesis.prior_log_determinant;
+        0.5 * (self.system.squares() - at_mean - log_determinants)
     }
 
     /// The hypothesis whose neighbours leave the smallest gap, relative to their age.
@@ -285,31 +285,75 @@ impl Bank {
 }
 
 impl Hypothesis {
+    /// Takes what the hypothesis does not have out of the system.
+    fn isolate_inactive(&self, system: &mut System) {
+        for (unknown, _) in self.active.iter().enumerate().filter(|(_, active)| !**active) {
+            system.isolate(unknown);
+        }
+    }
+
+    fn shift(&mut self, step: &[f64]) {
+        let (n, active) = (step.len(), &self.active);
+        self.information.shift(step);
+        self.mean.iter_mut().zip(step).for_each(|(mean, step)| *mean -= step);
+        self.pull.fill(0.0);
+        for row in (0..n).filter(|row| active[*row]) {
+            self.pull[row] += self.prior[row * n + row] * self.mean[row];
+            for column in (row + 1..n).filter(|column| active[*column]) {
+                let entry = self.prior[row * n + column];
+                self.pull[row] += entry * self.mean[column];
+                self.pull[column] += entry * self.mean[row];
+            }
+        }
+    }
+}
+
+/// What a measurement does to a sensitivity, and how much it counts.
+struct Said {
+    gain: [f64; 2],
+    residual: f64,
+    weight: f64,
+}
+
+impl Said {
+    const NOTHING: Said = Said { gain: [0.0; 2], residual: 0.0, weight: 0.0 };
+}
+
+impl From<Innovation> for Said {
+    fn from(innovation: Innovation) -> Said {
+        Said { gain: innovation.gain, residual: innovation.residual, weight: innovation.precision }
+    }
+}
+
+impl Shared {
+    fn set_input(&mut self, map: &IntervalMap) {
+        let [to_q, to_qd] = &mut self.input;
+        let slots = to_q.as_flattened_mut().iter_mut().zip(to_qd.as_flattened_mut());
+        for ((q, qd), input) in slots.zip(&map.input) {
+            (*q, *qd) = (input[0], input[1]);
+        }
+    }
+
+    /// Carries a sensitivity over the interval and through its measurements, which leave their rows behind.
     #[inline]
-    fn take(&mut self, channel: usize, innovation: &Innovation, row: &mut [f64]) {
-        for (row, sensitivity) in row.iter_mut().zip(&mut self.sensitivity) {
-            *row = sensitivity[channel];
-            sensitivity[0] -= innovation.gain[0] * *row;
-            sensitivity[1] -= innovation.gain[1] * *row;
+    fn carry(&mut self, transition: &[[f64; 2]; 2], said: &[Said; 2], sensitivity: &mut [Vec<Lane>; 2]) {
+        let [[a, b], [c, d]] = *transition;
+        let [first, second] = said;
+        let [q_state, qd_state] = sensitivity;
+        let ([q_row, qd_row], [q_input, qd_input]) = (&mut self.rows, &self.input);
+        let states = q_state.iter_mut().zip(qd_state);
+        let rows = q_row.iter_mut().zip(qd_row);
+        let inputs = q_input.iter().zip(qd_input);
+        for (((q_state, qd_state), (q_row, qd_row)), (q_input, qd_input)) in states.zip(rows).zip(inputs) {
+            for lane in 0..WIDTH {
+                let (q, qd) = (q_state[lane], qd_state[lane]);
+                let (q, qd) = (a * q + b * qd + q_input[lane], c * q + d * qd + qd_input[lane]);
+                q_row[lane] = q;
+                let (q, qd) = (q - first.gain[0] * q, qd - first.gain[1] * q);
+                qd_row[lane] = qd;
+                q_state[lane] = q - second.gain[0] * qd;
+                qd_state[lane] = qd - second.gain[1] * qd;
+            }
         }
-        self.information.add(row, innovation.residual, innovation.variance);
     }
-}
-
-/// Copies the part of a matrix that concerns active unknowns; the others get a row of their own.
-fn isolate(target: &mut [f64], source: &[f64], active: &[bool], n: usize) {
-    for row in 0..n {
-        for column in 0..=row {
-            let both = active[row] && active[column];
-            let alone = if row == column { 1.0 } else { 0.0 };
-            target[row * n + column] = if both { source[row * n + column] } else { alone };
-        }
-    }
-}
-
-/// Row of a symmetric matrix, given by its lower triangle, times a vector.
-fn row_times(matrix: &[f64], n: usize, row: usize, vector: &[f64]) -> f64 {
-    let lower: f64 = (0..=row).map(|column| matrix[row * n + column] * vector[column]).sum();
-    let upper: f64 = (row + 1..n).map(|column| matrix[column * n + row] * vector[column]).sum();
-    lower + upper
 }

@@ -50,12 +50,15 @@ pub struct Innovation {
     pub residual: f64,
     /// Variance of the residual.
     pub variance: f64,
+    /// 1 ÷ variance.
+    pub precision: f64,
     /// How much of the residual goes into (q, q̇).
     pub gain: [f64; 2],
 }
 
 impl Filter {
     /// Carries the covariance over a step; the mean is the caller's.
+    #[inline]
     pub fn predict(&mut self, step: &Linearized, dt: f64, process: f64) {
         let [[a, b], [c, d]] = step.transition;
         let [qq, qv, vv] = self.covariance;
@@ -69,6 +72,7 @@ impl Filter {
     }
 
     /// Takes one measurement with this noise variance.
+    #[inline]
     pub fn update(&mut self, channel: Channel, measured: f64, variance: f64) -> Innovation {
         let [qq, qv, vv] = self.covariance;
         let (expected, column) = match channel {
@@ -76,7 +80,8 @@ impl Filter {
             Channel::Qd => (self.state.qd, [qv, vv]),
         };
         let total = column[channel as usize] + variance;
-        let gain = [column[0] / total, column[1] / total];
+        let precision = total.recip();
+        let gain = [column[0] * precision, column[1] * precision];
         let residual = measured - expected;
         self.state.q += gain[0] * residual;
         self.state.qd += gain[1] * residual;
@@ -84,6 +89,6 @@ impl Filter {
             Channel::Q => [gain[0] * variance, gain[1] * variance, (vv - gain[1] * qv).max(0.0)],
             Channel::Qd => [(qq - gain[0] * qv).max(0.0), gain[0] * variance, gain[1] * variance],
         };
-        Innovation { residual, variance: total, gain }
+        Innovation { residual, variance: total, precision, gain }
     }
 }

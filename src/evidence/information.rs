@@ -1,6 +1,6 @@
 //! Fisher information and score of the coefficients, and what follows from them.
 
-use super::symmetric;
+use super::symmetric::{Lane, System, WIDTH};
 use serde::{Deserialize, Serialize};
 
 /// Relative size below which a pivot is rounding: the data say nothing on the unknown beside the others.
@@ -11,7 +11,7 @@ const TOLERANCE: f64 = 1e-12;
 pub struct Information {
     /// Number of unknowns n.
     pub n: usize,
-    /// n × n, row-major, lower triangle.
+    /// n × n, row-major, upper triangle, and room for the last row's lane; what stands below the diagonal means nothing.
     pub matrix: Vec<f64>,
     /// n.
     pub score: Vec<f64>,
@@ -26,14 +26,14 @@ pub struct Solution {
     pub covariance: Vec<f64>,
     /// Whether the data determine the coefficient, n.
     pub determined: Vec<bool>,
-    factor: Vec<f64>,
+    system: System,
     scale: Vec<f64>,
 }
 
 impl Information {
     /// No information on `n` unknowns.
     pub fn none(n: usize) -> Information {
-        Information { n, matrix: vec![0.0; n * n], score: vec![0.0; n] }
+        Information { n, matrix: vec![0.0; n * n + WIDTH], score: vec![0.0; n] }
     }
 
     /// Forgets everything.
@@ -61,8 +61,26 @@ impl Information {
         for (row, &psi) in sensitivity.iter().enumerate() {
             let scaled = psi * weight;
             self.score[row] += scaled * residual;
-            for (entry, other) in self.matrix[row * n..row * n + row + 1].iter_mut().zip(sensitivity) {
+            for (entry, other) in self.matrix[row * n + row..(row + 1) * n].iter_mut().zip(&sensitivity[row..]) {
                 *entry += scaled * other;
+            }
+        }
+    }
+
+    /// Takes two innovations at once: their sensitivities, each n long and filled up with zeros, residuals, and 1 ÷ variances.
+    #[inline]
+    pub fn add_pair(&mut self, sensitivities: [&[Lane]; 2], residuals: [f64; 2], weights: [f64; 2]) {
+        let [first, second] = sensitivities;
+        let lanes = first.len();
+        let pairs = first.as_flattened().iter().zip(second.as_flattened());
+        for (row, ((a, b), score)) in pairs.zip(&mut self.score).enumerate() {
+            let (a, b) = (a * weights[0], b * weights[1]);
+            *score += a * residuals[0] + b * residuals[1];
+            let lane = row / WIDTH;
+            let entries = &mut self.matrix[row * self.n + WIDTH * lane..row * self.n + WIDTH * lanes];
+            let columns = first[lane..].iter().zip(&second[lane..]);
+            for (entries, (first, second)) in entries.as_chunks_mut::<WIDTH>().0.iter_mut().zip(columns) {
+                (0..WIDTH).for_each(|column| entries[column] += a * first[column] + b * second[column]);
             }
         }
     }
@@ -78,8 +96,8 @@ impl Information {
     #[inline]
     pub fn row_times(&self, row: usize, vector: &[f64]) -> f64 {
         let n = self.n;
-        let lower: f64 = self.matrix[row * n..row * n + row + 1].iter().zip(vector).map(|(a, b)| a * b).sum();
-        let upper: f64 = (row + 1..n).map(|column| self.matrix[column * n + row] * vector[column]).sum();
+        let upper: f64 = self.matrix[row * n + row..(row + 1) * n].iter().zip(&vector[row..]).map(|(a, b)| a * b).sum();
+        let lower: f64 = (0..row).map(|column| self.matrix[column * n + row] * vector[column]).sum();
         lower + upper
     }
 
@@ -102,7 +120,7 @@ impl Solution {
             step: vec![0.0; n],
             covariance: vec![0.0; n * n],
             determined: vec![false; n],
-            factor: vec![0.0; n * n],
+            system: System::new(n),
             scale: vec![0.0; n],
         }
     }
@@ -111,33 +129,33 @@ impl Solution {
     pub fn solve(&mut self, information: &Information, active: &[bool]) {
         let n = information.n;
         self.equilibrate(information, active);
-        symmetric::cholesky(&mut self.factor, n, TOLERANCE);
-        for row in 0..n {
-            self.step[row] = information.score[row] * self.scale[row];
-        }
-        symmetric::forward(&self.factor, n, &mut self.step);
-        symmetric::backward(&self.factor, n, &mut self.step);
-        symmetric::invert(&self.factor, n, &mut self.covariance);
+        self.system.eliminate(TOLERANCE);
+        self.system.solve(&mut self.step);
+        self.system.invert(&mut self.covariance);
         for row in 0..n {
             self.step[row] *= self.scale[row];
-            self.determined[row] = self.factor[row * n + row].is_finite() && self.scale[row] > 0.0;
-            for column in 0..n {
-                self.covariance[row * n + column] *= self.scale[row] * self.scale[column];
+            self.determined[row] = self.system.is_solved(row) && self.scale[row] > 0.0;
+            for (entry, scale) in self.covariance[row * n..(row + 1) * n].iter_mut().zip(&self.scale) {
+                *entry *= self.scale[row] * scale;
             }
         }
     }
 
-    /// Copies the matrix with a unit diagonal; an unknown without information gets a row of its own.
+    /// Copies the system with a unit diagonal; an unknown without information gets a row of its own.
     fn equilibrate(&mut self, information: &Information, active: &[bool]) {
         let n = information.n;
         for row in 0..n {
             let diagonal = information.matrix[row * n + row];
             self.scale[row] = if active[row] && diagonal > 0.0 { diagonal.sqrt().recip() } else { 0.0 };
-            for column in 0..row {
-                self.factor[row * n + column] =
-                    information.matrix[row * n + column] * self.scale[row] * self.scale[column];
+        }
+        for row in 0..n {
+            let scale = self.scale[row];
+            let target = self.system.row(row);
+            for column in row + 1..n {
+                target[column] = information.matrix[row * n + column] * scale * self.scale[column];
             }
-            self.factor[row * n + row] = 1.0;
+            target[row] = 1.0;
+            target[n] = information.score[row] * scale;
         }
     }
 
@@ -148,8 +166,6 @@ impl Solution {
 
     /// The smallest ratio of a pivot to its diagonal entry: 1 for orthogonal sensitivities, 0 for collinear ones.
     pub fn smallest_pivot(&self) -> f64 {
-        let n = self.step.len();
-        let pivots = (0..n).map(|row| self.factor[row * n + row]);
-        pivots.map(|pivot| if pivot.is_finite() { pivot * pivot } else { 0.0 }).fold(1.0, f64::min)
+        (0..self.step.len()).map(|row| self.system.pivot(row)).fold(1.0, f64::min)
     }
 }

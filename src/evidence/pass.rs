@@ -2,7 +2,8 @@
 
 use super::filter::{Channel, Filter, Innovation, Noise};
 use super::information::Information;
-use crate::law::{Drive, Linearized, Motion, State, Term};
+use super::symmetric::{Lane, LogSum, WIDTH};
+use crate::law::{Compiled, Drive, Linearized, Motion, State, Term};
 use serde::{Deserialize, Serialize};
 
 /// Ratio by which the process noise of the two rival filters differs from the one in use.
@@ -33,15 +34,15 @@ pub struct Track {
     /// Σ ε²/s by channel.
     pub squares: [f64; 2],
     /// Σ ln s by channel.
-    pub log_variance: [f64; 2],
+    log_variance: [LogSum; 2],
 }
 
 impl Track {
     #[inline]
     fn add(&mut self, channel: Channel, innovation: &Innovation) {
         self.count[channel as usize] += 1.0;
-        self.squares[channel as usize] += innovation.residual * innovation.residual / innovation.variance;
-        self.log_variance[channel as usize] += innovation.variance.ln();
+        self.squares[channel as usize] += innovation.residual * innovation.residual * innovation.precision;
+        self.log_variance[channel as usize].add(innovation.variance);
     }
 
     /// Mean of ε²/s in the channel: by how much its stated variance is too small; 1 where nothing was measured.
@@ -53,13 +54,14 @@ impl Track {
     /// Log-likelihood with each channel's scale at its own maximum, up to a constant.
     pub fn log_likelihood(&self) -> f64 {
         let profile = Channel::ALL.map(|channel| self.count[channel as usize] * self.scale(channel).max(1e-300).ln());
-        -0.5 * (self.log_variance[0] + self.log_variance[1] + profile[0] + profile[1])
+        let [q, qd] = &self.log_variance;
+        -0.5 * (q.total() + qd.total() + profile[0] + profile[1])
     }
 
     /// Geometric mean of s in the channel; 0 where nothing was measured.
     pub fn variance(&self, channel: Channel) -> f64 {
         let count = self.count[channel as usize];
-        if count > 0.0 { (self.log_variance[channel as usize] / count).exp() } else { 0.0 }
+        if count > 0.0 { (self.log_variance[channel as usize].total() / count).exp() } else { 0.0 }
     }
 
     /// Number of scalar measurements.
@@ -78,32 +80,27 @@ pub struct IntervalMap {
 }
 
 impl IntervalMap {
-    fn reset(&mut self) {
-        self.transition = [[1.0, 0.0], [0.0, 1.0]];
-        self.input.fill([0.0; 2]);
+    /// Becomes the map of one step.
+    #[inline]
+    fn set(&mut self, step: &Linearized, slopes: &[f64]) {
+        let [to_q, to_qd] = step.input;
+        self.transition = step.transition;
+        for (input, slope) in self.input.iter_mut().zip(slopes) {
+            *input = [to_q * slope, to_qd * slope];
+        }
     }
 
+    /// Puts one more step behind.
     #[inline]
-    fn append(&mut self, step: &Linearized, free: &[Term]) {
+    fn append(&mut self, step: &Linearized, slopes: &[f64]) {
         let [[a, b], [c, d]] = step.transition;
         let [to_q, to_qd] = step.input;
-        for (input, term) in self.input.iter_mut().zip(free) {
+        for (input, slope) in self.input.iter_mut().zip(slopes) {
             let [q, qd] = *input;
-            let slope = step.slope(*term);
             *input = [a * q + b * qd + to_q * slope, c * q + d * qd + to_qd * slope];
         }
         let [[e, f], [g, h]] = self.transition;
         self.transition = [[a * e + b * g, a * f + b * h], [c * e + d * g, c * f + d * h]];
-    }
-
-    /// Carries the sensitivity of a state to the coefficients over the interval.
-    #[inline]
-    pub fn carry(&self, sensitivity: &mut [[f64; 2]]) {
-        let [[a, b], [c, d]] = self.transition;
-        for (state, input) in sensitivity.iter_mut().zip(&self.input) {
-            let [q, qd] = *state;
-            *state = [a * q + b * qd + input[0], c * q + d * qd + input[1]];
-        }
     }
 }
 
@@ -126,12 +123,18 @@ pub struct Pass {
     pub parts: usize,
     rival_filters: [Filter; 2],
     fastest: f64,
-    row: Vec<f64>,
+    compiled: Compiled,
+    /// Whether the free terms of this run are known.
+    seeking: bool,
+    slopes: Vec<f64>,
+    /// Sensitivity of the expected measurement by channel, each n long and filled up with zeros.
+    rows: [Vec<Lane>; 2],
 }
 
 impl Pass {
     /// A run that has not begun, on `n` free coefficients.
     pub fn new(n: usize) -> Pass {
+        let lanes = || vec![[0.0; WIDTH]; n.div_ceil(WIDTH)];
         let filter = Filter { state: State::default(), covariance: [0.0; 3] };
         Pass {
             filter,
@@ -143,7 +146,10 @@ impl Pass {
             parts: 1,
             rival_filters: [filter; 2],
             fastest: 0.0,
-            row: vec![0.0; n],
+            compiled: Compiled::default(),
+            seeking: false,
+            slopes: vec![0.0; n],
+            rows: [lanes(), lanes()],
         }
     }
 
@@ -157,9 +163,11 @@ impl Pass {
         self.sensitivity.fill([0.0; 2]);
         self.parts = ((self.fastest / MAX_RATE).sqrt().ceil() as usize).clamp(1, MAX_PARTS);
         self.fastest = 0.0;
+        self.seeking = false;
     }
 
-    /// Takes one sample; `free` are the terms whose coefficients are sought. Returns the innovations by channel.
+    /// Takes one sample; `free` are the terms whose coefficients are sought, the same ones throughout a run, as are those of the
+    /// motion. Returns the innovations by channel.
     pub fn step(
         &mut self,
         motion: &Motion,
@@ -167,18 +175,29 @@ impl Pass {
         noise: &Noise,
         observation: &Observation,
     ) -> [Option<Innovation>; 2] {
-        self.advance(motion, free, noise, observation);
-        Channel::ALL.map(|channel| self.correct(channel, noise, observation))
+        if !self.seeking {
+            self.compiled.seek(free);
+            self.compiled.compile(motion);
+            self.seeking = true;
+        }
+        self.compiled.follow(motion);
+        self.advance(noise, observation);
+        let innovations = Channel::ALL.map(|channel| self.correct(channel, noise, observation));
+        self.inform(&innovations);
+        innovations
     }
 
-    fn advance(&mut self, motion: &Motion, free: &[Term], noise: &Noise, observation: &Observation) {
+    fn advance(&mut self, noise: &Noise, observation: &Observation) {
         let parts = observation.drive.parts(self.parts);
         let dt = observation.dt / parts as f64;
-        self.map.reset();
         for part in 0..parts {
-            let step = motion.linearized_step(self.filter.state, dt, observation.drive.part(part, parts));
+            let excitation = observation.drive.part(part, parts);
+            let step = self.compiled.linearized_step(self.filter.state, dt, excitation, &mut self.slopes);
             self.fastest = self.fastest.max(step.rate * (parts * parts) as f64);
-            self.map.append(&step, free);
+            match part {
+                0 => self.map.set(&step, &self.slopes),
+                _ => self.map.append(&step, &self.slopes),
+            }
             for (rival, ratio) in self.rival_filters.iter_mut().zip(RIVALS) {
                 rival.state = beside(&step, self.filter.state, rival.state);
                 rival.predict(&step, dt, noise.process * ratio);
@@ -186,9 +205,9 @@ impl Pass {
             self.filter.state = step.state;
             self.filter.predict(&step, dt, noise.process);
         }
-        self.map.carry(&mut self.sensitivity);
     }
 
+    #[inline]
     fn correct(&mut self, channel: Channel, noise: &Noise, observation: &Observation) -> Option<Innovation> {
         let measured = observation.measured[channel as usize]?;
         let variance = noise.sensor[channel as usize];
@@ -197,13 +216,27 @@ impl Pass {
         }
         let innovation = self.filter.update(channel, measured, variance);
         self.track.add(channel, &innovation);
-        for (row, sensitivity) in self.row.iter_mut().zip(&mut self.sensitivity) {
-            *row = sensitivity[channel as usize];
-            sensitivity[0] -= innovation.gain[0] * *row;
-            sensitivity[1] -= innovation.gain[1] * *row;
-        }
-        self.information.add(&self.row, innovation.residual, innovation.variance);
         Some(innovation)
+    }
+
+    /// Carries the sensitivity over the interval and through its measurements, and adds what they say.
+    #[inline]
+    fn inform(&mut self, innovations: &[Option<Innovation>; 2]) {
+        let [first, second] = innovations.map(|innovation| innovation.map_or([0.0; 2], |innovation| innovation.gain));
+        let [[a, b], [c, d]] = self.map.transition;
+        let [q_row, qd_row] = &mut self.rows;
+        let rows = q_row.as_flattened_mut().iter_mut().zip(qd_row.as_flattened_mut());
+        for ((state, input), (q_row, qd_row)) in self.sensitivity.iter_mut().zip(&self.map.input).zip(rows) {
+            let [q, qd] = *state;
+            let (q, qd) = (a * q + b * qd + input[0], c * q + d * qd + input[1]);
+            *q_row = q;
+            let (q, qd) = (q - first[0] * q, qd - first[1] * q);
+            *qd_row = qd;
+            *state = [q - second[0] * qd, qd - second[1] * qd];
+        }
+        let residuals = innovations.map(|innovation| innovation.map_or(0.0, |innovation| innovation.residual));
+        let weights = innovations.map(|innovation| innovation.map_or(0.0, |innovation| innovation.precision));
+        self.information.add_pair([&self.rows[0], &self.rows[1]], residuals, weights);
     }
 }
 

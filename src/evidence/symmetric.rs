@@ -1,64 +1,187 @@
-//! Small symmetric systems in place, on row-major slices of which the lower triangle counts; nothing is allocated.
+//! Small symmetric positive systems \[A | b\], eliminated in room that is fixed at construction.
+//!
+//! A = Uᵀ D U with U unit upper triangular (Golub and Van Loan, *Matrix Computations*, 4.1): no square roots, and b goes through the
+//! elimination as one more column, which leaves z = U⁻ᵀ b. Rows are cut into lanes of four numbers, so that the innermost
+//! loops have a fixed length; what stands below the diagonal in a row's first lane is carried along and never read.
 
-/// Replaces the lower triangle of the n × n matrix by its Cholesky factor L. A pivot that falls below `tolerance` times its
-/// diagonal entry is not positive for what rounding leaves: the row is then replaced by one that fixes its unknown to 0,
-/// and `false` is returned.
-pub fn cholesky(matrix: &mut [f64], n: usize, tolerance: f64) -> bool {
-    let mut definite = true;
-    for row in 0..n {
-        let diagonal = matrix[row * n + row];
-        for column in 0..row {
-            let (head, tail) = matrix.split_at_mut(row * n);
-            let upper = &head[column * n..column * n + column];
-            let sum: f64 = tail[..column].iter().zip(upper).map(|(a, b)| a * b).sum();
-            tail[column] = (tail[column] - sum) / head[column * n + column];
-        }
-        let squares: f64 = matrix[row * n..row * n + row].iter().map(|a| a * a).sum();
-        let pivot = diagonal - squares;
-        if pivot > tolerance * diagonal && pivot.is_finite() {
-            matrix[row * n + row] = pivot.sqrt();
+use serde::{Deserialize, Serialize};
+
+/// Four neighbours in a row.
+pub type Lane = [f64; WIDTH];
+
+/// Numbers in a lane.
+pub const WIDTH: usize = 4;
+
+/// Bounds between which a product of pivots or variances is kept before its logarithm is taken.
+const PRODUCT: std::ops::Range<f64> = 1e-100..1e100;
+
+/// Σ ln x over many x > 0 with few logarithms.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LogSum {
+    sum: f64,
+    product: f64,
+}
+
+impl Default for LogSum {
+    fn default() -> LogSum {
+        LogSum { sum: 0.0, product: 1.0 }
+    }
+}
+
+impl LogSum {
+    /// Adds ln x.
+    #[inline]
+    pub fn add(&mut self, x: f64) {
+        let product = self.product * x;
+        if PRODUCT.contains(&product) {
+            self.product = product;
         } else {
-            definite = false;
-            matrix[row * n..row * n + row].fill(0.0);
-            matrix[row * n + row] = f64::INFINITY;
+            self.sum += self.product.ln() + x.ln();
+            self.product = 1.0;
         }
     }
-    definite
-}
 
-/// Solves L y = b in place.
-pub fn forward(factor: &[f64], n: usize, b: &mut [f64]) {
-    for row in 0..n {
-        let sum: f64 = factor[row * n..row * n + row].iter().zip(&*b).map(|(a, y)| a * y).sum();
-        b[row] = (b[row] - sum) / factor[row * n + row];
+    /// Σ ln x.
+    pub fn total(&self) -> f64 {
+        self.sum + self.product.ln()
     }
 }
 
-/// Solves Lᵀ x = y in place.
-pub fn backward(factor: &[f64], n: usize, y: &mut [f64]) {
-    for row in (0..n).rev() {
-        y[row] /= factor[row * n + row];
-        let value = y[row];
-        for column in 0..row {
-            y[column] -= factor[row * n + column] * value;
+/// A system of n equations under elimination.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct System {
+    n: usize,
+    /// Lanes in a row of A and b.
+    lanes: usize,
+    rows: Vec<Lane>,
+    /// Entries of D⁻¹; 0 for an unknown that is fixed to 0.
+    inverse_pivots: Vec<f64>,
+}
+
+impl System {
+    /// Room for `n` unknowns.
+    pub fn new(n: usize) -> System {
+        let lanes = (n + 1).div_ceil(WIDTH);
+        System { n, lanes, rows: vec![[0.0; WIDTH]; n * lanes], inverse_pivots: vec![0.0; n] }
+    }
+
+    /// Row of A and b; its entries from the diagonal on count, b is entry n.
+    #[inline]
+    pub fn row(&mut self, row: usize) -> &mut [f64] {
+        self.rows[row * self.lanes..(row + 1) * self.lanes].as_flattened_mut()
+    }
+
+    /// Takes row-major n × n matrices' sum as A, of which the upper triangle counts; each has room for a row's last lane behind it.
+    #[inline]
+    pub fn load(&mut self, first: &[f64], second: Option<&[f64]>) {
+        let (n, lanes) = (self.n, self.n.div_ceil(WIDTH));
+        for (row, target) in self.rows.chunks_exact_mut(self.lanes).enumerate() {
+            let range = row * n + WIDTH * (row / WIDTH)..row * n + WIDTH * lanes;
+            let target = &mut target[row / WIDTH..lanes];
+            let first = first[range.clone()].as_chunks::<WIDTH>().0;
+            match second {
+                None => target.copy_from_slice(first),
+                Some(second) => {
+                    let pairs = first.iter().zip(second[range].as_chunks::<WIDTH>().0);
+                    for (sums, (a, b)) in target.iter_mut().zip(pairs) {
+                        *sums = std::array::from_fn(|lane| a[lane] + b[lane]);
+                    }
+                }
+            }
         }
     }
-}
 
-/// ln det(L Lᵀ), rows of fixed unknowns left out.
-pub fn log_determinant(factor: &[f64], n: usize) -> f64 {
-    let pivots = (0..n).map(|row| factor[row * n + row]).filter(|pivot| pivot.is_finite());
-    2.0 * pivots.map(f64::ln).sum::<f64>()
-}
+    /// Takes b.
+    #[inline]
+    pub fn set_right(&mut self, right: impl Iterator<Item = f64>) {
+        let n = self.n;
+        for (row, value) in self.rows.chunks_exact_mut(self.lanes).zip(right) {
+            row.as_flattened_mut()[n] = value;
+        }
+    }
 
-/// Writes (L Lᵀ)⁻¹ into `inverse`, both triangles.
-pub fn invert(factor: &[f64], n: usize, inverse: &mut [f64]) {
-    for row in 0..n {
-        let column = &mut inverse[row * n..(row + 1) * n];
-        column.fill(0.0);
-        column[row] = 1.0;
-        forward(factor, n, column);
-        backward(factor, n, column);
+    /// Takes the unknown out of the system: a row of its own, with b = 0.
+    pub fn isolate(&mut self, unknown: usize) {
+        for row in 0..unknown {
+            self.row(row)[unknown] = 0.0;
+        }
+        self.row(unknown)[unknown..].fill(0.0);
+        self.row(unknown)[unknown] = 1.0;
+    }
+
+    /// Eliminates. A pivot that falls below `tolerance` times its diagonal entry is not positive for what rounding leaves: its
+    /// unknown is then fixed to 0.
+    pub fn eliminate(&mut self, tolerance: f64) {
+        let lanes = self.lanes;
+        for (row, slot) in self.inverse_pivots.iter_mut().enumerate() {
+            *slot = tolerance * self.rows[row * lanes + row / WIDTH][row % WIDTH];
+        }
+        for k in 0..self.n {
+            let (head, tail) = self.rows.split_at_mut((k + 1) * lanes);
+            let above = &head[k * lanes..];
+            let pivot = above[k / WIDTH][k % WIDTH];
+            let positive = pivot > self.inverse_pivots[k] && pivot.is_finite();
+            let inverse = if positive { pivot.recip() } else { 0.0 };
+            self.inverse_pivots[k] = inverse;
+            for (below, row) in tail.chunks_exact_mut(lanes).zip(k + 1..) {
+                let first = row / WIDTH;
+                let factor = above[first][row % WIDTH] * inverse;
+                for (entries, above) in below[first..].iter_mut().zip(&above[first..]) {
+                    (0..WIDTH).for_each(|lane| entries[lane] -= factor * above[lane]);
+                }
+            }
+        }
+    }
+
+    /// Whether the unknown could be solved for.
+    #[inline]
+    pub fn is_solved(&self, unknown: usize) -> bool {
+        self.inverse_pivots[unknown] > 0.0
+    }
+
+    /// The unknown's entry of D, 0 where it is fixed.
+    pub fn pivot(&self, unknown: usize) -> f64 {
+        if self.is_solved(unknown) { self.inverse_pivots[unknown].recip() } else { 0.0 }
+    }
+
+    /// bᵀ A⁻¹ b.
+    pub fn squares(&self) -> f64 {
+        let ends = self.rows.chunks_exact(self.lanes).map(|row| row.as_flattened()[self.n]);
+        ends.zip(&self.inverse_pivots).map(|(z, inverse)| z * z * inverse).sum()
+    }
+
+    /// ln det A, fixed unknowns left out.
+    pub fn log_determinant(&self) -> f64 {
+        let mut sum = LogSum::default();
+        self.inverse_pivots.iter().filter(|inverse| **inverse > 0.0).for_each(|inverse| sum.add(*inverse));
+        -sum.total()
+    }
+
+    /// Writes A⁻¹ b into `x`, n.
+    pub fn solve(&self, x: &mut [f64]) {
+        for k in (0..self.n).rev() {
+            let row = self.rows[k * self.lanes..(k + 1) * self.lanes].as_flattened();
+            let known: f64 = row[k + 1..self.n].iter().zip(&x[k + 1..]).map(|(a, x)| a * x).sum();
+            x[k] = (row[self.n] - known) * self.inverse_pivots[k];
+        }
+    }
+
+    /// Writes A⁻¹ into `inverse`, n × n, both triangles; rows and columns of fixed unknowns are 0.
+    pub fn invert(&self, inverse: &mut [f64]) {
+        let n = self.n;
+        for row in (0..n).rev() {
+            let entries = self.rows[row * self.lanes..(row + 1) * self.lanes].as_flattened();
+            let scale = self.inverse_pivots[row];
+            // A⁻¹ = D⁻¹ + (1 − U) A⁻¹ on and above the diagonal, from the last row up
+            for column in (row..n).rev() {
+                let behind = &inverse[column * n + row + 1..(column + 1) * n];
+                let known: f64 = entries[row + 1..n].iter().zip(behind).map(|(a, x)| a * x).sum();
+                let own = if column == row { 1.0 } else { 0.0 };
+                let value = if self.is_solved(column) { (own - known) * scale } else { 0.0 };
+                inverse[row * n + column] = value;
+                inverse[column * n + row] = value;
+            }
+        }
     }
 }
 
@@ -66,32 +189,78 @@ pub fn invert(factor: &[f64], n: usize, inverse: &mut [f64]) {
 mod tests {
     use super::*;
 
-    const MATRIX: [f64; 9] = [4.0, 2.0, 0.4, 2.0, 5.0, 1.0, 0.4, 1.0, 3.0];
+    /// Upper triangle, row-major, with room for the last row's lane.
+    const MATRIX: [f64; 10] = [4.0, 2.0, 0.4, 0.0, 5.0, 1.0, 0.0, 0.0, 3.0, 0.0];
+
+    fn entry(row: usize, column: usize) -> f64 {
+        MATRIX[3 * row.min(column) + row.max(column)]
+    }
+
+    fn eliminated() -> System {
+        let mut system = System::new(3);
+        system.load(&MATRIX, None);
+        system.set_right([3.0, -1.0, 2.0].into_iter());
+        system.eliminate(1e-12);
+        system
+    }
 
     #[test]
     fn the_inverse_times_the_matrix_is_one() {
-        let mut factor = MATRIX;
-        assert!(cholesky(&mut factor, 3, 1e-12));
         let mut inverse = [0.0; 9];
-        invert(&factor, 3, &mut inverse);
+        eliminated().invert(&mut inverse);
         for row in 0..3 {
             for column in 0..3 {
-                let entry: f64 = (0..3).map(|k| MATRIX[row * 3 + k] * inverse[k * 3 + column]).sum();
+                let product: f64 = (0..3).map(|k| entry(row, k) * inverse[k * 3 + column]).sum();
                 let expected = if row == column { 1.0 } else { 0.0 };
-                assert!((entry - expected).abs() < 1e-14, "({row}, {column}) = {entry}");
+                assert!((product - expected).abs() < 1e-14, "({row}, {column}) = {product}");
             }
         }
         let determinant = 4.0 * (15.0 - 1.0) - 2.0 * (6.0 - 0.4) + 0.4 * (2.0 - 2.0);
-        assert!((log_determinant(&factor, 3) - f64::ln(determinant)).abs() < 1e-14);
+        assert!((eliminated().log_determinant() - f64::ln(determinant)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_solution_satisfies_the_system() {
+        let (system, mut x) = (eliminated(), [0.0; 3]);
+        system.solve(&mut x);
+        for (row, right) in [3.0, -1.0, 2.0].into_iter().enumerate() {
+            let left: f64 = (0..3).map(|column| entry(row, column) * x[column]).sum();
+            assert!((left - right).abs() < 1e-14, "row {row}: {left}");
+        }
+        let squares = 3.0 * x[0] - x[1] + 2.0 * x[2];
+        assert!((system.squares() - squares).abs() < 1e-14);
     }
 
     #[test]
     fn a_collinear_unknown_is_fixed_to_zero() {
-        let mut factor = [1.0, 1.0, 1.0, 1.0];
-        assert!(!cholesky(&mut factor, 2, 1e-12));
-        let mut b = [3.0, 3.0];
-        forward(&factor, 2, &mut b);
-        backward(&factor, 2, &mut b);
-        assert_eq!(b, [3.0, 0.0]);
+        let mut system = System::new(2);
+        system.load(&[1.0, 1.0, 0.0, 1.0, 0.0, 0.0], None);
+        system.set_right([3.0, 3.0].into_iter());
+        system.eliminate(1e-12);
+        let (mut x, mut inverse) = ([0.0; 2], [0.0; 4]);
+        system.solve(&mut x);
+        system.invert(&mut inverse);
+        assert_eq!((x, inverse), ([3.0, 0.0], [1.0, 0.0, 0.0, 0.0]));
+        assert!(system.is_solved(0) && !system.is_solved(1));
+    }
+
+    #[test]
+    fn an_isolated_unknown_leaves_the_others_alone() {
+        let mut system = System::new(3);
+        system.load(&MATRIX, None);
+        system.set_right([4.0, 7.0, 0.4].into_iter());
+        system.isolate(1);
+        system.eliminate(1e-12);
+        let mut x = [0.0; 3];
+        system.solve(&mut x);
+        assert!((x[0] - 1.0).abs() < 1e-15 && x[1] == 0.0 && x[2].abs() < 1e-15, "{x:?}");
+    }
+
+    #[test]
+    fn a_sum_of_logarithms_survives_products_beyond_any_float() {
+        let mut sum = LogSum::default();
+        (0..1000).for_each(|k| sum.add(if k % 3 == 0 { 1e-20 } else { 3e-14 }));
+        let expected = 334.0 * f64::ln(1e-20) + 666.0 * f64::ln(3e-14);
+        assert!((sum.total() / expected - 1.0).abs() < 1e-13);
     }
 }

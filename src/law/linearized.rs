@@ -4,7 +4,8 @@
 //! itself is integrated with order 4; A and B are taken at the middle of the step (order 2), which leaves a Gauss–Newton
 //! fixed point where it is: only the path to it depends on them.
 
-use super::{Motion, State, Term};
+use super::compiled::Table;
+use super::{Compiled, State};
 
 /// A step and what it is linear about.
 #[derive(Clone, Copy, Debug)]
@@ -17,72 +18,51 @@ pub struct Linearized {
     pub input: [f64; 2],
     /// |∂q̈/∂q| dt² + |∂q̈/∂q̇| dt: how much happens within the step.
     pub rate: f64,
-    middle: Middle,
 }
 
-#[derive(Clone, Copy, Debug)]
-struct Middle {
-    state: State,
-    excitation: f64,
-    acceleration: f64,
-    mass: f64,
-}
-
-impl Motion<'_> {
-    /// The step `dt` long under an excitation with these values at its start, middle and end.
-    pub fn linearized_step(&self, state: State, dt: f64, excitation: [f64; 3]) -> Linearized {
+impl Compiled {
+    /// The step `dt` long under an excitation with these values at its start, middle and end. Writes ∂q̈/∂θ of the free terms
+    /// at the middle of the step into `slopes`; a mass that varies with q counts as constant in the transition.
+    #[inline]
+    pub fn linearized_step(&self, state: State, dt: f64, excitation: [f64; 3], slopes: &mut [f64]) -> Linearized {
         let half = 0.5 * dt;
-        let [from, middle_excitation, to] = excitation;
-        let a1 = self.acceleration(state, from);
-        let s2 = State { q: state.q + half * state.qd, qd: state.qd + half * a1 };
-        let a2 = self.acceleration(s2, middle_excitation);
-        let s3 = State { q: state.q + half * s2.qd, qd: state.qd + half * a2 };
-        let (a3, mass, [by_q, by_qd]) = self.acceleration_and_slopes(s3, middle_excitation);
-        let s4 = State { q: state.q + dt * s3.qd, qd: state.qd + dt * a3 };
-        let a4 = self.acceleration(s4, to);
-        let end = State {
-            q: state.q + dt / 6.0 * (state.qd + 2.0 * s2.qd + 2.0 * s3.qd + s4.qd),
-            qd: state.qd + dt / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4),
+        let [from, middle, to] = excitation;
+        let mut table = Table::EMPTY;
+        let mut at = |state: State, excitation: f64| {
+            self.fill(&mut table, state, excitation);
+            self.acceleration(&table, excitation).0
         };
+        let a1 = at(state, from);
+        let s2 = State { q: state.q + half * state.qd, qd: state.qd + half * a1 };
+        let a2 = at(s2, middle);
+        let s3 = State { q: state.q + half * s2.qd, qd: state.qd + half * a2 };
+        self.fill_all(&mut table, s3, middle);
+        let (a3, inverse_mass) = self.acceleration(&table, middle);
+        self.slopes(&table, a3, inverse_mass, slopes);
+        let [by_q, by_qd] = self.gradient(&table, s3).map(|slope| -slope * inverse_mass);
+        let s4 = State { q: state.q + dt * s3.qd, qd: state.qd + dt * a3 };
+        self.fill(&mut table, s4, to);
+        let a4 = self.acceleration(&table, to).0;
         let half2 = half * dt;
         Linearized {
-            state: end,
+            state: State {
+                q: state.q + dt / 6.0 * (state.qd + 2.0 * s2.qd + 2.0 * s3.qd + s4.qd),
+                qd: state.qd + dt / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4),
+            },
             transition: [
                 [1.0 + half2 * by_q, dt + half2 * by_qd],
                 [dt * by_q + half2 * by_q * by_qd, 1.0 + dt * by_qd + half2 * (by_q + by_qd * by_qd)],
             ],
             input: [half2, dt + half2 * by_qd],
             rate: by_q.abs() * dt * dt + by_qd.abs() * dt,
-            middle: Middle { state: s3, excitation: middle_excitation, acceleration: a3, mass },
         }
-    }
-
-    /// (q̈, mass, [∂q̈/∂q, ∂q̈/∂q̇]); a mass that varies with q counts as constant in the slopes.
-    fn acceleration_and_slopes(&self, state: State, excitation: f64) -> (f64, f64, [f64; 2]) {
-        let (mut force, mut mass, mut by_q, mut by_qd) = (0.0, 0.0, 0.0, 0.0);
-        for (term, coefficient) in self.terms.iter().zip(self.coefficients) {
-            let (slope_q, slope_qd) = term.gradient(state.q, state.qd, excitation);
-            force += coefficient * term.force(state.q, state.qd, excitation);
-            mass += coefficient * term.mass(state.q);
-            by_q += coefficient * slope_q;
-            by_qd += coefficient * slope_qd;
-        }
-        ((excitation - force) / mass, mass, [-by_q / mass, -by_qd / mass])
-    }
-}
-
-impl Linearized {
-    /// ∂q̈/∂θ for a term, at the middle of the step.
-    #[inline]
-    pub fn slope(&self, term: Term) -> f64 {
-        let Middle { state, excitation, acceleration, mass } = self.middle;
-        -(term.force(state.q, state.qd, excitation) + term.mass(state.q) * acceleration) / mass
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::{Motion, Term};
 
     const TERMS: [Term; 4] = [Term::Inertia, Term::power(0, 1), Term::power(1, 0), Term::power(2, 1)];
     const COEFFICIENTS: [f64; 4] = [1.3, 0.3, 4.0, 0.7];
@@ -91,14 +71,21 @@ mod tests {
         [0.4, 0.4 + 0.9 * dt, 0.4 + 1.8 * dt]
     }
 
+    fn step(coefficients: &[f64], state: State, dt: f64) -> (Linearized, [f64; 4]) {
+        let (mut compiled, mut slopes) = (Compiled::default(), [0.0; 4]);
+        compiled.seek(&TERMS);
+        compiled.compile(&Motion { terms: &TERMS, coefficients });
+        (compiled.linearized_step(state, dt, drive(dt), &mut slopes), slopes)
+    }
+
     fn end(coefficients: &[f64], state: State, dt: f64) -> State {
-        Motion { terms: &TERMS, coefficients }.linearized_step(state, dt, drive(dt)).state
+        step(coefficients, state, dt).0.state
     }
 
     /// The largest error of A and B against differences of the step itself.
     fn error(dt: f64) -> f64 {
         let state = State { q: 0.8, qd: -0.3 };
-        let step = Motion { terms: &TERMS, coefficients: &COEFFICIENTS }.linearized_step(state, dt, drive(dt));
+        let (step, slopes) = step(&COEFFICIENTS, state, dt);
         let eps = 1e-5;
         let moved = |q: f64, qd: f64| end(&COEFFICIENTS, State { q: state.q + q, qd: state.qd + qd }, dt);
         let mut worst: f64 = 0.0;
@@ -107,15 +94,15 @@ mod tests {
             worst = worst.max(((plus.q - minus.q) / (2.0 * eps) - step.transition[0][column]).abs());
             worst = worst.max(((plus.qd - minus.qd) / (2.0 * eps) - step.transition[1][column]).abs());
         }
-        for (index, term) in TERMS.into_iter().enumerate() {
+        for (index, slope) in slopes.into_iter().enumerate() {
             let nudged = |by: f64| {
                 let mut coefficients = COEFFICIENTS;
                 coefficients[index] += by;
                 end(&coefficients, state, dt)
             };
             let (plus, minus) = (nudged(eps), nudged(-eps));
-            worst = worst.max(((plus.q - minus.q) / (2.0 * eps) - step.input[0] * step.slope(term)).abs());
-            worst = worst.max(((plus.qd - minus.qd) / (2.0 * eps) - step.input[1] * step.slope(term)).abs());
+            worst = worst.max(((plus.q - minus.q) / (2.0 * eps) - step.input[0] * slope).abs());
+            worst = worst.max(((plus.qd - minus.qd) / (2.0 * eps) - step.input[1] * slope).abs());
         }
         worst
     }

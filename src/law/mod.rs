@@ -4,6 +4,7 @@
 //! on the right with its coefficient fixed to 1 (or, unforced, with the inertia fixed to 1 and F = 0). Each
 //! [`Term`] is one f: the inertia q̈, a product of powers `q^a q̇^b F^c`, or a named physical effect of the catalogue.
 
+mod compiled;
 mod drive;
 mod effect;
 mod hold;
@@ -13,6 +14,7 @@ mod motion;
 mod term;
 mod text;
 
+pub use compiled::Compiled;
 pub use drive::{BandLimited, Drive, NODES, REACH, look_ahead};
 pub use effect::Effect;
 pub use hold::Hold;

@@ -21,7 +21,8 @@ usage: cargo xtask CHORE
                      writes target/crosscheck/report.html and report.json
   test               every test
   fmu                builds SwitchedIdentifier.fmu, Duffing.fmu, VanDerPol.fmu into target/fmu
-  bench [ARGUMENT..] benchmarks; arguments go to cargo bench";
+  bench [ARGUMENT..] cost per sample by phase, terms and window; arguments go to the
+                     benchmark (--help lists them)";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -40,7 +41,10 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         ("crosscheck", rest) => crosscheck::crosscheck(rest),
         ("test", []) => test::test(),
         ("fmu", []) => fmu::build(),
-        ("bench", rest) => command::run(command::cargo(&["bench"]).args(rest), "install Rust from https://rustup.rs"),
+        ("bench", rest) => {
+            let bench = ["bench", "--package", "switchid", "--bench", "step", "--"];
+            command::run(command::cargo(&bench).args(rest), "install Rust from https://rustup.rs")
+        }
         ("--help" | "-h" | "help", _) => {
             println!("{USAGE}");
             Ok(())

@@ -1,0 +1,326 @@
+//! A law with numbers, arranged for speed.
+//!
+//! Every term is a product of one factor of q, one of q̇ and a power of F: the factors that the terms share, powers foremost, are
+//! evaluated once at a point into a [`Table`], and a term is three places in it. Terms whose coefficient is 0 cost nothing where
+//! only the force is wanted. The order of a sum, and so its last bits, depend on nothing but terms and coefficients.
+
+use super::effect::Effect;
+use super::{Model, Monomial, Motion, State, Term};
+use serde::{Deserialize, Serialize};
+
+/// Factors of q or q̇: the powers, then the effects'; a power of two, so that a place is never out of range.
+const FACTORS: usize = 16;
+
+const MASK: usize = FACTORS - 1;
+
+/// First place behind the powers.
+const EFFECTS: u8 = Monomial::MAX_POWER + 1;
+
+/// A term as places of its factors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Places {
+    q: u8,
+    qd: u8,
+    excitation: u8,
+}
+
+impl Places {
+    /// Of the part of the term that does not multiply q̈; none for the inertia.
+    fn of(term: Term) -> Option<Places> {
+        let places = |q, qd| Some(Places { q, qd, excitation: 0 });
+        match term {
+            Term::Inertia => None,
+            Term::Monomial(powers) => Some(Places { q: powers.q, qd: powers.qd, excitation: powers.excitation }),
+            Term::Effect(Effect::CoulombFriction) => places(0, EFFECTS),
+            Term::Effect(Effect::QuadraticDamping) => places(0, EFFECTS + 1),
+            Term::Effect(Effect::PendulumRestoring) => places(EFFECTS, 0),
+            Term::Effect(Effect::SignedQuadraticStiffness) => places(EFFECTS + 1, 0),
+            Term::Effect(Effect::BilinearStiffness) => places(EFFECTS + 2, 0),
+            Term::Effect(Effect::PositionDependentInertia) => places(1, 2),
+        }
+    }
+}
+
+/// Effects whose factor stands at a place of q's table, and of q̇'s.
+const OF_Q: [Effect; 3] = [Effect::PendulumRestoring, Effect::SignedQuadraticStiffness, Effect::BilinearStiffness];
+const OF_QD: [Effect; 2] = [Effect::CoulombFriction, Effect::QuadraticDamping];
+
+/// A term that the law has: its places and its coefficient.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Part {
+    places: Places,
+    coefficient: f64,
+}
+
+/// A free term: where its force stands, and what of it multiplies q̈ as `mass[0] + mass[1] q²`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Free {
+    places: Places,
+    /// 0 for the inertia, which has no force.
+    force: f64,
+    mass: [f64; 2],
+}
+
+/// The largest powers that are needed, and whether any effect is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Reach {
+    q: u8,
+    qd: u8,
+    excitation: u8,
+}
+
+impl Reach {
+    fn include(&mut self, places: Places) {
+        self.q = self.q.max(places.q);
+        self.qd = self.qd.max(places.qd);
+        self.excitation = self.excitation.max(places.excitation);
+    }
+}
+
+/// A law with numbers and the terms whose coefficients are sought.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Compiled {
+    coefficients: [f64; Model::MAX_TERMS],
+    parts: [Part; Model::MAX_TERMS],
+    count: usize,
+    free: [Free; Model::MAX_TERMS],
+    reach: Reach,
+    free_reach: Reach,
+    /// What multiplies q̈: `mass[0] + mass[1] q²`.
+    mass: [f64; 2],
+    /// 1 ÷ `mass[0]`.
+    inverse_mass: f64,
+}
+
+impl Default for Compiled {
+    fn default() -> Compiled {
+        Compiled {
+            coefficients: [f64::NAN; Model::MAX_TERMS],
+            parts: [Part::default(); Model::MAX_TERMS],
+            count: 0,
+            free: [Free::default(); Model::MAX_TERMS],
+            reach: Reach::default(),
+            free_reach: Reach::default(),
+            mass: [0.0; 2],
+            inverse_mass: 0.0,
+        }
+    }
+}
+
+/// The factors at one point.
+pub(super) struct Table {
+    pub(super) q: [f64; FACTORS],
+    pub(super) qd: [f64; FACTORS],
+    pub(super) excitation: [f64; FACTORS],
+}
+
+impl Compiled {
+    /// Takes the free terms, at most [`Model::MAX_TERMS`], for [`Compiled::slopes`].
+    pub fn seek(&mut self, free: &[Term]) {
+        self.free_reach = Reach::default();
+        for (slot, term) in self.free.iter_mut().zip(free) {
+            let places = Places::of(*term);
+            let places_or_one = places.unwrap_or_default();
+            let at_zero = term.mass(0.0);
+            *slot = Free {
+                places: places_or_one,
+                force: if places.is_some() { 1.0 } else { 0.0 },
+                mass: [at_zero, term.mass(1.0) - at_zero],
+            };
+            self.free_reach.include(places_or_one);
+        }
+    }
+
+    /// Takes the motion, whose terms are those of the last time, unless it has its coefficients already.
+    #[inline]
+    pub fn follow(&mut self, motion: &Motion) {
+        let n = motion.coefficients.len().min(Model::MAX_TERMS);
+        if self.coefficients[..n] != motion.coefficients[..n] {
+            self.compile(motion);
+        }
+    }
+
+    /// Takes the motion.
+    pub fn compile(&mut self, motion: &Motion) {
+        self.count = 0;
+        self.mass = [0.0; 2];
+        self.reach = Reach::default();
+        for ((term, coefficient), kept) in motion.terms.iter().zip(motion.coefficients).zip(&mut self.coefficients) {
+            *kept = *coefficient;
+            let at_zero = term.mass(0.0);
+            self.mass[0] += coefficient * at_zero;
+            self.mass[1] += coefficient * (term.mass(1.0) - at_zero);
+            if let Some(places) = Places::of(*term).filter(|_| *coefficient != 0.0) {
+                self.parts[self.count] = Part { places, coefficient: *coefficient };
+                self.count += 1;
+                self.reach.include(places);
+            }
+        }
+        self.inverse_mass = self.mass[0].recip();
+    }
+
+    /// Writes the law's factors at a point.
+    #[inline]
+    pub(super) fn fill(&self, table: &mut Table, state: State, excitation: f64) {
+        table.fill(self.reach, state, excitation);
+    }
+
+    /// Writes the law's and the free terms' factors at a point.
+    #[inline]
+    pub(super) fn fill_all(&self, table: &mut Table, state: State, excitation: f64) {
+        let (law, free) = (self.reach, self.free_reach);
+        let excited = law.excitation.max(free.excitation);
+        let reach = Reach { q: law.q.max(free.q), qd: law.qd.max(free.qd), excitation: excited };
+        table.fill(reach, state, excitation);
+    }
+
+    /// (q̈, 1 ÷ mass).
+    #[inline]
+    pub(super) fn acceleration(&self, table: &Table, excitation: f64) -> (f64, f64) {
+        let force: f64 = self.parts[..self.count].iter().map(|part| part.coefficient * table.force(part.places)).sum();
+        let inverse = match self.mass[1] {
+            0.0 => self.inverse_mass,
+            by_square => (self.mass[0] + by_square * table.q[2]).recip(),
+        };
+        ((excitation - force) * inverse, inverse)
+    }
+
+    /// \[∂/∂q, ∂/∂q̇\] of the law's force.
+    #[inline]
+    pub(super) fn gradient(&self, table: &Table, state: State) -> [f64; 2] {
+        let (mut by_q, mut by_qd) = ([0.0; FACTORS], [0.0; FACTORS]);
+        differentiate(&mut by_q, &table.q, self.reach.q);
+        differentiate(&mut by_qd, &table.qd, self.reach.qd);
+        if self.reach.q >= EFFECTS {
+            let slots = &mut by_q[usize::from(EFFECTS)..];
+            OF_Q.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.gradient(state.q, 0.0).0);
+        }
+        if self.reach.qd >= EFFECTS {
+            let slots = &mut by_qd[usize::from(EFFECTS)..];
+            OF_QD.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.gradient(0.0, state.qd).1);
+        }
+        let mut gradient = [0.0; 2];
+        for Part { places, coefficient } in &self.parts[..self.count] {
+            let scaled = coefficient * table.excitation[usize::from(places.excitation) & MASK];
+            let (q, qd) = (usize::from(places.q) & MASK, usize::from(places.qd) & MASK);
+            gradient[0] += scaled * by_q[q] * table.qd[qd];
+            gradient[1] += scaled * table.q[q] * by_qd[qd];
+        }
+        gradient
+    }
+
+    /// Writes ∂q̈/∂θ of the free terms at a point of this acceleration.
+    #[inline]
+    pub(super) fn slopes(&self, table: &Table, acceleration: f64, inverse_mass: f64, slopes: &mut [f64]) {
+        let square = table.q[2];
+        for (slope, free) in slopes.iter_mut().zip(&self.free) {
+            let mass = free.mass[0] + free.mass[1] * square;
+            *slope = -(free.force * table.force(free.places) + mass * acceleration) * inverse_mass;
+        }
+    }
+}
+
+impl Table {
+    pub(super) const EMPTY: Table = Table { q: [0.0; FACTORS], qd: [0.0; FACTORS], excitation: [0.0; FACTORS] };
+
+    #[inline]
+    fn fill(&mut self, reach: Reach, state: State, excitation: f64) {
+        powers(&mut self.q, state.q, reach.q);
+        powers(&mut self.qd, state.qd, reach.qd);
+        powers(&mut self.excitation, excitation, reach.excitation);
+        if reach.q >= EFFECTS {
+            let slots = &mut self.q[usize::from(EFFECTS)..];
+            OF_Q.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.force(state.q, 0.0));
+        }
+        if reach.qd >= EFFECTS {
+            let slots = &mut self.qd[usize::from(EFFECTS)..];
+            OF_QD.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.force(0.0, state.qd));
+        }
+    }
+
+    #[inline]
+    fn force(&self, places: Places) -> f64 {
+        let product = self.q[usize::from(places.q) & MASK] * self.qd[usize::from(places.qd) & MASK];
+        product * self.excitation[usize::from(places.excitation) & MASK]
+    }
+}
+
+/// base⁰ … base^reach, at least up to the cube.
+#[inline]
+fn powers(slots: &mut [f64; FACTORS], base: f64, reach: u8) {
+    let square = base * base;
+    (slots[0], slots[1], slots[2], slots[3]) = (1.0, base, square, square * base);
+    for power in 4..=usize::from(reach.min(Monomial::MAX_POWER)) {
+        slots[power & MASK] = slots[(power - 1) & MASK] * base;
+    }
+}
+
+#[inline]
+fn differentiate(slots: &mut [f64; FACTORS], powers: &[f64; FACTORS], reach: u8) {
+    (slots[1], slots[2], slots[3]) = (1.0, 2.0 * powers[1], 3.0 * powers[2]);
+    for power in 4..=usize::from(reach.min(Monomial::MAX_POWER)) {
+        slots[power & MASK] = power as f64 * powers[(power - 1) & MASK];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn every_kind() -> (Vec<Term>, Vec<f64>) {
+        let monomial = |q, qd, excitation| Term::Monomial(Monomial { q, qd, excitation });
+        let monomials =
+            [(0, 0, 0), (1, 0, 0), (3, 2, 0), (9, 0, 0), (0, 5, 0), (1, 0, 2)].map(|(q, qd, f)| monomial(q, qd, f));
+        let effects = Effect::ALL.map(Term::Effect);
+        let terms: Vec<Term> = [Term::Inertia].into_iter().chain(monomials).chain(effects).collect();
+        let coefficients = (0..terms.len()).map(|index| 0.3 + 0.17 * index as f64).collect();
+        (terms, coefficients)
+    }
+
+    #[test]
+    fn agrees_with_the_terms_one_by_one() {
+        let (terms, mut coefficients) = every_kind();
+        coefficients[2] = 0.0;
+        let motion = Motion { terms: &terms, coefficients: &coefficients };
+        let mut compiled = Compiled::default();
+        compiled.seek(&terms);
+        compiled.compile(&motion);
+        for (q, qd, excitation) in [(0.7, -1.2, 0.4), (-1.1, 0.3, -0.8)] {
+            let state = State { q, qd };
+            let mut table = Table::EMPTY;
+            compiled.fill_all(&mut table, state, excitation);
+            let (acceleration, inverse) = compiled.acceleration(&table, excitation);
+            let expected = motion.acceleration(state, excitation);
+            assert!((acceleration / expected - 1.0).abs() < 1e-13, "{acceleration} against {expected}");
+            let gradient = compiled.gradient(&table, state);
+            let mut slopes = vec![0.0; terms.len()];
+            compiled.slopes(&table, acceleration, inverse, &mut slopes);
+            let mut sums = [0.0; 2];
+            for ((term, coefficient), slope) in terms.iter().zip(&coefficients).zip(&slopes) {
+                let (by_q, by_qd) = term.gradient(q, qd, excitation);
+                sums = [sums[0] + coefficient * by_q, sums[1] + coefficient * by_qd];
+                let expected = -(term.force(q, qd, excitation) + term.mass(q) * acceleration) / motion.mass(q);
+                assert!(
+                    (slope - expected).abs() < 1e-13 * (1.0 + expected.abs()),
+                    "{term}: {slope} against {expected}"
+                );
+            }
+            for (found, expected) in gradient.iter().zip(sums) {
+                assert!((found / expected - 1.0).abs() < 1e-13, "{found} against {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn follows_only_coefficients_that_have_changed() {
+        let (terms, mut coefficients) = every_kind();
+        let mut compiled = Compiled::default();
+        compiled.follow(&Motion { terms: &terms, coefficients: &coefficients });
+        let first = compiled.clone();
+        compiled.follow(&Motion { terms: &terms, coefficients: &coefficients });
+        assert_eq!(compiled.mass, first.mass);
+        coefficients[0] = 2.5;
+        compiled.follow(&Motion { terms: &terms, coefficients: &coefficients });
+        assert!(compiled.mass[0] != first.mass[0]);
+    }
+}
