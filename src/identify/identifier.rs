@@ -192,12 +192,25 @@ impl Identifier {
     pub fn step(&mut self, sample: Sample) -> Result<(), Skipped> {
         self.accept(&sample)?;
         self.last = Some(sample.t);
+        let sample = self.measured(sample);
         let Identifier { settings, problem, engine, coefficients, output, .. } = self;
         match engine {
             Engine::Default(tracker) => tracker.step(problem, settings, sample, coefficients, output),
             Engine::Publication(publication) => publication.step(problem, settings, sample, coefficients, output),
         }
         Ok(())
+    }
+
+    /// The sample with 0 in the channels that are not measured: whatever stands there must not count.
+    fn measured(&self, sample: Sample) -> Sample {
+        let channels = self.settings.channels;
+        let or_zero = |measured: bool, value: f64| if measured { value } else { 0.0 };
+        Sample {
+            t: sample.t,
+            q: or_zero(channels.q, sample.q),
+            qd: or_zero(channels.qd, sample.qd),
+            excitation: or_zero(channels.excitation, sample.excitation),
+        }
     }
 
     fn accept(&self, sample: &Sample) -> Result<(), Skipped> {

@@ -28,11 +28,6 @@ impl Window {
         self.ring.len()
     }
 
-    /// Forgets all samples and begins to count anew.
-    pub fn clear(&mut self) {
-        self.count = 0;
-    }
-
     /// Adds a sample; the oldest goes when there is no room.
     pub fn push(&mut self, sample: Sample) {
         let slot = self.slot(self.count);

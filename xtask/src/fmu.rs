@@ -1,4 +1,4 @@
-//! `cargo xtask fmu`: builds the binaries and packs the example FMUs under `target/fmu/`.
+//! The example FMUs: builds the binaries and packs them under `target/fmu/`.
 
 use crate::command::{cargo, root, run};
 use crate::error::Error;
@@ -9,22 +9,33 @@ use switchid_fmu_package::{DUFFING, Fmu, LINUX64, VAN_DER_POL, identifier, plant
 /// Name of the default identifier.
 const IDENTIFIER: &str = "SwitchedIdentifier";
 
-/// Builds the binaries, apart from the rest so that no feature of the command line gets in, writes the three FMUs into
-/// `target/fmu` and the default identifier's `modelDescription.xml` at the root.
+/// `cargo xtask fmu`: what [`build`] does, and the default identifier's `modelDescription.xml` at the root made anew. No
+/// other chore writes that file: the test that finds it stale must see it as it was checked in.
+///
+/// # Errors
+/// What cargo or the packaging says.
+pub fn renew() -> Result<(), Error> {
+    write(&root().join("modelDescription.xml"), default_identifier()?.xml().as_bytes())?;
+    build()
+}
+
+/// Builds the binaries, apart from the rest so that no feature of the command line gets in, and writes the three FMUs
+/// into `target/fmu`.
 ///
 /// # Errors
 /// What cargo or the packaging says.
 pub fn build() -> Result<(), Error> {
     let identifier_binary = build_binary("switchid-fmu-identifier")?;
     let plant_binary = build_binary("switchid-fmu-plant")?;
-    let default = identifier(IDENTIFIER, &Model::cubic_library())?;
-    write(&root().join("modelDescription.xml"), default.xml().as_bytes())?;
-    for (fmu, binary) in
-        [(default, &identifier_binary), (plant(DUFFING)?, &plant_binary), (plant(VAN_DER_POL)?, &plant_binary)]
-    {
-        pack(fmu.with_binary(LINUX64, "so", binary.clone()))?;
+    pack(default_identifier()?.with_binary(LINUX64, "so", identifier_binary))?;
+    for law in [DUFFING, VAN_DER_POL] {
+        pack(plant(law)?.with_binary(LINUX64, "so", plant_binary.clone()))?;
     }
     Ok(())
+}
+
+fn default_identifier() -> Result<Fmu, Error> {
+    Ok(identifier(IDENTIFIER, &Model::cubic_library())?)
 }
 
 fn pack(fmu: Fmu) -> Result<(), Error> {

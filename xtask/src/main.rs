@@ -20,7 +20,8 @@ usage: cargo xtask CHORE
                      steps plant and identifier FMUs together under fmpy, gates the figures,
                      writes target/crosscheck/report.html and report.json
   test               every test
-  fmu                builds SwitchedIdentifier.fmu, Duffing.fmu, VanDerPol.fmu into target/fmu
+  fmu                builds SwitchedIdentifier.fmu, Duffing.fmu, VanDerPol.fmu into target/fmu,
+                     and modelDescription.xml at the root anew
   bench [ARGUMENT..] cost per sample by phase, terms and window; arguments go to the
                      benchmark (--help lists them)";
 
@@ -40,7 +41,7 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
     match (name.as_str(), rest) {
         ("crosscheck", rest) => crosscheck::crosscheck(rest),
         ("test", []) => test::test(),
-        ("fmu", []) => fmu::build(),
+        ("fmu", []) => fmu::renew(),
         ("bench", rest) => {
             let bench = ["bench", "--package", "switchid", "--bench", "step", "--"];
             command::run(command::cargo(&bench).args(rest), "install Rust from https://rustup.rs")

@@ -36,16 +36,16 @@ fn cargo_run(arguments: &[&str]) -> Result<(), Error> {
 }
 
 fn clippy<'a>(selection: &[&'a str]) -> Vec<&'a str> {
-    [&["clippy", "--quiet"], selection, &["--", "--deny", "warnings"]].concat()
+    [&["clippy", "--release", "--quiet"], selection, &["--", "--deny", "warnings"]].concat()
 }
 
 fn documentation() -> Result<(), Error> {
-    let arguments = ["doc", "--quiet", "--no-deps", "--workspace", "--exclude", CHECK];
+    let arguments = ["doc", "--release", "--quiet", "--no-deps", "--workspace", "--exclude", CHECK];
     run(cargo(&arguments).env("RUSTDOCFLAGS", "--deny warnings"), CARGO)
 }
 
 fn fmi_crate() -> Result<(), Error> {
-    let mut command = cargo(&["test", "--quiet", "--package", CHECK]);
+    let mut command = cargo(&["test", "--release", "--quiet", "--package", CHECK]);
     libclang::provide(&mut command)?;
     run(&mut command, CARGO)
 }
