@@ -164,8 +164,11 @@ fn the_law_is_found_from_position_alone_and_from_velocity_alone() {
     }
 }
 
+/// A name and (q, q̇, F) by sample number.
+type Signal = (&'static str, fn(i32) -> [f64; 3]);
+
 /// Signals no plant gives.
-fn nonsense() -> [(&'static str, fn(i32) -> [f64; 3]); 5] {
+fn nonsense() -> [Signal; 5] {
     [
         ("standing still", |_| [0.0; 3]),
         ("constant", |_| [1.0, 2.0, 3.0]),

@@ -1,6 +1,6 @@
 //! A whole recording through the streaming identifier: its stages, one after the other.
 
-use super::{BuildError, Coefficient, Identifier, Recording, Settings, Skipped};
+use super::{BuildError, Coefficient, Identifier, Method, Recording, Settings, Skipped};
 use crate::law::{Hold, Model, equation};
 use std::ops::Range;
 
@@ -57,11 +57,24 @@ pub fn settings_for(recording: &Recording, base: Settings) -> Settings {
     Settings { channels: recording.channels(), sample_time, max_window, ..base }
 }
 
-/// The hold under which the recording is explained best.
-///
-/// For now the straight line, which errs least where nothing is known.
-pub fn choose_hold(_model: &Model, _recording: &Recording, _settings: &Settings) -> Hold {
-    Hold::Linear
+/// Samples on which holds are compared.
+const HOLD_TRIAL: usize = 6000;
+
+/// The hold under which the first stretch of the recording has the largest likelihood; a straight line where none gives a law,
+/// which errs least where nothing is known. Always by our method: the publication's states no likelihood.
+pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) -> Hold {
+    let likelihood = |hold: Hold| {
+        let settings = Settings { hold, method: Method::Default, ..*settings };
+        let mut identifier = Identifier::new(model, settings).ok()?;
+        let piece = recording.pieces().into_iter().next()?;
+        for index in piece.take(HOLD_TRIAL) {
+            // a skipped sample is skipped under every hold
+            identifier.step(recording.sample(index)).ok();
+        }
+        identifier.likelihood()
+    };
+    let tried = Hold::ALL.into_iter().filter_map(|hold| Some((hold, likelihood(hold)?)));
+    tried.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(Hold::Linear, |(hold, _)| hold)
 }
 
 /// Steps an identifier over every sample and collects the stages. Each gap of the recording starts a new identifier, since

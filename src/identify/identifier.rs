@@ -247,11 +247,20 @@ impl Identifier {
         &self.output
     }
 
+    /// Log-likelihood per measurement of the present stage's law, to compare settings on one record by; `None` while there is no
+    /// law, and for the publication's method, which has none.
+    pub fn likelihood(&self) -> Option<f64> {
+        match &self.engine {
+            Engine::Default(tracker) => tracker.likelihood(),
+            Engine::Publication(_) => None,
+        }
+    }
+
     /// What the data since the present stage's start cannot determine: single terms, or combinations such as
     /// `qdd and q together`; and the model's total time derivatives in U₀, which no data can.
     pub fn unidentifiable(&self) -> Vec<String> {
         let from_data = match &self.engine {
-            Engine::Default(_) => Vec::new(),
+            Engine::Default(tracker) => tracker.unidentifiable(&self.problem),
             Engine::Publication(publication) => publication.unidentifiable(&self.problem),
         };
         let always = self.potential.iter().map(|term| format!("{term} in [potential]"));

@@ -73,6 +73,16 @@ impl Problem {
         row.excitation - known
     }
 
+    /// The names of free terms that no data so far tell apart: `qdd and q together`.
+    pub fn together(&self, free: &[usize]) -> String {
+        let mut names: Vec<String> = free.iter().map(|index| self.free_terms[*index].name()).collect();
+        match names.pop() {
+            Some(last) if names.is_empty() => last,
+            Some(last) => format!("{} and {last} together", names.join(", ")),
+            None => String::new(),
+        }
+    }
+
     /// Writes free coefficients into all of them.
     pub fn scatter(&self, free: &[f64], all: &mut [f64]) {
         for (value, index) in free.iter().zip(&self.free) {

@@ -98,8 +98,7 @@ impl Publication {
     /// One text for each direction that the present stage's data leave open.
     pub fn unidentifiable(&self, problem: &Problem) -> Vec<String> {
         let directions = if self.solved { self.equations.fit().open_directions() } else { Vec::new() };
-        let text = |direction: &Vec<usize>| together(direction.iter().map(|free| problem.free_terms[*free].name()));
-        directions.iter().map(text).collect()
+        directions.iter().map(|direction| problem.together(direction)).collect()
     }
 
     fn newest(&self) -> Option<&Sample> {
@@ -216,14 +215,4 @@ fn moved(motion: Motion, from: State, observation: &Observation) -> State {
         let [before, _, after] = observation.drive.part(part, parts);
         motion.step_linear(state, dt, before, after)
     })
-}
-
-/// "qdd", "qdd and q together", "qdd, qd and q together".
-fn together(names: impl Iterator<Item = String>) -> String {
-    let mut names: Vec<String> = names.collect();
-    match names.pop() {
-        Some(last) if names.is_empty() => last,
-        Some(last) => format!("{} and {last} together", names.join(", ")),
-        None => String::new(),
-    }
 }

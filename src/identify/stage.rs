@@ -201,10 +201,10 @@ impl Stage {
         self.closed_at = start;
         self.prior.clear();
         let n = problem.n();
-        for index in 0..n {
-            let precision = (prior.std[index] * prior.std[index]).recip();
+        for (index, ((std, centre), from)) in prior.std.iter().zip(prior.centre).zip(from).enumerate() {
+            let precision = (std * std).recip();
             self.prior.matrix[index * n + index] = precision;
-            self.prior.score[index] = precision * (prior.centre[index] - from[index]);
+            self.prior.score[index] = precision * (centre - from);
         }
         self.inertia_prior = None;
         if let Some(index) = problem.free_inertia() {
@@ -424,11 +424,10 @@ impl Stage {
 
     /// When the record outgrows the window, its first half becomes prior knowledge.
     fn fold(&mut self, window: &Window) {
-        if let Some(at) = self.checkpoint.at.take() {
-            if self.length(self.next) as f64 > FULL * window.capacity() as f64 {
-                self.prior.merge(&self.checkpoint.information);
-                self.start = at;
-            }
+        let full = self.length(self.next) as f64 > FULL * window.capacity() as f64;
+        if let Some(at) = self.checkpoint.at.take().filter(|_| full) {
+            self.prior.merge(&self.checkpoint.information);
+            self.start = at;
         }
     }
 

@@ -131,6 +131,19 @@ impl Start {
         }
     }
 
+    /// What the rows of the longest variation with enough of them leave open, each combination by its free terms; all terms while
+    /// there are no such rows.
+    pub fn open_directions(&self) -> Vec<Vec<usize>> {
+        let n = self.equation.len();
+        let enough = |scale: &&Scale| scale.regression.rows() as usize >= 2 * n + 2;
+        let Some(scale) = self.scales.iter().rfind(enough) else {
+            return (0..n).map(|free| vec![free]).collect();
+        };
+        let mut fit = Fit::new(n);
+        scale.regression.solve(&mut fit);
+        fit.open_directions()
+    }
+
     /// The solution of the length with the smallest predicted error, for sensor noise of these variances; none while no length
     /// has twice as many rows as unknowns and signal enough.
     pub fn guess(&mut self, problem: &Problem, sensor: [f64; 2]) -> Option<Guess<'_>> {

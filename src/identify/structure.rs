@@ -136,7 +136,8 @@ impl Structure {
         let explained: f64 = others().map(|k| entry(index, k) * solution.step[k]).sum();
         let shared: f64 = others()
             .map(|row| {
-                let sum: f64 = others().map(|column| solution.covariance[row * n + column] * entry(index, column)).sum();
+                let sum: f64 =
+                    others().map(|column| solution.covariance[row * n + column] * entry(index, column)).sum();
                 entry(index, row) * sum
             })
             .sum();

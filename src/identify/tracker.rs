@@ -145,9 +145,24 @@ impl Tracker {
         }
     }
 
-    /// The record it works on.
-    pub fn window(&self) -> &Window {
-        &self.window
+    /// Log-likelihood per measurement of the present stage; none before its first pass.
+    pub fn likelihood(&self) -> Option<f64> {
+        let known = self.phase == Phase::Refining && self.stage.likelihood.is_finite();
+        known.then_some(self.stage.likelihood)
+    }
+
+    /// What the record since the stage's start leaves open: combinations of terms while the weak rows of a first law are
+    /// gathered, then single terms whose std is larger than anything plausible.
+    pub fn unidentifiable(&self, problem: &Problem) -> Vec<String> {
+        let name = |free: &usize| problem.free_terms[*free].name();
+        let shown = self.stage.settled() && self.stage.stated_error() < TRUSTED;
+        if self.phase == Phase::Refining && shown {
+            let open =
+                (0..problem.n()).filter(|free| self.stage.active[*free] && self.stage.std(*free) >= self.spread[*free]);
+            return open.map(|free| name(&free)).collect();
+        }
+        let directions = self.start.open_directions();
+        directions.iter().map(|direction| problem.together(direction)).collect()
     }
 
     /// Takes an accepted sample.
@@ -252,7 +267,6 @@ impl Tracker {
         if !self.challenging || !self.challenger.refine(problem, settings, &self.window, BUDGET[1]) {
             return;
         }
-        if std::env::var("DBG").is_ok() { let c = &self.challenger; eprintln!("CHAL {} t {:.3} n {} dec {:.1e} s {:.2e} Q {:.1e} gain {:.1e} L {:.5} vs {:.5} th {:?}", c.passes, self.now(), c.length(self.window.ready()), c.decrement, c.noise.sensor[0].sqrt(), c.noise.process, c.gain, c.likelihood, self.stage.likelihood, c.all); }
         if self.challenger.settled() {
             self.challenging = false;
             let measurements = 2.0 * self.challenger.length(self.window.ready()) as f64;
@@ -271,9 +285,13 @@ impl Tracker {
             let number = self.live.next;
             let observation = self.window.observation(number);
             let innovations = self.live.step(problem, &observation);
+            if !self.live.pass.filter.state.is_finite() {
+                self.lose(output);
+                return;
+            }
             self.bank.step(&self.live.pass.map, &innovations);
             self.predict(problem, settings, number, &observation, output);
-            if number % SPAWN_EVERY == 0 {
+            if number.is_multiple_of(SPAWN_EVERY) {
                 let law = Law { information: &self.live.pass.information, active: &self.all_active };
                 self.bank.spawn(number, &law);
             }
@@ -285,6 +303,18 @@ impl Tracker {
                 self.judge(problem, settings, &suspect, output);
             }
         }
+    }
+
+    /// The law in use has left what can be computed: everything begins anew with the next samples.
+    fn lose(&mut self, output: &mut Output) {
+        let end = self.window.end();
+        self.live.running = false;
+        self.bank.clear();
+        self.deviation.clear();
+        self.start.begin(end);
+        (self.phase, self.challenging, self.challenged_from) = (Phase::Gathering, false, end);
+        (self.next_guess, self.next_noise_challenge) = (0, 0);
+        (output.status, output.valid, output.identified_time) = (Status::Acquiring, false, None);
     }
 
     /// Alarm, suspicion, or neither.
@@ -308,17 +338,6 @@ impl Tracker {
     /// Ends the stage; only data from after the switch enters the new law.
     fn switch(&mut self, problem: &Problem, suspect: &Suspect, output: &mut Output) {
         self.bank.look_at_all();
-        if std::env::var("DBG").is_ok() {
-            eprintln!(
-                "ALARM t {:.3} {:?} stage start {} passes {} live noise {:?} th {:?}",
-                self.now(),
-                self.bank.suspect(),
-                self.stage.start,
-                self.stage.passes,
-                self.live.noise,
-                self.live.all
-            );
-        }
         let suspect = self.bank.suspect().unwrap_or(*suspect);
         let last = self.window.ready() - 1;
         let instant = self.bank.latest_start(&suspect, (0.1 * suspect.evidence).max(0.5));
@@ -365,22 +384,6 @@ impl Tracker {
         let suspense = output.status == Status::SwitchSuspected && self.window.end() < self.suspected + SUSPENSE;
         if suspense || !self.stage.refine(problem, settings, &self.window, budget) {
             return;
-        }
-        if std::env::var("DBG").is_ok() {
-            eprintln!(
-                "PASS {} t {:.3} n {} dec {:.1e} stated {:.1e} s {:.2e} {:.2e} Q {:.1e} gain {:.1e} {:?} th {:.4?}",
-                self.stage.passes,
-                self.now(),
-                self.stage.length(self.window.ready()),
-                self.stage.decrement,
-                self.stage.stated_error(),
-                self.stage.noise.sensor[0].sqrt(),
-                self.stage.noise.sensor[1].sqrt(),
-                self.stage.noise.process,
-                self.stage.gain,
-                output.status,
-                self.stage.all
-            );
         }
         let worth_showing = self.stage.settled() && self.stage.stated_error() < TRUSTED;
         let worth_monitoring = worth_showing && self.stage.full_error() < TRUSTED && self.stage.confirmed();
@@ -431,7 +434,6 @@ impl Tracker {
         }
     }
 
-    #[doc(hidden)]
     fn publish_free(&self, free: usize, coefficient: &mut Coefficient) {
         let std = self.stage.std(free);
         if !self.stage.active[free] {
@@ -464,6 +466,9 @@ impl Tracker {
         let motion = Motion { terms: &problem.terms, coefficients: &self.live.all };
         let [from, _, to] = observation.drive.part(0, 1);
         self.live.prediction = motion.step_linear(self.live.prediction, observation.dt, from, to);
+        if !self.live.prediction.is_finite() {
+            self.live.restart_prediction(sample.t);
+        }
         let prediction = self.live.prediction;
         let weight = |measured: bool, weight: f64| if measured { weight } else { 0.0 };
         let difference = weight(problem.channels.q, settings.weight_q) * (prediction.q - sample.q).abs()
@@ -474,7 +479,7 @@ impl Tracker {
         (output.prediction_q, output.prediction_qd) = (prediction.q, prediction.qd);
         output.deviation = self.deviation.mean();
         output.threshold = self.threshold(settings);
-        if sample.t - self.live.predicted_since > settings.deviation_interval || !prediction.is_finite() {
+        if sample.t - self.live.predicted_since > settings.deviation_interval {
             self.live.restart_prediction(sample.t);
             self.usual_deviation += 0.2 * (output.deviation - self.usual_deviation);
         }
