@@ -80,7 +80,7 @@ impl Information {
             let entries = &mut self.matrix[row * self.n + WIDTH * lane..row * self.n + WIDTH * lanes];
             let columns = first[lane..].iter().zip(&second[lane..]);
             for (entries, (first, second)) in entries.as_chunks_mut::<WIDTH>().0.iter_mut().zip(columns) {
-                (0..WIDTH).for_each(|column| entries[column] += a * first[column] + b * second[column]);
+                *entries = std::array::from_fn(|column| entries[column] + (a * first[column] + b * second[column]));
             }
         }
     }
