@@ -125,7 +125,9 @@ fn by_window() {
 }
 
 fn step_through(mut identifier: Identifier, samples: &[Sample]) -> Identifier {
-    samples.iter().for_each(|sample| drop(black_box(identifier.step(*sample))));
+    for sample in samples {
+        black_box(identifier.step(*sample)).unwrap();
+    }
     identifier
 }
 

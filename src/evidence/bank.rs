@@ -345,15 +345,15 @@ impl Shared {
         let rows = q_row.iter_mut().zip(qd_row);
         let inputs = q_input.iter().zip(qd_input);
         for (((q_state, qd_state), (q_row, qd_row)), (q_input, qd_input)) in states.zip(rows).zip(inputs) {
-            for lane in 0..WIDTH {
-                let (q, qd) = (q_state[lane], qd_state[lane]);
-                let (q, qd) = (a * q + b * qd + q_input[lane], c * q + d * qd + qd_input[lane]);
-                q_row[lane] = q;
-                let (q, qd) = (q - first.gain[0] * q, qd - first.gain[1] * q);
-                qd_row[lane] = qd;
-                q_state[lane] = q - second.gain[0] * qd;
-                qd_state[lane] = qd - second.gain[1] * qd;
-            }
+            let (q, qd) = (*q_state, *qd_state);
+            let carried_q: Lane = std::array::from_fn(|lane| a * q[lane] + b * qd[lane] + q_input[lane]);
+            let carried_qd: Lane = std::array::from_fn(|lane| c * q[lane] + d * qd[lane] + qd_input[lane]);
+            let seen_qd: Lane = std::array::from_fn(|lane| carried_qd[lane] - first.gain[1] * carried_q[lane]);
+            let rest_q = 1.0 - first.gain[0];
+            *q_row = carried_q;
+            *qd_row = seen_qd;
+            *q_state = std::array::from_fn(|lane| rest_q * carried_q[lane] - second.gain[0] * seen_qd[lane]);
+            *qd_state = std::array::from_fn(|lane| seen_qd[lane] - second.gain[1] * seen_qd[lane]);
         }
     }
 }

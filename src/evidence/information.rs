@@ -80,7 +80,7 @@ impl Information {
             let entries = &mut self.matrix[row * self.n + WIDTH * lane..row * self.n + WIDTH * lanes];
             let columns = first[lane..].iter().zip(&second[lane..]);
             for (entries, (first, second)) in entries.as_chunks_mut::<WIDTH>().0.iter_mut().zip(columns) {
-                (0..WIDTH).for_each(|column| entries[column] += a * first[column] + b * second[column]);
+                *entries = std::array::from_fn(|column| entries[column] + (a * first[column] + b * second[column]));
             }
         }
     }
@@ -144,15 +144,15 @@ impl Solution {
     /// Copies the system with a unit diagonal; an unknown without information gets a row of its own.
     fn equilibrate(&mut self, information: &Information, active: &[bool]) {
         let n = information.n;
-        for row in 0..n {
+        for (row, (scale, active)) in self.scale.iter_mut().zip(active).enumerate() {
             let diagonal = information.matrix[row * n + row];
-            self.scale[row] = if active[row] && diagonal > 0.0 { diagonal.sqrt().recip() } else { 0.0 };
+            *scale = if *active && diagonal > 0.0 { diagonal.sqrt().recip() } else { 0.0 };
         }
-        for row in 0..n {
-            let scale = self.scale[row];
+        for (row, scale) in self.scale.iter().enumerate() {
             let target = self.system.row(row);
-            for column in row + 1..n {
-                target[column] = information.matrix[row * n + column] * scale * self.scale[column];
+            let entries = information.matrix[row * n..(row + 1) * n].iter().zip(&self.scale);
+            for (slot, (entry, other)) in target.iter_mut().zip(entries).skip(row + 1) {
+                *slot = entry * scale * other;
             }
             target[row] = 1.0;
             target[n] = information.score[row] * scale;

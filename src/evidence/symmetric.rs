@@ -2,7 +2,7 @@
 //!
 //! A = Uᵀ D U with U unit upper triangular (Golub and Van Loan, *Matrix Computations*, 4.1): no square roots, and b goes through the
 //! elimination as one more column, which leaves z = U⁻ᵀ b. Rows are cut into lanes of four numbers, so that the innermost
-//! loops have a fixed length; what stands below the diagonal in a row's first lane is carried along and never read.
+//! loops have a fixed length (a lane is read whole before it is written, or they would not vectorise); what stands below the diagonal in a row's first lane is carried along and never read.
 
 use serde::{Deserialize, Serialize};
 
@@ -127,7 +127,7 @@ impl System {
                 let first = row / WIDTH;
                 let factor = above[first][row % WIDTH] * inverse;
                 for (entries, above) in below[first..].iter_mut().zip(&above[first..]) {
-                    (0..WIDTH).for_each(|lane| entries[lane] -= factor * above[lane]);
+                    *entries = std::array::from_fn(|lane| entries[lane] - factor * above[lane]);
                 }
             }
         }
