@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 const SHORTEST: usize = 32;
 
 /// Samples in the longest variation, where the window has room for it.
-const LONGEST: usize = 4096;
+const LONGEST: usize = 2048;
 
 /// Rows begin this fraction of a variation apart.
 const OVERLAP: usize = 8;

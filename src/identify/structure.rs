@@ -131,7 +131,7 @@ impl Structure {
     /// What a term that is not active would add to twice the log-likelihood; 0 where rounding hides what it has of its own.
     fn gain(&self, index: usize, active: &[bool], solution: &Solution) -> f64 {
         let n = active.len();
-        let entry = |a: usize, b: usize| self.information.matrix[a.max(b) * n + a.min(b)];
+        let entry = |a: usize, b: usize| self.information.matrix[a.min(b) * n + a.max(b)];
         let others = || (0..n).filter(|other| active[*other]);
         let explained: f64 = others().map(|k| entry(index, k) * solution.step[k]).sum();
         let shared: f64 = others()

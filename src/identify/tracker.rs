@@ -196,7 +196,9 @@ impl Tracker {
 
     /// Begins a stage, or a challenger of the one there is, from what the weak rows of its record say.
     fn challenge(&mut self, problem: &Problem, settings: &Settings) {
-        self.start.feed(problem, &self.window, 4);
+        if self.start.feed(problem, &self.window, 1) {
+            return;
+        }
         let (window, since) = (&self.window, self.challenged_from);
         let long_enough = !self.challenging && self.now() - window.sample(window.oldest()).t >= settings.initial_window;
         if !long_enough || window.end() < self.next_guess || since < window.oldest() {
@@ -537,7 +539,7 @@ fn first_noise(problem: &Problem, settings: &Settings, window: &Window) -> [f64;
         if given[index] > 0.0 {
             return given[index] * given[index];
         }
-        let first = window.end().saturating_sub(4096).max(window.oldest());
+        let first = window.end().saturating_sub(1024).max(window.oldest());
         let differences = (first..window.end().saturating_sub(3)).map(|number| {
             let [a, b, c, d] = [0, 1, 2, 3].map(|offset| value(window.sample(number + offset)));
             (d - 3.0 * c + 3.0 * b - a).powi(2)
