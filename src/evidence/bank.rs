@@ -25,6 +25,12 @@ const TOLERANCE: f64 = 1e-13;
 /// The law in use is trusted with this fraction of its information: its covariance is that of a linearisation.
 const CAUTION: f64 = 0.03;
 
+/// Evidence of this many levels at once comes from the last samples alone.
+const OVERWHELMING: f64 = 10.0;
+
+/// Starts with this much less evidence than the best are as good, nats.
+const MARGIN: f64 = 5.0;
+
 /// A hypothesis is looked at again when its age has grown by this factor.
 const AGING: f64 = 1.1;
 
@@ -62,10 +68,10 @@ struct Hypothesis {
     information: Information,
     /// Λ of "no switch", as [`Information::matrix`].
     prior: Vec<f64>,
-    /// μ of "no switch": what has been added to the coefficients in use since the start, with a minus.
-    mean: Vec<f64>,
-    /// Λμ.
+    /// Λμ of "no switch": what the stage up to the start says about the coefficients in use.
     pull: Vec<f64>,
+    /// μᵀΛμ.
+    at_mean: f64,
     prior_log_determinant: f64,
     active: Vec<bool>,
 }
@@ -104,8 +110,8 @@ impl Bank {
             sensitivity: [lanes(), lanes()],
             information: Information::none(n),
             prior: Information::none(n).matrix,
-            mean: vec![0.0; n],
             pull: vec![0.0; n],
+            at_mean: 0.0,
             prior_log_determinant: 0.0,
             active: vec![false; n],
         };
@@ -145,18 +151,22 @@ impl Bank {
         hypothesis.evidence = 0.0;
         hypothesis.sensitivity.iter_mut().for_each(|channel| channel.fill([0.0; WIDTH]));
         hypothesis.information.clear();
-        hypothesis.mean.fill(0.0);
-        hypothesis.pull.fill(0.0);
         hypothesis.prior.iter_mut().zip(&law.information.matrix).for_each(|(slot, entry)| *slot = CAUTION * entry);
         for (index, (slot, active)) in hypothesis.active.iter_mut().zip(law.active).enumerate() {
             *slot = *active && law.information.matrix[index * n + index] > 0.0;
         }
+        for ((pull, score), active) in hypothesis.pull.iter_mut().zip(&law.information.score).zip(&hypothesis.active) {
+            *pull = if *active { CAUTION * score } else { 0.0 };
+        }
         self.system.load(&hypothesis.prior, None);
+        self.system.set_right(hypothesis.pull.iter().copied());
         hypothesis.isolate_inactive(&mut self.system);
         self.system.eliminate(TOLERANCE);
-        for (index, active) in hypothesis.active.iter_mut().enumerate() {
+        for (index, (active, pull)) in hypothesis.active.iter_mut().zip(&mut hypothesis.pull).enumerate() {
             *active &= self.system.is_solved(index);
+            *pull = if *active { *pull } else { 0.0 };
         }
+        hypothesis.at_mean = self.system.squares();
         hypothesis.prior_log_determinant = self.system.log_determinant();
         self.count += 1;
     }
@@ -218,18 +228,22 @@ impl Bank {
         }
     }
 
-    /// The latest start whose evidence is within `margin` nats of the suspect's.
-    pub fn latest_start(&self, suspect: &Suspect, margin: f64) -> u64 {
-        self.hypotheses[self.latest(suspect, margin)].start
+    /// The likeliest start: the suspect's, or where the evidence is overwhelming the latest that alone passes `level`.
+    pub fn likeliest_start(&self, suspect: &Suspect, level: f64) -> u64 {
+        match suspect.evidence > OVERWHELMING * level {
+            true => self.hypotheses[self.latest(suspect, level)].start,
+            false => suspect.start,
+        }
     }
 
-    /// The first start that is too late by `margin` nats: a switch after it is not plausible.
-    pub fn after(&self, suspect: &Suspect, margin: f64) -> u64 {
-        self.hypotheses[(self.latest(suspect, margin) + 1).min(self.count - 1)].start
+    /// The first start that is too late: a switch after it is not plausible.
+    pub fn after(&self, suspect: &Suspect, level: f64) -> u64 {
+        self.hypotheses[(self.latest(suspect, level) + 1).min(self.count - 1)].start
     }
 
-    fn latest(&self, suspect: &Suspect, margin: f64) -> usize {
-        let plausible = |hypothesis: &Hypothesis| hypothesis.evidence >= suspect.evidence - margin;
+    fn latest(&self, suspect: &Suspect, level: f64) -> usize {
+        let enough = level.min(suspect.evidence - MARGIN);
+        let plausible = |hypothesis: &Hypothesis| hypothesis.evidence >= enough;
         self.hypotheses[..self.count].iter().rposition(plausible).unwrap_or(suspect.index)
     }
 
@@ -264,9 +278,8 @@ impl Bank {
             .set_right(hypothesis.information.score.iter().zip(&hypothesis.pull).map(|(score, pull)| score + pull));
         hypothesis.isolate_inactive(&mut self.system);
         self.system.eliminate(TOLERANCE);
-        let at_mean: f64 = hypothesis.mean.iter().zip(&hypothesis.pull).map(|(mean, pull)| mean * pull).sum();
         let log_determinants = self.system.log_determinant() - hypothesis.prior_log_determinant;
-        0.5 * (self.system.squares() - at_mean - log_determinants)
+        0.5 * (self.system.squares() - hypothesis.at_mean - log_determinants)
     }
 
     /// The hypothesis whose neighbours leave the smallest gap, relative to their age.
@@ -292,18 +305,23 @@ impl Hypothesis {
         }
     }
 
+    /// Moves the point about which δ is counted: Λμ becomes Λ(μ − step).
     fn shift(&mut self, step: &[f64]) {
         let (n, active) = (step.len(), &self.active);
         self.information.shift(step);
-        self.mean.iter_mut().zip(step).for_each(|(mean, step)| *mean -= step);
-        self.pull.fill(0.0);
         for row in (0..n).filter(|row| active[*row]) {
-            self.pull[row] += self.prior[row * n + row] * self.mean[row];
+            self.at_mean -= step[row] * self.pull[row];
+        }
+        for row in (0..n).filter(|row| active[*row]) {
+            self.pull[row] -= self.prior[row * n + row] * step[row];
             for column in (row + 1..n).filter(|column| active[*column]) {
                 let entry = self.prior[row * n + column];
-                self.pull[row] += entry * self.mean[column];
-                self.pull[column] += entry * self.mean[row];
+                self.pull[row] -= entry * step[column];
+                self.pull[column] -= entry * step[row];
             }
+        }
+        for row in (0..n).filter(|row| active[*row]) {
+            self.at_mean -= step[row] * self.pull[row];
         }
     }
 }

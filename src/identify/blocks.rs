@@ -46,13 +46,11 @@ impl Blocks {
         }
     }
 
-    /// Mean over the coefficients of Σ (block score)² ÷ information: 1 under the right law, never less.
+    /// The largest over the coefficients of Σ (block score)² ÷ information: about 1 under the right law.
     pub fn overdispersion(&self, information: &Information) -> f64 {
         let n = information.n;
         let ratio = |index: usize| self.squares[index] / information.matrix[index * n + index];
-        let ratios = (0..n).map(ratio).filter(|ratio| ratio.is_finite());
-        let (sum, count) = ratios.fold((0.0, 0.0), |(sum, count), ratio| (sum + ratio, count + 1.0));
-        if count > 0.0 { f64::max(sum / count, 1.0) } else { 1.0 }
+        (0..n).map(ratio).filter(|ratio| ratio.is_finite()).fold(1.0, f64::max)
     }
 }
 

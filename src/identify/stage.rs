@@ -37,8 +37,8 @@ const STOOD: f64 = 0.05 * 0.05;
 /// Variance of an innovation ÷ that of its sensor from which on the law's own error counts.
 const PROCESS_SHARE: f64 = 2.0;
 
-/// Overdispersion that is no chance: with 16 blocks and 4 coefficients it is 1 ± 0.2 under the right law.
-const LASTING: f64 = 1.5;
+/// Overdispersion that is no chance: with 16 blocks it is 1 ± 0.35 for one coefficient of the right law.
+const LASTING: f64 = 2.5;
 
 /// Smallest sensor noise std, relative to the largest value measured: rounding and the integration's own error.
 const NOISE_FLOOR: f64 = 1e-7;

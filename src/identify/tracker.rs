@@ -326,7 +326,7 @@ impl Tracker {
         let given = settings.deviation_threshold;
         let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
         if suspect.evidence > level || deviates {
-            self.switch(problem, suspect, output);
+            self.switch(problem, suspect, level, output);
         } else if output.status == Status::Tracking && suspect.evidence > 0.5 * level {
             output.status = Status::SwitchSuspected;
             if self.renewed {
@@ -338,12 +338,12 @@ impl Tracker {
     }
 
     /// Ends the stage; only data from after the switch enters the new law.
-    fn switch(&mut self, problem: &Problem, suspect: &Suspect, output: &mut Output) {
+    fn switch(&mut self, problem: &Problem, suspect: &Suspect, level: f64, output: &mut Output) {
         self.bank.look_at_all();
         let suspect = self.bank.suspect().unwrap_or(*suspect);
         let last = self.window.ready() - 1;
-        let instant = self.bank.latest_start(&suspect, (0.1 * suspect.evidence).max(0.5));
-        let start = (self.bank.after(&suspect, (0.3 * suspect.evidence).max(5.0)) + 1).min(last);
+        let instant = self.bank.likeliest_start(&suspect, level);
+        let start = (self.bank.after(&suspect, level) + 1).min(last);
         self.bank.change(&suspect, &mut self.change);
         self.set_spread(problem);
         let plausible = self.change.iter().zip(&self.spread).all(|(change, spread)| change.abs() < 2.0 * spread);
