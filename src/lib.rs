@@ -17,3 +17,8 @@ pub mod identify;
 pub mod law;
 pub mod simulate;
 pub mod weak;
+
+/// The README's library example, compiled and run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeDoctests;
