@@ -51,6 +51,12 @@ const SUSPENSE: u64 = 1000;
 /// record grows.
 const DOUBT: f64 = 2000.0;
 
+/// A law that is not vouched for needs this many times the evidence.
+const UNPROVEN: f64 = 10.0;
+
+/// Samples from which on the kind of a record's error can be told.
+const ENOUGH: u64 = 500;
+
 /// A first law is tried when the weak start predicts its force this well.
 const START_ERROR: f64 = 0.3;
 
@@ -245,7 +251,7 @@ impl Tracker {
     fn challenge_noise(&mut self, problem: &Problem, settings: &Settings) {
         let end = self.window.ready();
         let due = end >= self.next_noise_challenge && self.phase == Phase::Refining && !self.challenging;
-        if !due || !self.stage.process_matters || !self.stage.settled() {
+        if !due || !self.stage.process_matters || !self.stage.settled() || self.stage.length(end) < ENOUGH {
             return;
         }
         self.next_noise_challenge = end + self.stage.length(end);
@@ -257,7 +263,7 @@ impl Tracker {
             centre: &self.stage.coefficients,
             std: &self.spread,
             log_inertia: INERTIA_SPREAD,
-            structure: None,
+            structure: (self.noise_weight > 0.0).then_some(self.live.active.as_slice()),
             noise_weight: 0.0,
         };
         self.challenger.begin(problem, &self.window, self.stage.start, &self.stage.coefficients, prior, noise);
@@ -322,6 +328,7 @@ impl Tracker {
     /// Alarm, suspicion, or neither.
     fn judge(&mut self, problem: &Problem, settings: &Settings, suspect: &Suspect, output: &mut Output) {
         let doubt = self.stage.overdispersion * (1.0 + DOUBT / self.stage.length(self.window.ready()).max(1) as f64);
+        let doubt = if output.valid { doubt } else { UNPROVEN * doubt };
         let level = doubt * (settings.false_alarm_interval / settings.sample_time).ln().max(3.0);
         let given = settings.deviation_threshold;
         let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
