@@ -20,6 +20,7 @@ mod stage;
 mod start;
 mod structure;
 mod tracker;
+mod usual;
 mod window;
 
 pub use identification::{Identification, Stage, choose_hold, identify_recording, settings_for};

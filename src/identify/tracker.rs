@@ -6,6 +6,7 @@ use super::problem::Problem;
 use super::settings::Settings;
 use super::stage::{Prior, Stage};
 use super::start::Start;
+use super::usual::Usual;
 use super::window::Window;
 use crate::evidence::{Bank, Law, Noise, Observation, Pass, Suspect};
 use crate::law::{Motion, State};
@@ -79,6 +80,7 @@ pub struct Tracker {
     bank: Bank,
     deviation: Deviation,
     usual_deviation: f64,
+    usual: Usual,
     phase: Phase,
     next_guess: u64,
     suspected: u64,
@@ -138,6 +140,7 @@ impl Tracker {
             bank: Bank::new(n, HYPOTHESES),
             deviation: Deviation::new(settings.deviation_interval, settings.sample_time),
             usual_deviation: 0.0,
+            usual: Usual::default(),
             phase: Phase::Gathering,
             next_guess: 0,
             suspected: 0,
@@ -330,6 +333,10 @@ impl Tracker {
         let doubt = self.stage.overdispersion * (1.0 + DOUBT / self.stage.length(self.window.ready()).max(1) as f64);
         let doubt = if output.valid { doubt } else { UNPROVEN * doubt };
         let level = doubt * (settings.false_alarm_interval / settings.sample_time).ln().max(3.0);
+        let level = level.max(self.usual.level());
+        if output.valid {
+            self.usual.add(suspect.evidence);
+        }
         let given = settings.deviation_threshold;
         let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
         if suspect.evidence > level || deviates {
@@ -379,6 +386,7 @@ impl Tracker {
         self.bank.clear();
         self.deviation.clear();
         self.usual_deviation = 0.0;
+        self.usual.clear();
         output.switch_count += 1;
         output.switch_time = self.window.sample(instant).t;
         output.detection_time = Some(self.now());

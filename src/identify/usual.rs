@@ -1,0 +1,58 @@
+//! The evidence of a switch that the law in use meets without one.
+//!
+//! Under the right law it stays below what the false-alarm interval asks. A real record has error that no law models: its
+//! evidence rises again and again, and only what stands out from that is a switch.
+
+use serde::{Deserialize, Serialize};
+
+/// Samples in a block; what rises within the last two may be a switch that is just being noticed.
+const BLOCK: u64 = 1000;
+
+/// A switch has this many times the largest evidence seen before it.
+const STANDS_OUT: f64 = 2.0;
+
+/// Largest evidence in blocks of the stage.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Usual {
+    before: f64,
+    last: f64,
+    present: f64,
+    count: u64,
+}
+
+impl Usual {
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        *self = Usual::default();
+    }
+
+    /// Takes the largest evidence at a sample, nats.
+    pub fn add(&mut self, evidence: f64) {
+        self.present = self.present.max(evidence);
+        self.count += 1;
+        if self.count.is_multiple_of(BLOCK) {
+            self.before = self.before.max(self.last);
+            (self.last, self.present) = (self.present, 0.0);
+        }
+    }
+
+    /// The evidence that stands out, nats.
+    pub fn level(&self) -> f64 {
+        STANDS_OUT * self.before
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rise_counts_only_when_it_is_past() {
+        let mut usual = Usual::default();
+        (0..BLOCK).for_each(|_| usual.add(7.0));
+        (0..BLOCK).for_each(|_| usual.add(30.0));
+        assert_eq!(usual.level(), 14.0);
+        (0..BLOCK).for_each(|_| usual.add(1.0));
+        assert_eq!(usual.level(), 60.0);
+    }
+}
