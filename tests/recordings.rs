@@ -1,0 +1,79 @@
+//! Real recordings, from position alone with default settings: one stage, no alarm, the coefficients of their sources.
+//!
+//! The folder is named by `SWITCHID_DATA`; without it the tests say that they skip, and in CI that is a failure.
+
+use serde_json::Value;
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn recording(name: &str) -> Option<PathBuf> {
+    let Some(folder) = std::env::var_os("SWITCHID_DATA") else {
+        assert!(std::env::var_os("CI").is_none(), "SWITCHID_DATA is not set: in CI the recordings must be read");
+        eprintln!("SKIPPED: {name} (set SWITCHID_DATA to the folder of recordings)");
+        return None;
+    };
+    Some(Path::new(&folder).join(name))
+}
+
+fn identify(data: &Path, model: &str) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("model.toml");
+    std::fs::write(&file, model).unwrap();
+    let output = Command::new(env!("CARGO_BIN_EXE_switchid"))
+        .arg("identify")
+        .arg(data)
+        .arg("--model")
+        .arg(&file)
+        .arg("--json")
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+/// One stage without an alarm, each coefficient within its share of the source's.
+fn expect(found: &Value, coefficients: &[(&str, f64, f64)]) {
+    let stages = found["stages"].as_array().unwrap();
+    assert_eq!(stages.len(), 1, "{stages:#?}");
+    assert!(stages[0]["detected"].is_null());
+    for (term, source, share) in coefficients {
+        let value = stages[0]["coefficients"][term].as_f64().unwrap_or_else(|| panic!("{term} is not known"));
+        assert!((value / source - 1.0).abs() < *share, "{term} = {value}, source {source}");
+    }
+}
+
+#[test]
+fn emps_gives_its_published_inertia_and_friction() {
+    let Some(data) = recording("emps/emps_train_tidy.csv") else { return };
+    let model = "[columns]\nt = \"time_s\"\nq = \"position_m\"\nF = \"force_N\"\n[terms]\ninertia = \"fit\"\n\
+                 linear_damping = \"fit\"\ncoulomb_friction = \"fit\"\nconstant_force = \"fit\"\n";
+    let found = identify(&data, model);
+    expect(&found, &[("qdd", 95.1, 0.03), ("qd", 203.5, 0.1), ("coulomb_friction", 20.4, 0.03), ("1", -3.2, 0.04)]);
+    expect(&found, &[("qdd", 94.40, 0.03), ("qd", 192.0, 0.1), ("coulomb_friction", 21.61, 0.1), ("1", -3.19, 0.03)]);
+}
+
+#[test]
+fn silverbox_gives_its_cubic_stiffness_with_the_hold_found() {
+    let Some(data) = recording("silverbox/silverbox_tidy.csv") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let training = folder.path().join("training.csv");
+    std::fs::write(&training, without_offsets(&data, 40_700..127_400)).unwrap();
+    let model =
+        "[terms]\ninertia = \"fit\"\nlinear_damping = \"fit\"\nlinear_stiffness = \"fit\"\ncubic_stiffness = \"fit\"\n";
+    let found = identify(&training, model);
+    assert_eq!(found["hold"], "band_limited");
+    expect(&found, &[("qdd", 5.35e-6, 0.03), ("qd", 2.23e-4, 0.1), ("q", 0.990, 0.03), ("q^3", 3.93, 0.03)]);
+}
+
+/// The section with each channel's mean over the whole record taken off: the offsets are instrument error.
+fn without_offsets(data: &Path, section: std::ops::Range<usize>) -> String {
+    let mut reader = csv::Reader::from_path(data).unwrap();
+    let rows: Vec<[f64; 3]> = reader.deserialize().map(|row| row.unwrap()).collect();
+    let mean = |column: usize| rows.iter().map(|row| row[column]).sum::<f64>() / rows.len() as f64;
+    let (input, output) = (mean(1), mean(2));
+    rows[section].iter().fold("t,q,F\n".to_string(), |mut text, [t, u, y]| {
+        writeln!(text, "{t},{},{}", y - output, u - input).unwrap();
+        text
+    })
+}
