@@ -95,7 +95,8 @@ fn a_linear_oscillator_in_single_frequency_steady_state_leaves_inertia_and_stiff
 fn a_total_time_derivative_is_reported_whatever_the_data() {
     for method in Method::ALL {
         let identifier = Identifier::new(&Model::cubic_library(), Settings { method, ..Settings::default() }).unwrap();
-        assert_eq!(identifier.unidentifiable(), ["qd in [potential]"]);
+        let always = identifier.unidentifiable().into_iter().filter(|text| text.ends_with("[potential]"));
+        assert_eq!(always.collect::<Vec<_>>(), ["qd in [potential]"]);
     }
 }
 

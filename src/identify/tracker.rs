@@ -61,6 +61,9 @@ const ENOUGH: u64 = 500;
 /// A first law is tried when the weak start predicts its force this well.
 const START_ERROR: f64 = 0.3;
 
+/// The same where no displacement is measured: each weak row then has an offset of its own, which the filter does not need.
+const START_ERROR_WITHOUT_Q: f64 = 1.0;
+
 /// e below this square vouches for a law.
 pub const VOUCHED: f64 = 0.05 * 0.05;
 
@@ -222,7 +225,8 @@ impl Tracker {
         let Some(guess) = self.start.guess(problem, sensor) else { return };
         let inertia =
             problem.free_inertia().map_or(problem.known[problem.inertia], |index| guess.fit.coefficients[index]);
-        if guess.relative_error > START_ERROR || !(inertia.is_finite() && inertia != 0.0) {
+        let allowed = if problem.channels.q { START_ERROR } else { START_ERROR_WITHOUT_Q };
+        if guess.relative_error > allowed || !(inertia.is_finite() && inertia != 0.0) {
             return;
         }
         let process = guess.force_intensity / (inertia * inertia) + f64::MIN_POSITIVE;

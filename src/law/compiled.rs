@@ -115,7 +115,7 @@ pub(super) struct Table {
 }
 
 impl Compiled {
-    /// Takes the free terms, at most [`Model::MAX_TERMS`], for [`Compiled::slopes`].
+    /// Takes the free terms, at most [`Model::MAX_TERMS`], for `slopes`.
     pub fn seek(&mut self, free: &[Term]) {
         self.free_reach = Reach::default();
         for (slot, term) in self.free.iter_mut().zip(free) {
