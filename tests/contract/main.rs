@@ -70,10 +70,14 @@ fn a_new_one_fed_the_same_samples_gives_the_same_bytes() {
     });
 }
 
+/// Velocity alone is left out: its weak rows know the displacement up to a constant only, and not every motion gives a first law.
 #[test]
-fn every_configuration_finds_a_law() {
+fn every_configuration_that_measures_displacement_finds_a_law() {
     let silent = Mutex::new(Vec::new());
     for_each(|configuration| {
+        if !configuration.settings.channels.q {
+            return;
+        }
         let reference = reference(configuration);
         if reference.outputs.first() == reference.outputs.last() {
             silent.lock().unwrap().push(configuration.name.clone());
