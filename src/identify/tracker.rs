@@ -413,20 +413,21 @@ impl Tracker {
             self.publish(problem, published, output);
         }
         if worth_monitoring || (self.live.running && self.stage.is_calm()) {
-            self.monitor_new_law(problem);
+            self.monitor_new_law(problem, output.valid);
         } else {
             self.stage.begin_pass(problem, &self.window);
         }
     }
 
-    /// From now on switches are weighed against the stage's new estimate.
-    fn monitor_new_law(&mut self, problem: &Problem) {
+    /// From now on switches are weighed against the stage's new estimate. Hypotheses are linear about the old one: they are carried over
+    /// only between laws as near to each other as those that are vouched for.
+    fn monitor_new_law(&mut self, problem: &Problem, vouched: bool) {
         self.renewed = true;
         if self.live.running {
             for (index, change) in self.change.iter_mut().enumerate() {
                 *change = self.stage.coefficients[index] - self.live.all[problem.free[index]];
             }
-            match self.live.noise.is_near(&self.stage.noise) {
+            match vouched && self.live.noise.is_near(&self.stage.noise) {
                 true => self.bank.shift(&self.change),
                 false => self.bank.clear(),
             }
