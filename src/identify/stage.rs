@@ -34,6 +34,12 @@ const TRIAL: f64 = 1.25;
 /// … and the coefficients have moved by less than this, as e of eq. (8).
 const STOOD: f64 = 0.05 * 0.05;
 
+/// A law that has stood this many trials in a row, its record grown by 1.25⁴ = 2.4, stands whatever other terms might have done.
+const LONG: u32 = 4;
+
+/// e below this square makes a law good enough to weigh switches against.
+pub const TRUSTED: f64 = 0.2 * 0.2;
+
 /// Variance of an innovation ÷ that of its sensor from which on the law's own error counts.
 const PROCESS_SHARE: f64 = 2.0;
 
@@ -79,8 +85,8 @@ pub struct Stage {
     pub passes: u32,
     /// Passes in a row that changed little.
     calm: u32,
-    /// Whether the law has stood while the record grew by [`TRIAL`].
-    confirmed: bool,
+    /// How many times in a row the law has stood while the record grew by [`TRIAL`].
+    stood: u32,
     trial: Trial,
     /// What is known beside the record, about `coefficients`.
     prior: Information,
@@ -163,7 +169,7 @@ impl Stage {
             blocks: Blocks::new(n),
             passes: 0,
             calm: 0,
-            confirmed: false,
+            stood: 0,
             trial: Trial { length: 0, all: vec![0.0; problem.terms.len()] },
             prior: Information::none(n),
             pass: Pass::new(n),
@@ -196,7 +202,7 @@ impl Stage {
         self.known_noise = noise.sensor;
         self.known_noise_weight = prior.noise_weight;
         (self.passes, self.calm) = (0, 0);
-        (self.confirmed, self.trial.length) = (false, 0);
+        (self.stood, self.trial.length) = (0, 0);
         self.decrement = f64::INFINITY;
         self.closed_at = start;
         self.prior.clear();
@@ -256,9 +262,9 @@ impl Stage {
         self.calm >= 2
     }
 
-    /// Whether the law has stood while its record grew by [`TRIAL`].
-    pub fn confirmed(&self) -> bool {
-        self.confirmed
+    /// Whether the law would hold with other terms too: with all of them its covariance is small enough, or it has stood long.
+    pub fn stands(&self) -> bool {
+        self.stood >= LONG || (self.stood > 0 && self.structure.full_error < TRUSTED)
     }
 
     /// Whether the last pass changed little, by its own standard.
@@ -282,11 +288,6 @@ impl Stage {
             .map(|index| if self.solution.determined[index] { self.solution.variance(index) } else { f64::INFINITY })
             .sum();
         self.overdispersion * trace / squares
-    }
-
-    /// The same with every "maybe" term in the law: what the estimate would be worth, had it picked the wrong ones.
-    pub fn full_error(&self) -> f64 {
-        self.structure.full_error
     }
 
     /// The run that was just closed, at the head of the stream and linear about the new coefficients; the caller gets it in
@@ -335,16 +336,25 @@ impl Stage {
         self.fold(window);
     }
 
+    /// Takes over how the estimate of another stage over the same record has stood: what stands trial is the law, however found.
+    pub fn inherit_trial(&mut self, other: &Stage) {
+        if self.start == other.start {
+            (self.stood, self.trial.length) = (other.stood, other.trial.length);
+            self.trial.all.copy_from_slice(&other.trial.all);
+        }
+    }
+
     /// Lets the law stand trial: statistics that a wrong structure or a wrong minimum makes up do not survive more data.
     fn confirm(&mut self) {
         let length = self.length(self.next);
-        if self.confirmed || !self.settled() || (length as f64) < TRIAL * self.trial.length as f64 {
+        if !self.settled() || (length as f64) < TRIAL * self.trial.length as f64 {
             return;
         }
         let pairs = self.all.iter().zip(&self.trial.all);
         let change: f64 = pairs.map(|(new, old)| (new - old).powi(2)).sum();
         let squares: f64 = self.all.iter().map(|value| value * value).sum();
-        self.confirmed = self.trial.length > 0 && change < STOOD * squares;
+        let stood = self.trial.length > 0 && change < STOOD * squares;
+        self.stood = if stood { self.stood + 1 } else { 0 };
         self.trial.length = length;
         self.trial.all.copy_from_slice(&self.all);
     }

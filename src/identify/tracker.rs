@@ -4,7 +4,7 @@ use super::deviation::Deviation;
 use super::identifier::{Coefficient, Output, Status};
 use super::problem::Problem;
 use super::settings::Settings;
-use super::stage::{Prior, Stage};
+use super::stage::{Prior, Stage, TRUSTED};
 use super::start::Start;
 use super::usual::Usual;
 use super::window::Window;
@@ -64,11 +64,14 @@ const START_ERROR: f64 = 0.3;
 /// The same where no displacement is measured: each weak row then has an offset of its own, which the filter does not need.
 const START_ERROR_WITHOUT_Q: f64 = 1.0;
 
+/// Record after which an unvouched law is contested by the latest record alone, s ÷ `sample_time` as [`OLDEST`].
+const FRESH_START: f64 = 12.0;
+
+/// What the latest record must explain better than the whole one to replace it, nats per measurement.
+const CLEARLY: f64 = 0.1;
+
 /// e below this square vouches for a law.
 pub const VOUCHED: f64 = 0.05 * 0.05;
-
-/// e below this square makes a law good enough to weigh switches against.
-const TRUSTED: f64 = 0.2 * 0.2;
 
 /// The state of our method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -193,6 +196,7 @@ impl Tracker {
         self.window.push(sample);
         self.follow(problem, settings, output);
         if !output.valid {
+            self.begin_afresh(settings);
             self.challenge(problem, settings);
         }
         self.challenge_noise(problem, settings);
@@ -204,6 +208,18 @@ impl Tracker {
 
     fn now(&self) -> f64 {
         self.window.sample(self.window.end() - 1).t
+    }
+
+    /// A record that has grown long without a law to vouch for may hold a switch that nobody saw: the weak rows begin anew, so that
+    /// the next challenger knows the latest record alone.
+    fn begin_afresh(&mut self, settings: &Settings) {
+        let (end, since) = (self.window.end(), self.challenged_from);
+        let patience = (FRESH_START / settings.sample_time) as u64 + 2 * (since - self.stage.start.min(since));
+        if self.challenging || self.phase == Phase::Gathering || end - since < patience {
+            return;
+        }
+        self.start.begin(end);
+        (self.challenged_from, self.next_guess) = (end, 0);
     }
 
     /// Begins a stage, or a challenger of the one there is, from what the weak rows of its record say.
@@ -285,8 +301,11 @@ impl Tracker {
         if self.challenger.settled() {
             self.challenging = false;
             let measurements = 2.0 * self.challenger.length(self.window.ready()) as f64;
-            if self.challenger.likelihood > self.stage.likelihood + 3.0 / measurements {
+            let later = self.challenger.start > self.stage.start;
+            let margin = if later { CLEARLY } else { 3.0 / measurements };
+            if self.challenger.likelihood > self.stage.likelihood + margin {
                 std::mem::swap(&mut self.challenger, &mut self.stage);
+                self.stage.inherit_trial(&self.challenger);
             }
         } else if self.challenger.passes > PATIENCE {
             self.challenging = false;
@@ -407,7 +426,7 @@ impl Tracker {
             return;
         }
         let worth_showing = self.stage.settled() && self.stage.stated_error() < TRUSTED;
-        let worth_monitoring = worth_showing && self.stage.full_error() < TRUSTED && self.stage.confirmed();
+        let worth_monitoring = worth_showing && self.stage.stands();
         if worth_showing {
             self.set_spread(problem);
             self.publish(problem, published, output);
@@ -446,8 +465,7 @@ impl Tracker {
         }
         output.noise_q = problem.channels.q.then(|| self.stage.noise.sensor[0].sqrt());
         output.noise_qd = problem.channels.qd.then(|| self.stage.noise.sensor[1].sqrt());
-        let vouched = self.stage.confirmed() && self.stage.full_error() < TRUSTED;
-        if vouched && self.stage.stated_error() < VOUCHED {
+        if self.stage.stands() && self.stage.stated_error() < VOUCHED {
             output.valid = true;
             output.identified_time.get_or_insert(self.now());
             if output.status != Status::SwitchSuspected {
