@@ -1,0 +1,85 @@
+//! What every candidate would gain, from one run under the law without them.
+//!
+//! The score test (Rao 1948): with M and g the information and score of the unknowns, c, i and s those of a candidate beside them,
+//! the candidate's own information is i − cᵀM⁻¹c, its own score s − cᵀM⁻¹g, and its gain in log-likelihood ½ score² ÷ information.
+
+use super::fit::{Fit, Parts, solve};
+use super::piece::Piece;
+use super::run::{self, Law, Sums};
+use super::series;
+use crate::evidence::Pass;
+use crate::law::Term;
+
+/// Stretches into which the record is cut.
+pub(super) const STRETCHES: usize = 24;
+
+/// What one candidate would gain.
+#[derive(Clone, Copy, Debug)]
+pub struct Gain {
+    /// Linear estimate of its coefficient.
+    pub coefficient: f64,
+    /// Std of it.
+    pub std: f64,
+    /// Gain in log-likelihood, nats.
+    pub gain: f64,
+}
+
+/// The gain of every candidate term, in their order.
+pub fn screen(fit: &Fit, pieces: &[Piece], candidates: &[Term]) -> Vec<Gain> {
+    let sums = sums(fit, pieces, candidates);
+    let mut total = sums[0].clone();
+    sums[1..].iter().for_each(|other| total.merge(other));
+    gains(&total)
+}
+
+/// Sums by stretch of the record.
+pub(super) fn sums(fit: &Fit, pieces: &[Piece], candidates: &[Term]) -> Vec<Sums> {
+    let parts = Parts::of(&fit.form);
+    let pick = |positions: &[usize]| -> Vec<f64> { positions.iter().map(|index| fit.coefficients[*index]).collect() };
+    let terms: Vec<Term> = parts.of_state.iter().map(|index| fit.form.terms[*index]).collect();
+    let beside: Vec<Term> = parts.series.iter().map(|index| fit.form.terms[*index]).collect();
+    let (coefficients, series_coefficients) = (pick(&parts.of_state), pick(&parts.series));
+    let law = Law {
+        terms: &terms,
+        coefficients: &coefficients,
+        free: &parts.free,
+        series: &series_coefficients,
+        noise: fit.noise,
+    };
+    let mut all = vec![Sums::none(parts.unknowns.len(), candidates.len()); STRETCHES];
+    let samples: usize = pieces.iter().map(|piece| piece.len() - 1).sum();
+    let mut before = 0;
+    let mut pass = Pass::new(parts.free.len());
+    for (piece, states) in pieces.iter().zip(&fit.states) {
+        let rows = |terms: &[Term]| {
+            let columns: Vec<Vec<f64>> = terms.iter().map(|term| series::means(*term, piece, states)).collect();
+            series::rows(&columns)
+        };
+        let stretches: Vec<usize> = (0..piece.len() - 1).map(|k| (before + k) * STRETCHES / samples.max(1)).collect();
+        before += piece.len() - 1;
+        let outcome = run::run(&law, piece, &mut pass, &rows(&beside), &rows(candidates), &stretches);
+        all.iter_mut().zip(&outcome.sums).for_each(|(sum, other)| sum.merge(other));
+    }
+    all
+}
+
+/// Score test of each candidate.
+pub(super) fn gains(total: &Sums) -> Vec<Gain> {
+    let Some(solved) = solve(&total.information, &total.score) else { return Vec::new() };
+    let gain = |candidate: usize| {
+        let cross = total.cross.column(candidate);
+        let shared = &solved.covariance * cross;
+        let information = total.own[candidate] - cross.dot(&shared);
+        let score = total.own_score[candidate] - shared.dot(&total.score);
+        let own = information > 1e-9 * total.own[candidate];
+        match own {
+            true => Gain {
+                coefficient: score / information,
+                std: information.sqrt().recip(),
+                gain: 0.5 * score * score / information,
+            },
+            false => Gain { coefficient: 0.0, std: f64::INFINITY, gain: 0.0 },
+        }
+    };
+    (0..total.own.len()).map(gain).collect()
+}
