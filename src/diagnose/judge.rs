@@ -68,7 +68,7 @@ impl Trial {
 
 /// Log-likelihood of the fitted law by stretch of the record.
 pub(super) fn by_stretch(fit: &Fit, pieces: &[Piece]) -> Vec<f64> {
-    screen::sums(fit, pieces, &[]).iter().map(|sums| -0.5 * (sums.energy + sums.log_variance)).collect()
+    screen::sums(fit, pieces, &|_, _| Vec::new()).iter().map(|sums| -0.5 * (sums.energy + sums.log_variance)).collect()
 }
 
 /// Probability that χ² with one degree of freedom exceeds x: erfc(√(x/2)).

@@ -8,7 +8,7 @@ use super::piece::Piece;
 use super::run::{self, Law, Sums};
 use super::series;
 use crate::evidence::Pass;
-use crate::law::Term;
+use crate::law::{State, Term};
 
 /// Stretches into which the record is cut.
 pub(super) const STRETCHES: usize = 24;
@@ -26,38 +26,48 @@ pub struct Gain {
 
 /// The gain of every candidate term, in their order.
 pub fn screen(fit: &Fit, pieces: &[Piece], candidates: &[Term]) -> Vec<Gain> {
-    let sums = sums(fit, pieces, candidates);
-    let mut total = sums[0].clone();
-    sums[1..].iter().for_each(|other| total.merge(other));
-    gains(&total)
+    gains(&merged(&sums(fit, pieces, &|piece, states| columns(candidates, piece, states))))
 }
 
-/// Sums by stretch of the record.
-pub(super) fn sums(fit: &Fit, pieces: &[Piece], candidates: &[Term]) -> Vec<Sums> {
+/// Columns of mean forces over a piece's intervals, along its smoothed motion.
+pub(super) type Columns<'a> = dyn Fn(&Piece, &[State]) -> Vec<Vec<f64>> + 'a;
+
+/// The gain of every column, in their order.
+pub(super) fn screen_columns(fit: &Fit, pieces: &[Piece], columns: &Columns) -> Vec<Gain> {
+    gains(&merged(&sums(fit, pieces, columns)))
+}
+
+pub(super) fn columns(terms: &[Term], piece: &Piece, states: &[State]) -> Vec<Vec<f64>> {
+    terms.iter().map(|term| series::means(*term, piece, states)).collect()
+}
+
+fn merged(sums: &[Sums]) -> Sums {
+    let mut total = sums[0].clone();
+    sums[1..].iter().for_each(|other| total.merge(other));
+    total
+}
+
+/// Sums by stretch of the record, with columns as candidates.
+pub(super) fn sums(fit: &Fit, pieces: &[Piece], candidates: &Columns) -> Vec<Sums> {
     let parts = Parts::of(&fit.form);
     let pick = |positions: &[usize]| -> Vec<f64> { positions.iter().map(|index| fit.coefficients[*index]).collect() };
     let terms: Vec<Term> = parts.of_state.iter().map(|index| fit.form.terms[*index]).collect();
     let beside: Vec<Term> = parts.series.iter().map(|index| fit.form.terms[*index]).collect();
-    let (coefficients, series_coefficients) = (pick(&parts.of_state), pick(&parts.series));
-    let law = Law {
-        terms: &terms,
-        coefficients: &coefficients,
-        free: &parts.free,
-        series: &series_coefficients,
-        noise: fit.noise,
-    };
-    let mut all = vec![Sums::none(parts.unknowns.len(), candidates.len()); STRETCHES];
+    let (of_state, of_series) = (pick(&parts.of_state), pick(&parts.series));
+    let law = Law { terms: &terms, coefficients: &of_state, free: &parts.free, series: &of_series, noise: fit.noise };
     let samples: usize = pieces.iter().map(|piece| piece.len() - 1).sum();
+    let mut all: Vec<Sums> = Vec::new();
     let mut before = 0;
     let mut pass = Pass::new(parts.free.len());
     for (piece, states) in pieces.iter().zip(&fit.states) {
-        let rows = |terms: &[Term]| {
-            let columns: Vec<Vec<f64>> = terms.iter().map(|term| series::means(*term, piece, states)).collect();
-            series::rows(&columns)
-        };
-        let stretches: Vec<usize> = (0..piece.len() - 1).map(|k| (before + k) * STRETCHES / samples.max(1)).collect();
+        let rows = [columns(&beside, piece, states), candidates(piece, states)].map(|columns| series::rows(&columns));
+        let stretch = |k: usize| (before + k) * STRETCHES / samples.max(1);
+        let stretches: Vec<usize> = (0..piece.len() - 1).map(stretch).collect();
         before += piece.len() - 1;
-        let outcome = run::run(&law, piece, &mut pass, &rows(&beside), &rows(candidates), &stretches);
+        let outcome = run::run(&law, piece, &mut pass, &rows[0], &rows[1], &stretches);
+        if all.is_empty() {
+            all = vec![Sums::none(parts.unknowns.len(), rows[1].first().map_or(0, Vec::len)); STRETCHES];
+        }
         all.iter_mut().zip(&outcome.sums).for_each(|(sum, other)| sum.merge(other));
     }
     all
