@@ -5,9 +5,11 @@
 //! [`Term`] is one f: the inertia q̈, a product of powers `q^a q̇^b F^c`, or a named physical effect of the catalogue.
 
 mod compiled;
+mod dimension;
 mod drive;
 mod effect;
 mod hold;
+mod inner;
 mod linearized;
 mod model;
 mod motion;
@@ -15,9 +17,11 @@ mod term;
 mod text;
 
 pub use compiled::Compiled;
+pub use dimension::Dimension;
 pub use drive::{BandLimited, Drive, NODES, REACH, look_ahead};
 pub use effect::Effect;
 pub use hold::Hold;
+pub use inner::{Inner, InnerError, InnerParameter, InnerRange, InnerUnit};
 pub use linearized::Linearized;
 pub use model::{Columns, Given, Model, ModelError, ModelTerm};
 pub use motion::{Motion, State};

@@ -88,7 +88,7 @@ impl Term {
         if let Some((_, term)) = NAMED_TERMS.iter().find(|(id, _)| *id == text) {
             return Ok(*term);
         }
-        if let Some(effect) = Effect::from_id(text) {
+        if let Some(effect) = Effect::prototype(text) {
             return Ok(Term::Effect(effect));
         }
         if text == "1" {
@@ -140,12 +140,12 @@ impl Term {
         }
     }
 
-    /// The part of the term that does not multiply q̈, at (q, q̇, F); 0 for the inertia.
+    /// The part of the term that does not multiply q̈, at (q, q̇, F); 0 for the inertia, NaN for an effect with memory.
     #[inline]
     pub fn force(self, q: f64, qd: f64, excitation: f64) -> f64 {
         match self {
             Term::Inertia => 0.0,
-            Term::Effect(effect) => effect.force(q, qd),
+            Term::Effect(effect) => effect.force(q, qd, excitation),
             Term::Monomial(p) => power(q, p.q) * power(qd, p.qd) * power(excitation, p.excitation),
         }
     }
@@ -175,7 +175,20 @@ impl Term {
 
     /// Whether the term depends on the excitation.
     pub fn uses_excitation(self) -> bool {
-        matches!(self, Term::Monomial(Monomial { excitation, .. }) if excitation > 0)
+        match self {
+            Term::Inertia => false,
+            Term::Monomial(powers) => powers.excitation > 0,
+            Term::Effect(effect) => effect.uses_excitation(),
+        }
+    }
+
+    /// Whether [`Term::force`] says all of the term besides what multiplies q̈: false for effects with memory.
+    #[inline]
+    pub fn is_pointwise(self) -> bool {
+        match self {
+            Term::Inertia | Term::Monomial(_) => true,
+            Term::Effect(effect) => effect.is_pointwise(),
+        }
     }
 }
 
