@@ -8,13 +8,27 @@
 use super::fit::{Fit, refit};
 use super::piece::Piece;
 use super::screen::{self, Gain};
-use crate::law::Term;
+use super::series;
+use super::variants::{Variant, is_continuous};
+use crate::law::{State, Term};
 
 /// Difference of log-likelihood, nats, below which two candidates are equally good.
 const TIE: f64 = 3.0;
 
 /// Standard errors by which one candidate must be better than another, stretch by stretch.
 const CLEAR: f64 = 2.0;
+
+/// Gauss–Newton steps on the inner parameters of a candidate.
+const POLISHES: usize = 4;
+
+/// Gain in log-likelihood, nats, for which another is taken.
+const GAIN: f64 = 0.05;
+
+/// Relative change of an inner parameter from which its slope is taken.
+const DIFFERENCE: f64 = 0.01;
+
+/// Largest step, in the logarithm of an inner parameter.
+const LARGEST_STEP: f64 = 0.3;
 
 /// A candidate in the law.
 #[derive(Clone, Debug)]
@@ -30,14 +44,27 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Fits the law of `base` with the candidate in it.
-    pub fn of(base: &Fit, pieces: &[Piece], term: Term, expected: &Gain) -> Option<Trial> {
-        let form = base.form.with(term);
+    /// Fits the law of `base` with the candidate in it, and its inner parameters with it.
+    pub fn of(base: &Fit, pieces: &[Piece], variant: Variant, expected: &Gain) -> Option<Trial> {
+        let form = base.form.with(variant.term);
         let mut coefficients = base.coefficients.clone();
         coefficients.push(expected.coefficient);
-        let fit = refit(&form, pieces, &coefficients, base.noise)?;
+        let mut fit = refit(&form, pieces, &coefficients, base.noise)?;
+        for _ in 0..POLISHES {
+            match polished(&fit, pieces) {
+                Some(better) if better.log_likelihood > fit.log_likelihood + GAIN => fit = better,
+                _ => break,
+            }
+        }
         let by_stretch = by_stretch(&fit, pieces);
+        let term = *fit.form.terms.last()?;
         Some(Trial { term, gain: fit.log_likelihood - base.log_likelihood, fit, by_stretch })
+    }
+
+    /// Gain less what its fitted inner parameters would gain by chance, ½ ln N each (Schwarz 1978).
+    pub fn merit(&self) -> f64 {
+        let inner = Variant { term: self.term, spacing: 1.0 }.fitted();
+        self.gain - 0.5 * inner as f64 * self.fit.measurements.max(1.0).ln()
     }
 
     /// The candidate's coefficient.
@@ -64,6 +91,36 @@ impl Trial {
         let scatter = parts.iter().map(|part| (part - mean).powi(2)).sum::<f64>() / (count - 1.0);
         difference > TIE && count * mean > CLEAR * (count * scatter).sqrt()
     }
+}
+
+/// The fit with the inner parameters of its last term moved by a Gauss–Newton step each; none where it has none.
+fn polished(fit: &Fit, pieces: &[Piece]) -> Option<Fit> {
+    let Some(Term::Effect(effect)) = fit.form.terms.last().copied() else { return None };
+    let values = effect.inner_values();
+    let moving: Vec<usize> = (0..values.len()).filter(|index| is_continuous(effect, *index)).collect();
+    let coefficient = fit.coefficients.last().copied().unwrap_or(0.0);
+    let at = |index: usize, factor: f64| {
+        let mut moved = values.clone();
+        moved[index] *= factor;
+        effect.with_inner(&moved).ok().map(Term::Effect)
+    };
+    let slopes = |piece: &Piece, states: &[State]| -> Vec<Vec<f64>> {
+        let slope = |index: &usize| {
+            let sides = [DIFFERENCE.exp(), (-DIFFERENCE).exp()].map(|factor| at(*index, factor));
+            let [Some(above), Some(below)] = sides else { return vec![0.0; piece.len() - 1] };
+            let pairs = series::means(above, piece, states).into_iter().zip(series::means(below, piece, states));
+            pairs.map(|(above, below)| coefficient * (above - below) / (2.0 * DIFFERENCE)).collect()
+        };
+        moving.iter().map(slope).collect()
+    };
+    let steps = screen::screen_columns(fit, pieces, &slopes);
+    let mut moved = values.clone();
+    for (index, step) in moving.iter().zip(&steps) {
+        moved[*index] *= step.coefficient.clamp(-LARGEST_STEP, LARGEST_STEP).exp();
+    }
+    let mut form = fit.form.without_last().with(Term::Effect(effect.with_inner(&moved).ok()?));
+    form.held.clone_from(&fit.form.held);
+    if moving.is_empty() { None } else { refit(&form, pieces, &fit.coefficients, fit.noise) }
 }
 
 /// Log-likelihood of the fitted law by stretch of the record.

@@ -178,7 +178,11 @@ pub fn run(
     let (mut carried, mut tried) = (Carried::new(extra), Carried::new(kinds));
     let mut unknowns = vec![0.0; n + extra];
     pass.begin(first_state(piece, &law.noise));
-    if law.terms.iter().any(|term| *term == Term::Effect(Effect::CoulombFriction)) {
+    if law
+        .terms
+        .iter()
+        .any(|term| matches!(term, Term::Effect(Effect::CoulombFriction | Effect::StribeckFriction { .. })))
+    {
         pass.parts = pass.parts.max(PARTS_OF_A_JUMP);
     }
     for (k, observation) in piece.observations.iter().enumerate() {

@@ -49,7 +49,8 @@ impl Scale {
 
     /// Grids of the effect's inner parameters, one list per parameter, and the ratio between neighbours.
     fn grids(&self, effect: Effect) -> (Vec<Vec<f64>>, f64) {
-        let lengths = |from: f64, to: f64, ratio: f64| geometric(from * self.displacement, to * self.displacement, ratio);
+        let lengths =
+            |from: f64, to: f64, ratio: f64| geometric(from * self.displacement, to * self.displacement, ratio);
         let [slow, fast] = self.frequency;
         let highest = 0.5 / self.sample_time;
         match effect {
