@@ -25,6 +25,9 @@ const GAIN: f64 = 0.1;
 /// Smallest sensor noise std, relative to the largest value measured.
 const NOISE_FLOOR: f64 = 1e-7;
 
+/// The sensors alone do not come to explain the record where a pass makes good only this part of what is missing, 1 ÷.
+const HOPELESS: f64 = 5.0;
+
 /// Passes in which the sensors alone take all error.
 const QUIET_PASSES: usize = 8;
 
@@ -161,7 +164,7 @@ pub fn refit(form: &Form, pieces: &[Piece], coefficients: &[f64], noise: Noise) 
     let mut descent = Descent { form, pieces, parts, coefficients: coefficients.to_vec(), noise, series };
     descent.begin_series(&mut pass);
     let mut loud = descent.descend(&mut pass)?;
-    loud.log_likelihood_if_right = descent.quieten(&mut pass);
+    loud.log_likelihood_if_right = descent.quieten(&mut pass, loud.log_likelihood);
     if loud.log_likelihood_if_right <= loud.log_likelihood {
         return Some(loud);
     }
@@ -205,7 +208,8 @@ impl Descent<'_> {
     }
 
     /// Log-likelihood under no process noise, the sensors' noise taking all error, coefficients moving along.
-    fn quieten(&mut self, pass: &mut Pass) -> f64 {
+    /// Gives up where it will not come near `loud`.
+    fn quieten(&mut self, pass: &mut Pass, loud: f64) -> f64 {
         let mut reached = f64::NEG_INFINITY;
         let largest = start::largest(self.pieces);
         for _ in 0..QUIET_PASSES {
@@ -220,7 +224,7 @@ impl Descent<'_> {
             let sums = total(&outcomes);
             let Some(solved) = solve(&sums.information, &sums.score) else { return reached };
             move_noise(&mut self.noise, &outcomes, largest);
-            if gained.abs() < GAIN {
+            if gained.abs() < GAIN || loud - reached > HOPELESS * gained {
                 return reached;
             }
             self.take(&solved.step);

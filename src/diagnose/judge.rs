@@ -44,21 +44,28 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Fits the law of `base` with the candidate in it, and its inner parameters with it.
+    /// Fits the law of `base` with the candidate in it.
     pub fn of(base: &Fit, pieces: &[Piece], variant: Variant, expected: &Gain) -> Option<Trial> {
         let form = base.form.with(variant.term);
         let mut coefficients = base.coefficients.clone();
         coefficients.push(expected.coefficient);
-        let mut fit = refit(&form, pieces, &coefficients, base.noise)?;
+        let fit = refit(&form, pieces, &coefficients, base.noise)?;
+        Some(Trial { term: variant.term, gain: fit.log_likelihood - base.log_likelihood, fit, by_stretch: Vec::new() })
+    }
+
+    /// Fits the inner parameters too, and takes the record apart into stretches.
+    pub fn polish(&mut self, pieces: &[Piece]) {
         for _ in 0..POLISHES {
-            match polished(&fit, pieces) {
-                Some(better) if better.log_likelihood > fit.log_likelihood + GAIN => fit = better,
+            match polished(&self.fit, pieces) {
+                Some(better) if better.log_likelihood > self.fit.log_likelihood + GAIN => {
+                    self.gain += better.log_likelihood - self.fit.log_likelihood;
+                    self.term = better.form.terms.last().copied().unwrap_or(self.term);
+                    self.fit = better;
+                }
                 _ => break,
             }
         }
-        let by_stretch = by_stretch(&fit, pieces);
-        let term = *fit.form.terms.last()?;
-        Some(Trial { term, gain: fit.log_likelihood - base.log_likelihood, fit, by_stretch })
+        self.by_stretch = by_stretch(&self.fit, pieces);
     }
 
     /// Gain less what its fitted inner parameters would gain by chance, ½ ln N each (Schwarz 1978).
@@ -85,6 +92,9 @@ impl Trial {
     /// Whether this one is better than the other beyond what the record can tell.
     pub fn is_clearly_better_than(&self, other: &Trial) -> bool {
         let difference = self.gain - other.gain;
+        if other.by_stretch.is_empty() {
+            return difference > TIE;
+        }
         let parts: Vec<f64> = self.by_stretch.iter().zip(&other.by_stretch).map(|(a, b)| a - b).collect();
         let count = parts.len() as f64;
         let mean = parts.iter().sum::<f64>() / count;

@@ -16,6 +16,9 @@ const HONED: usize = 8;
 /// Effects that get into the law.
 const FINALISTS: usize = 5;
 
+/// Inner parameters are fitted where the gain is this part of the largest: theirs will not make up for more.
+const WITHIN_REACH: f64 = 0.6;
+
 /// What a search came to.
 #[derive(Clone, Debug)]
 pub struct Search {
@@ -43,6 +46,8 @@ pub fn search(base: &Fit, pieces: &[Piece], candidates: &[Term]) -> Search {
     let others = best.split_off(best.len().min(FINALISTS));
     let mut trials: Vec<Trial> =
         best.iter().filter_map(|(variant, gain)| Trial::of(base, pieces, *variant, gain)).collect();
+    let leader = trials.iter().map(|trial| trial.gain).fold(0.0, f64::max);
+    trials.iter_mut().filter(|trial| trial.gain >= WITHIN_REACH * leader).for_each(|trial| trial.polish(pieces));
     trials.sort_by(|a, b| b.merit().total_cmp(&a.merit()));
     Search { trials, others, tried }
 }
