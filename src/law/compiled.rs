@@ -74,7 +74,7 @@ impl Places {
             Term::Effect(Effect::SignedQuadraticStiffness) => places(EFFECTS + 1, 0),
             Term::Effect(Effect::BilinearStiffness) => places(EFFECTS + 2, 0),
             Term::Effect(Effect::PositionDependentInertia) => places(1, 2),
-            Term::Effect(_) => None,
+            Term::Effect(_) | Term::Expression(_) => None,
         }
     }
 }

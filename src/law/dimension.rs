@@ -31,6 +31,7 @@ impl Term {
                 Some(Dimension::new(q + qd, -qd, excitation))
             }
             Term::Effect(effect) => Some(effect.dimension()),
+            Term::Expression(_) => None,
         }
     }
 }

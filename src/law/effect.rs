@@ -345,7 +345,7 @@ impl Effect {
 
 /// sign(x) with sign(0) = 0, unlike `f64::signum`.
 #[inline]
-fn sign(x: f64) -> f64 {
+pub(super) fn sign(x: f64) -> f64 {
     if x > 0.0 {
         1.0
     } else if x < 0.0 {
