@@ -3,7 +3,7 @@
 use super::error::CommandError;
 use super::output::{self, Pairs};
 use crate::data;
-use crate::diagnose::{Comparison, Error, Options, Side, Verdict, compare};
+use crate::diagnose::{Bounds, Comparison, Error, Fail, NOISE_RATIO, Options, Over, Side, Verdict, compare};
 use crate::identify::{self, Recording, Settings};
 use crate::law::{Hold, Model, equation};
 use clap::Args;
@@ -81,6 +81,7 @@ struct Report {
     error: ErrorReport,
     coefficients: Pairs,
     std: Pairs,
+    fails: Vec<FailReport>,
     best: SideReport,
     recordings: Vec<RecordingReport>,
 }
@@ -91,6 +92,26 @@ struct SideReport {
     coefficients: Pairs,
     std: Pairs,
     undetermined: Vec<String>,
+    fails: Vec<FailReport>,
+}
+
+#[derive(Serialize)]
+struct FailReport {
+    kind: &'static str,
+    over: &'static str,
+    bounds: Vec<BoundsReport>,
+    data: Option<String>,
+    share: f64,
+    time_share: f64,
+    evidence: f64,
+    sentence: String,
+}
+
+#[derive(Serialize)]
+struct BoundsReport {
+    of: &'static str,
+    lower: Option<f64>,
+    upper: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -130,14 +151,50 @@ impl Report {
             error: error(&found.given.error),
             coefficients: coefficients(&found.given),
             std: std(&found.given),
+            fails: found.given.fails.iter().map(|fail| FailReport::of(fail, found)).collect(),
             best: SideReport {
                 error: error(&found.best.error),
                 coefficients: coefficients(&found.best),
                 std: std(&found.best),
                 undetermined: found.best.law.undetermined.iter().map(|term| term.name()).collect(),
+                fails: found.best.fails.iter().map(|fail| FailReport::of(fail, found)).collect(),
             },
             recordings: recordings.collect(),
         }
+    }
+}
+
+impl FailReport {
+    fn of(fail: &Fail, found: &Comparison) -> FailReport {
+        let over = over(fail.over);
+        let one = |of: &'static str, bounds: Bounds| BoundsReport { of, lower: bounds.lower, upper: bounds.upper };
+        let bounds = match fail.over {
+            Over::PhasePlane => vec![one("q", fail.bounds), one("qd", fail.velocity)],
+            _ => vec![one(over, fail.bounds)],
+        };
+        FailReport {
+            kind: if fail.over == Over::Time { "time" } else { "region" },
+            over,
+            bounds,
+            data: fail.recording.and_then(|index| found.sources.get(index).cloned()),
+            share: fail.share,
+            time_share: fail.time_share,
+            evidence: fail.evidence,
+            sentence: found.sentence(fail),
+        }
+    }
+}
+
+fn over(over: Over) -> &'static str {
+    match over {
+        Over::Time => "t",
+        Over::Displacement => "q",
+        Over::Excursion => "excursion",
+        Over::Velocity => "qd",
+        Over::Speed => "speed",
+        Over::Amplitude => "amplitude",
+        Over::PhasePlane => "phase_plane",
+        Over::Frequency => "frequency",
     }
 }
 
@@ -183,13 +240,31 @@ fn std(side: &Side) -> Pairs {
 }
 
 fn text(found: &Comparison, model: &Model, file: &str) -> String {
-    let mut text = how_wrong(found) + "\n";
+    let mut text = how_wrong(found) + "\nwhere: " + &place(found) + "\n";
     text += &next(found, file);
     text += "\n\n";
     text += &table(found);
     text += &numbers(found, model);
     text += &recordings(found);
+    text += &fails("where the model as given fails", found, &found.given);
+    if found.given.law != found.best.law {
+        text += &fails("where the best of this form fails", found, &found.best);
+    }
     text
+}
+
+/// The second line.
+fn place(found: &Comparison) -> String {
+    match found.given.fails.first() {
+        Some(fail) => found.sentence(fail),
+        None if found.given.error.ratio() <= NOISE_RATIO => "nowhere: what is left is noise".into(),
+        None => "spread evenly, no time, speed, amplitude or frequency stands out".into(),
+    }
+}
+
+fn fails(title: &str, found: &Comparison, side: &Side) -> String {
+    let lines: String = side.fails.iter().map(|fail| format!("  {}\n", found.sentence(fail))).collect();
+    if lines.is_empty() { lines } else { format!("\n{title}:\n{lines}") }
 }
 
 /// The first line.
@@ -216,7 +291,9 @@ fn next(found: &Comparison, file: &str) -> String {
         Verdict::NumbersOffAndMore => {
             format!("next: the numbers are off ({}) and more is missing: run {diagnose}", off(found))
         }
-        Verdict::FormWrong => format!("next: more than noise is left that no numbers of this form explain: run {diagnose}"),
+        Verdict::FormWrong => {
+            format!("next: more than noise is left that no numbers of this form explain: run {diagnose}")
+        }
     }
 }
 

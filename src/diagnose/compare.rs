@@ -5,11 +5,13 @@
 //! would be were the law right.
 
 use super::coefficients::{Estimate, Held, best_coefficients};
+use super::force::left_over;
 use super::free_run::{Distance, FreeRun, variance};
+use super::locate::{Fail, locate};
 use super::record::{Balance, Record};
 use super::window::{choose_window, periods};
 use crate::identify::Recording;
-use crate::law::{Hold, Model, Motion};
+use crate::law::{Hold, Model, Motion, Term};
 
 /// What a user may set.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,6 +54,8 @@ pub struct Side {
     pub error: Error,
     /// Its error on each recording.
     pub each: Vec<Error>,
+    /// Where it fails, the most evident place first; none where the error is spread evenly or is noise.
+    pub fails: Vec<Fail>,
 }
 
 /// What comparing a model with recordings tells.
@@ -65,6 +69,8 @@ pub struct Comparison {
     pub window: f64,
     /// Length of the windows of open-loop prediction, s.
     pub horizon: f64,
+    /// Period of the displacement, 2π rms(q) ÷ rms(q̇), s.
+    pub period: f64,
     /// Whether there is an excitation in any recording.
     pub forced: bool,
     /// The model with its numbers held.
@@ -87,7 +93,7 @@ pub enum Verdict {
 }
 
 /// Residual ÷ noise floor up to which the residual counts as noise.
-const NOISE_RATIO: f64 = 1.15;
+pub const NOISE_RATIO: f64 = 1.15;
 
 /// Residual as given ÷ best from which the numbers are off.
 const NUMBERS_RATIO: f64 = 1.1;
@@ -115,6 +121,13 @@ impl Comparison {
         }
     }
 
+    /// The sentence of a place of failure.
+    pub fn sentence(&self, fail: &Fail) -> String {
+        let several = self.sources.len() > 1;
+        let source = fail.recording.filter(|_| several).and_then(|index| self.sources.get(index));
+        fail.sentence(source.map(String::as_str), self.period)
+    }
+
     fn numbers_differ(&self) -> bool {
         let pairs = self.given.law.coefficients.iter().zip(&self.best.law.coefficients).zip(&self.best.law.std);
         pairs.into_iter().any(|((given, best), std)| std.is_some_and(|std| (given - best).abs() > NUMBERS_SIGMA * std))
@@ -138,6 +151,7 @@ pub fn compare(model: &Model, recordings: &[(&Recording, Hold)], options: &Optio
         noise: records.iter().map(|record| record.noise).collect(),
         window,
         horizon: options.horizon,
+        period: periods(&records).displacement,
         forced,
         given,
         best,
@@ -157,11 +171,15 @@ struct Totals {
 }
 
 fn side(law: Estimate, records: &[Record], window: f64, horizon: f64) -> Side {
-    let stretch = 2.0 * periods(records).displacement;
+    let period = periods(records).displacement;
+    let stretch = 2.0 * period;
     let totals: Vec<Totals> =
         records.iter().map(|record| Totals::of(record, &law, [window, stretch, horizon])).collect();
     let error = totals.iter().fold(Totals::default(), |sum, totals| sum.and(totals)).error();
-    Side { error, each: totals.iter().map(Totals::error).collect(), law }
+    let inertia = law.terms.iter().position(|term| *term == Term::Inertia).unwrap_or(0);
+    let noisy = error.ratio() <= NOISE_RATIO;
+    let left = if noisy { Vec::new() } else { left_over(records, &law.coefficients, inertia, window) };
+    Side { error, fails: locate(&left, period), each: totals.iter().map(Totals::error).collect(), law }
 }
 
 impl Totals {
