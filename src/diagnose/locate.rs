@@ -16,7 +16,7 @@ const TIME_BINS: usize = 48;
 const SIDE: usize = 6;
 
 /// Evidence that a place must have, nats.
-const EVIDENCE: f64 = 10.0;
+const EVIDENCE: f64 = 6.0;
 
 /// Share of the energy that a place must hold, and how many times its share of the time.
 const SHARE: f64 = 0.25;
@@ -25,8 +25,17 @@ const CONTRAST: f64 = 1.3;
 /// Share of the evidence of the best place below which another is not worth saying.
 const WORTH: f64 = 0.15;
 
+/// Most places that are said.
+const MOST: usize = 6;
+
 /// How much better a region of the phase plane must be than an interval of one quantity.
 const TWO_SIDED: f64 = 1.3;
+
+/// What the evidence of an interval with two ends counts: it was sought among many more than one that is open.
+const CLOSED: f64 = 0.6;
+
+/// What the evidence of a band of frequencies counts: the force is a poorer measure of what to expect than time.
+const BAND: f64 = 0.2;
 
 /// What a failure is laid out over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -94,7 +103,8 @@ pub fn locate(left: &[Left], period: f64) -> Vec<Fail> {
         return Vec::new();
     }
     let mean = places.iter().map(|place| place.q).sum::<f64>() / places.len() as f64;
-    let setting = Setting { mean, radian: period / std::f64::consts::TAU, period, independent: independent(left) };
+    let setting =
+        Setting { mean, radian: period / std::f64::consts::TAU, period, independent: independent(left) };
     let overs = [Over::Speed, Over::Velocity, Over::Displacement, Over::Excursion, Over::Amplitude];
     let mut fails: Vec<Fail> = overs.into_iter().filter_map(|over| setting.over(over, &places)).collect();
     let best = fails.iter().map(|fail| fail.evidence).fold(0.0, f64::max);
@@ -107,6 +117,7 @@ pub fn locate(left: &[Left], period: f64) -> Vec<Fail> {
     fails.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let worth = fails.first().map_or(0.0, |fail| WORTH * fail.evidence);
     fails.retain(|fail| fail.evidence >= worth);
+    fails.truncate(MOST);
     fails
 }
 
@@ -129,8 +140,8 @@ impl Setting {
         for (value, place) in values.iter().zip(places) {
             bins.add(bin(&edges, *value), excess(place), 1.0);
         }
-        let peak = settled(&mut bins).peak()?;
-        Some(Fail { bounds: bounds(&edges, peak.from, peak.to), ..self.fail(over, &peak) })
+        let peak = settled(&mut bins).peak(CLOSED)?;
+        Some(self.fail(over, &peak, bounds(&edges, peak.from, peak.to)))
     }
 
     fn in_time(&self, left: &[Left], recording: usize) -> Option<Fail> {
@@ -142,9 +153,9 @@ impl Setting {
         for place in &places {
             bins.add(bin(&edges, place.t), excess(place), 1.0);
         }
-        let peak = settled(&mut bins).peak()?;
+        let peak = settled(&mut bins).peak(1.0)?;
         let bounds = bounds(&edges, peak.from, peak.to);
-        Some(Fail { bounds, recording: Some(recording), ..self.fail(Over::Time, &peak) })
+        Some(Fail { recording: Some(recording), ..self.fail(Over::Time, &peak, bounds) })
     }
 
     /// The rectangle of the phase plane that stands out most, among those that are bounded in both directions.
@@ -161,26 +172,26 @@ impl Setting {
         let best = rectangles().map(|range| (range, peak(&rows, range)));
         let best = best.max_by(|a, b| a.1.divergence.total_cmp(&b.1.divergence));
         let fail = best.map(|([from, to, low, high], peak)| Fail {
-            bounds: bounds(&edges[0], from, to),
             velocity: bounds(&edges[1], low, high),
-            ..self.fail(Over::PhasePlane, &peak)
+            ..self.fail(Over::PhasePlane, &peak, bounds(&edges[0], from, to))
         });
         fail.into_iter()
     }
 
     fn in_frequency(&self, left: &[Left]) -> Option<Fail> {
         let spectrum = spectrum(left, self.period)?;
-        let peak = spectrum.bins.peak()?;
+        let peak = spectrum.bins.peak(1.0)?;
+        let peak = Peak { divergence: BAND * peak.divergence, ..peak };
         let edge = |bin: usize| Some((bin as f64 + 0.5) * spectrum.width);
         let upper = edge(peak.to).filter(|_| peak.to < spectrum.bins.energy.len());
         let bounds = Bounds { lower: edge(peak.from).filter(|_| peak.from > 0), upper };
-        Some(Fail { bounds, ..self.fail(Over::Frequency, &peak) })
+        Some(self.fail(Over::Frequency, &peak, bounds))
     }
 
-    fn fail(&self, over: Over, peak: &Peak) -> Fail {
+    fn fail(&self, over: Over, peak: &Peak, bounds: Bounds) -> Fail {
         Fail {
             over,
-            bounds: Bounds::default(),
+            bounds,
             velocity: Bounds::default(),
             recording: None,
             share: peak.share,
@@ -235,24 +246,23 @@ fn peak(rows: &[Bins], [from, to, low, high]: [usize; 4]) -> Peak {
     Peak { from, to, share, baseline, divergence: divergence(share, baseline) }
 }
 
-/// How many places count as independent: their number, less for energy that is correlated in time, less for heavy tails, less for noise.
+/// How many places count as independent: their number, less for what is left over being correlated from one to the next (energies of a
+/// Gaussian series correlate as the square of it, and scatter with a variance of 2), less for noise.
 fn independent(left: &[Left]) -> f64 {
-    let energies: Vec<Vec<f64>> =
-        left.iter().map(|left| left.places.iter().map(|place| place.residual.powi(2)).collect()).collect();
-    let count = energies.iter().map(Vec::len).sum::<usize>() as f64;
-    let sum: f64 = energies.iter().flatten().sum();
-    let squares: f64 = energies.iter().flatten().map(|energy| energy * energy).sum();
-    let beyond: f64 = left.iter().flat_map(|left| &left.places).map(excess).sum();
-    if sum <= 0.0 {
+    let residuals: Vec<Vec<f64>> =
+        left.iter().map(|left| left.places.iter().map(|place| place.residual).collect()).collect();
+    let count = residuals.iter().map(Vec::len).sum::<usize>() as f64;
+    let product = |lag: usize| -> f64 {
+        residuals.iter().flat_map(|r| r.iter().zip(r.iter().skip(lag)).map(|(a, b)| a * b)).sum()
+    };
+    let energy = product(0);
+    if energy <= 0.0 {
         return 0.0;
     }
-    let mean = sum / count;
-    let covariance = |lag: usize| -> f64 {
-        energies.iter().flat_map(|e| e.iter().zip(e.iter().skip(lag)).map(|(a, b)| (a - mean) * (b - mean))).sum()
-    };
-    let variance = covariance(0).max(f64::MIN_POSITIVE);
-    let longest = energies.iter().map(Vec::len).max().unwrap_or(0);
-    let correlated = (1..longest).map(|lag| covariance(lag) / variance).take_while(|correlation| *correlation > 0.05);
-    let clear = (beyond / sum).clamp(0.0, 1.0);
-    sum * sum / squares / (1.0 + 2.0 * correlated.sum::<f64>()) * clear * clear
+    let longest = residuals.iter().map(Vec::len).max().unwrap_or(0);
+    let correlations = (1..longest).map(|lag| product(lag) / energy).take_while(|correlation| *correlation > 0.1);
+    let correlated: f64 = correlations.map(|correlation| correlation * correlation).sum();
+    let beyond: f64 = left.iter().flat_map(|left| &left.places).map(excess).sum();
+    let clear = (beyond / energy).clamp(0.0, 1.0);
+    0.5 * count / (1.0 + 2.0 * correlated) * clear * clear
 }

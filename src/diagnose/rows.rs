@@ -19,6 +19,9 @@ const GAUSS: [(f64, f64); 3] =
 /// Share of a sample's distance by which a window's times may differ from another's and still share its weights.
 const SAME_TIMES: f64 = 1e-4;
 
+/// Points at which the mean about a reversal of the velocity is taken.
+const PARTS: usize = 16;
+
 /// One series of a term: what stands against a derivative of φ, and its slopes by the readings of q and q̇.
 #[derive(Clone, Debug)]
 struct Series {
@@ -243,8 +246,28 @@ fn series(term: Term, piece: &Piece, motion: &Trajectory) -> Vec<Series> {
             one(0, force_series(term, q, qd, &piece.excitation), [Some(by_q), Some(by_qd)])
         }
         Term::Effect(_) if term.mass(1.0) != term.mass(0.0) => varying_mass(term, piece, motion),
-        Term::Effect(_) => one(0, force_series(term, &motion.q, &motion.qd, &piece.excitation), [None, None]),
+        Term::Effect(_) => one(0, reversed_series(term, piece, motion), [None, None]),
     }
+}
+
+/// The force of an effect at every sample; where the velocity reverses next to a sample, so that a force may jump there, its mean between the
+/// middles of the intervals on both sides.
+fn reversed_series(term: Term, piece: &Piece, motion: &Trajectory) -> Vec<f64> {
+    let (q, qd, excitation) = (&motion.q, &motion.qd, &piece.excitation);
+    let mut series = force_series(term, q, qd, excitation);
+    for k in 1..qd.len().saturating_sub(1) {
+        if qd[k - 1] * qd[k] > 0.0 && qd[k] * qd[k + 1] > 0.0 {
+            continue;
+        }
+        let force = |part: usize| {
+            let x = (part as f64 + 0.5) / PARTS as f64 - 0.5;
+            let other = if x < 0.0 { k - 1 } else { k + 1 };
+            let at = |values: &[f64]| values[k] + x.abs() * (values[other] - values[k]);
+            term.force(at(q), at(qd), excitation[k])
+        };
+        series[k] = (0..PARTS).map(force).sum::<f64>() / PARTS as f64;
+    }
+    series
 }
 
 /// μ(q) q̈ + f, its first part integrated by parts: (μ q̇)' − μ' q̇² + f.

@@ -23,7 +23,7 @@ pub struct Peak {
     pub share: f64,
     /// Share of the baseline.
     pub baseline: f64,
-    /// Evidence per independent place, nats.
+    /// Evidence per independent place, nats, as far as it counts.
     pub divergence: f64,
 }
 
@@ -50,8 +50,9 @@ impl Bins {
         }
     }
 
-    /// The interval of bins that stands out most; none where all is even.
-    pub fn peak(&self) -> Option<Peak> {
+    /// The interval of bins that stands out most; none where all is even. An interval that is closed at both ends was sought among many more
+    /// than one that is open: its divergence counts `closed` times.
+    pub fn peak(&self, closed: f64) -> Option<Peak> {
         let [energy, baseline] = [&self.energy, &self.baseline].map(|values| cumulated(values));
         let count = self.energy.len();
         let (all, whole) = (energy[count], baseline[count]);
@@ -61,7 +62,8 @@ impl Bins {
         let intervals = (0..count).flat_map(|from| (from + 1..=count).map(move |to| (from, to)));
         let peaks = intervals.map(|(from, to)| {
             let (share, baseline) = ((energy[to] - energy[from]) / all, (baseline[to] - baseline[from]) / whole);
-            Peak { from, to, share, baseline, divergence: divergence(share, baseline) }
+            let counts = if from > 0 && to < count { closed } else { 1.0 };
+            Peak { from, to, share, baseline, divergence: counts * divergence(share, baseline) }
         });
         peaks.max_by(|a, b| a.divergence.total_cmp(&b.divergence)).filter(|peak| peak.divergence > 0.0)
     }
@@ -84,7 +86,7 @@ mod tests {
     fn the_bins_that_hold_the_energy_are_found() {
         let mut bins = Bins::new(10);
         (0..10).for_each(|bin| bins.add(bin, if (3..5).contains(&bin) { 4.0 } else { 0.25 }, 1.0));
-        let peak = bins.peak().unwrap();
+        let peak = bins.peak(1.0).unwrap();
         assert_eq!((peak.from, peak.to), (3, 5));
         assert!((peak.share - 0.8).abs() < 1e-12 && (peak.baseline - 0.2).abs() < 1e-12);
     }
@@ -93,6 +95,6 @@ mod tests {
     fn even_energy_stands_out_nowhere() {
         let mut bins = Bins::new(7);
         (0..7).for_each(|bin| bins.add(bin, 2.0 * (1.0 + bin as f64), 1.0 + bin as f64));
-        assert!(bins.peak().is_none_or(|peak| peak.divergence < 1e-12));
+        assert!(bins.peak(1.0).is_none_or(|peak| peak.divergence < 1e-12));
     }
 }

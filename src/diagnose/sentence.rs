@@ -19,14 +19,14 @@ impl Fail {
 
     fn place(&self) -> String {
         match self.over {
-            Over::Time => self.bounds.text("t", " s"),
-            Over::Displacement => self.bounds.text("q", ""),
-            Over::Excursion => self.bounds.text("|q − mean|", ""),
-            Over::Velocity => self.bounds.text("q̇", ""),
-            Over::Speed => self.bounds.text("|q̇|", ""),
-            Over::Amplitude => self.bounds.text("amplitude", ""),
-            Over::Frequency => self.bounds.text("frequency", " Hz"),
-            Over::PhasePlane => format!("{} and {}", self.bounds.text("q", ""), self.velocity.text("q̇", "")),
+            Over::Time => self.bounds.time(),
+            Over::Displacement => self.bounds.text("q"),
+            Over::Excursion => self.bounds.text("|q − mean|"),
+            Over::Velocity => self.bounds.text("q̇"),
+            Over::Speed => self.bounds.text("|q̇|"),
+            Over::Amplitude => self.bounds.text("amplitude"),
+            Over::Frequency => self.bounds.band(),
+            Over::PhasePlane => format!("{} and {}", self.bounds.text("q"), self.velocity.text("q̇")),
         }
     }
 
@@ -80,12 +80,30 @@ impl Fail {
 }
 
 impl Bounds {
-    fn text(self, name: &str, unit: &str) -> String {
+    fn text(self, name: &str) -> String {
         match (self.lower.map(number), self.upper.map(number)) {
-            (None, Some(upper)) => format!("within {name} < {upper}{unit}"),
-            (Some(lower), None) => format!("beyond {name} > {lower}{unit}"),
-            (Some(lower), Some(upper)) => format!("within {lower} < {name} < {upper}{unit}"),
+            (None, Some(upper)) => format!("within {name} < {upper}"),
+            (Some(lower), None) => format!("at {name} > {lower}"),
+            (Some(lower), Some(upper)) => format!("within {lower} < {name} < {upper}"),
             (None, None) => format!("at every {name}"),
+        }
+    }
+
+    fn time(self) -> String {
+        match (self.lower.map(number), self.upper.map(number)) {
+            (None, Some(upper)) => format!("before t = {upper} s"),
+            (Some(lower), None) => format!("after t = {lower} s"),
+            (Some(lower), Some(upper)) => format!("between t = {lower} s and {upper} s"),
+            (None, None) => "at every time".into(),
+        }
+    }
+
+    fn band(self) -> String {
+        match (self.lower.map(number), self.upper.map(number)) {
+            (None, Some(upper)) => format!("below {upper} Hz"),
+            (Some(lower), None) => format!("above {lower} Hz"),
+            (Some(lower), Some(upper)) => format!("between {lower} and {upper} Hz"),
+            (None, None) => "at every frequency".into(),
         }
     }
 }
