@@ -138,7 +138,7 @@ impl Comparison {
 pub fn compare(model: &Model, recordings: &[(&Recording, Hold)], options: &Options) -> Comparison {
     let terms: Vec<_> = model.terms.iter().map(|entry| entry.term).collect();
     let records: Vec<Record> =
-        recordings.iter().map(|(recording, hold)| Record::new(recording, *hold, &terms)).collect();
+        recordings.iter().map(|(recording, hold)| Record::new(recording, *hold, &terms, &[])).collect();
     let forced = records.iter().any(|record| record.forced);
     let (as_given, free) = (Held::as_given(model, forced), Held::none(model, forced));
     let window = options.window.unwrap_or_else(|| choose_window(&records, &free));

@@ -10,7 +10,7 @@ use super::series::{self, is_series};
 use super::smooth::smooth;
 use super::start;
 use crate::evidence::{Noise, Pass, RIVALS};
-use crate::law::{State, Term};
+use crate::law::{Expression, State, Term};
 use nalgebra::{DMatrix, DVector};
 
 /// Most passes of one descent.
@@ -38,6 +38,8 @@ pub struct Form {
     pub terms: Vec<Term>,
     /// Their coefficients where held; `None` where sought.
     pub held: Vec<Option<f64>>,
+    /// What [`Term::Expression`] names.
+    pub expressions: Vec<Expression>,
 }
 
 /// A form with its best coefficients.
@@ -74,7 +76,7 @@ impl Form {
             Term::Inertia if !forced => Some(held.unwrap_or(1.0)),
             _ => None,
         });
-        Form { terms: self.terms.clone(), held: held.collect() }
+        Form { terms: self.terms.clone(), held: held.collect(), expressions: self.expressions.clone() }
     }
 
     /// The form with one more term, sought.
@@ -261,7 +263,7 @@ impl Descent<'_> {
     fn take_series(&mut self, states: &[Vec<State>]) {
         let terms: Vec<Term> = self.parts.series.iter().map(|index| self.form.terms[*index]).collect();
         let columns = |piece: &Piece, states: &[State]| -> Vec<Vec<f64>> {
-            terms.iter().map(|term| series::means(*term, piece, states)).collect()
+            terms.iter().map(|term| series::means(*term, &self.form.expressions, piece, states)).collect()
         };
         let pairs = self.pieces.iter().zip(states);
         self.series = pairs.map(|(piece, states)| series::rows(&columns(piece, states))).collect();

@@ -5,7 +5,7 @@ use super::piece::Piece;
 use super::rows::{Prepared, Rows, Windows};
 use super::trajectory::Trajectory;
 use crate::identify::Recording;
-use crate::law::{Hold, Term};
+use crate::law::{Expression, Hold, Term};
 
 /// Windows overlap: one begins every fourth part of its length.
 const OVERLAP: usize = 4;
@@ -38,11 +38,11 @@ pub struct Balance {
 
 impl Record {
     /// Prepares a recording for a law of these terms.
-    pub fn new(recording: &Recording, hold: Hold, terms: &[Term]) -> Record {
+    pub fn new(recording: &Recording, hold: Hold, terms: &[Term], expressions: &[Expression]) -> Record {
         let pieces = Piece::all(recording, hold);
         let noise = sensor_noise(&pieces);
         let motions = Trajectory::all(&pieces, noise);
-        let prepared = pieces.into_iter().zip(motions).map(|(piece, motion)| Prepared::new(piece, motion, terms));
+        let prepared = pieces.into_iter().zip(motions).map(|(piece, motion)| Prepared::new(piece, motion, terms, expressions));
         Record {
             source: recording.source().into(),
             noise,

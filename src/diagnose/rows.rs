@@ -6,7 +6,7 @@
 
 use super::piece::Piece;
 use super::trajectory::Trajectory;
-use crate::law::{Hold, Monomial, Term};
+use crate::law::{self, Expression, Hold, Monomial, Term, term_series};
 use crate::weak::Variation;
 
 /// The variation: 4 s (1 − s) to the power 4.
@@ -84,8 +84,8 @@ impl Windows {
 
 impl Prepared {
     /// The series of these terms along a piece's motion.
-    pub fn new(piece: Piece, motion: Trajectory, terms: &[Term]) -> Prepared {
-        let terms = terms.iter().map(|term| series(*term, &piece, &motion)).collect();
+    pub fn new(piece: Piece, motion: Trajectory, terms: &[Term], expressions: &[Expression]) -> Prepared {
+        let terms = terms.iter().map(|term| series(*term, expressions, &piece, &motion)).collect();
         Prepared { piece, motion, terms }
     }
 
@@ -225,7 +225,7 @@ pub(super) fn force_series(term: Term, q: &[f64], qd: &[f64], excitation: &[f64]
 
 /// A term as series against φ and its derivatives. Products of powers take the readings themselves, whose noise is known; effects, which
 /// may jump, the smoothed motion.
-fn series(term: Term, piece: &Piece, motion: &Trajectory) -> Vec<Series> {
+fn series(term: Term, expressions: &[Expression], piece: &Piece, motion: &Trajectory) -> Vec<Series> {
     let q = piece.q.as_ref().unwrap_or(&motion.q);
     let qd = piece.qd.as_ref().unwrap_or(&motion.qd);
     let one = |order, values, slopes| vec![Series { order, values, slopes }];
@@ -246,7 +246,12 @@ fn series(term: Term, piece: &Piece, motion: &Trajectory) -> Vec<Series> {
             one(0, force_series(term, q, qd, &piece.excitation), [Some(by_q), Some(by_qd)])
         }
         Term::Effect(_) if term.mass(1.0) != term.mass(0.0) => varying_mass(term, piece, motion),
-        Term::Effect(_) => one(0, reversed_series(term, piece, motion), [None, None]),
+        Term::Effect(effect) if effect.is_pointwise() => one(0, reversed_series(term, piece, motion), [None, None]),
+        Term::Effect(_) | Term::Expression(_) => {
+            let Piece { t, excitation, hold, .. } = piece;
+            let along = law::Trajectory { t, q: &motion.q, qd: &motion.qd, excitation, hold: *hold };
+            one(0, term_series(term, expressions, &along), [None, None])
+        }
     }
 }
 

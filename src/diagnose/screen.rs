@@ -8,7 +8,7 @@ use super::piece::Piece;
 use super::run::{self, Law, Sums};
 use super::series;
 use crate::evidence::Pass;
-use crate::law::{State, Term};
+use crate::law::{Expression, State, Term};
 
 /// Stretches into which the record is cut.
 pub(super) const STRETCHES: usize = 24;
@@ -26,7 +26,8 @@ pub struct Gain {
 
 /// The gain of every candidate term, in their order.
 pub fn screen(fit: &Fit, pieces: &[Piece], candidates: &[Term]) -> Vec<Gain> {
-    gains(&merged(&sums(fit, pieces, &|piece, states| columns(candidates, piece, states))))
+    let expressions = &fit.form.expressions;
+    gains(&merged(&sums(fit, pieces, &|piece, states| columns(candidates, expressions, piece, states))))
 }
 
 /// Columns of mean forces over a piece's intervals, along its smoothed motion.
@@ -37,8 +38,8 @@ pub(super) fn screen_columns(fit: &Fit, pieces: &[Piece], columns: &Columns) -> 
     gains(&merged(&sums(fit, pieces, columns)))
 }
 
-pub(super) fn columns(terms: &[Term], piece: &Piece, states: &[State]) -> Vec<Vec<f64>> {
-    terms.iter().map(|term| series::means(*term, piece, states)).collect()
+pub(super) fn columns(terms: &[Term], expressions: &[Expression], piece: &Piece, states: &[State]) -> Vec<Vec<f64>> {
+    terms.iter().map(|term| series::means(*term, expressions, piece, states)).collect()
 }
 
 fn merged(sums: &[Sums]) -> Sums {
@@ -60,7 +61,7 @@ pub(super) fn sums(fit: &Fit, pieces: &[Piece], candidates: &Columns) -> Vec<Sum
     let mut before = 0;
     let mut pass = Pass::new(parts.free.len());
     for (piece, states) in pieces.iter().zip(&fit.states) {
-        let rows = [columns(&beside, piece, states), candidates(piece, states)].map(|columns| series::rows(&columns));
+        let rows = [columns(&beside, &fit.form.expressions, piece, states), candidates(piece, states)].map(|columns| series::rows(&columns));
         let stretch = |k: usize| (before + k) * STRETCHES / samples.max(1);
         let stretches: Vec<usize> = (0..piece.len() - 1).map(stretch).collect();
         before += piece.len() - 1;
