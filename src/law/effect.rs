@@ -399,7 +399,7 @@ mod tests {
             let defaults: Vec<f64> = effect.inner().iter().map(|parameter| parameter.default).collect();
             assert_eq!(effect.inner_values(), defaults, "{effect:?}");
             assert_eq!(Effect::prototype(effect.id()), Some(effect));
-            let others: Vec<f64> = effect.inner().iter().map(|parameter| other(parameter)).collect();
+            let others: Vec<f64> = effect.inner().iter().map(other).collect();
             let changed = effect.with_inner(&others).unwrap();
             assert_eq!(changed.inner_values(), others);
             assert_eq!(changed == effect, others.is_empty());

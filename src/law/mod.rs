@@ -4,6 +4,7 @@
 //! on the right with its coefficient fixed to 1 (or, unforced, with the inertia fixed to 1 and F = 0). Each
 //! [`Term`] is one f: the inertia q̈, a product of powers `q^a q̇^b F^c`, or a named physical effect of the catalogue.
 
+mod catalogue;
 mod compiled;
 mod dimension;
 mod drive;
@@ -22,6 +23,7 @@ mod series;
 mod term;
 mod text;
 
+pub use catalogue::{Catalogue, Entry, Sign};
 pub use compiled::Compiled;
 pub use dimension::Dimension;
 pub use drive::{BandLimited, Drive, NODES, REACH, look_ahead};
