@@ -38,6 +38,8 @@ pub struct Prepared {
     /// Its motion.
     pub motion: Trajectory,
     terms: Vec<Vec<Series>>,
+    /// By term, half the jump of its force where the velocity may have either sign; empty for a force that does not jump.
+    doubt: Vec<Vec<f64>>,
 }
 
 /// The weak equations of a piece, one for each window.
@@ -85,8 +87,9 @@ impl Windows {
 impl Prepared {
     /// The series of these terms along a piece's motion.
     pub fn new(piece: Piece, motion: Trajectory, terms: &[Term]) -> Prepared {
+        let doubt = terms.iter().map(|term| doubt(*term, &motion)).collect();
         let terms = terms.iter().map(|term| series(*term, &piece, &motion)).collect();
-        Prepared { piece, motion, terms }
+        Prepared { piece, motion, terms, doubt }
     }
 
     /// The equation of every window.
@@ -116,7 +119,10 @@ impl Prepared {
                 (0..windows.samples).map(|k| slope(k).powi(2)).sum::<f64>() * noise[channel].powi(2)
             };
             let measured = self.piece.measured();
-            variances.push((0..2).filter(|channel| measured[*channel].is_some()).map(of).sum());
+            let sensors: f64 = (0..2).filter(|channel| measured[*channel].is_some()).map(of).sum();
+            let jumps = self.doubt.iter().zip(coefficients).filter(|(doubt, _)| !doubt.is_empty());
+            let jumps = jumps.map(|(doubt, c)| c * c * jumped(&weights.phi[0], &doubt[first..]));
+            variances.push(sensors + jumps.sum::<f64>());
         });
         variances
     }
@@ -221,6 +227,30 @@ fn held(t: &[f64], hold: Hold) -> Vec<f64> {
 /// The force of a term at every sample, without what multiplies q̈: the one place that knows how a term follows from a motion.
 pub(super) fn force_series(term: Term, q: &[f64], qd: &[f64], excitation: &[f64]) -> Vec<f64> {
     q.iter().zip(qd).zip(excitation).map(|((q, qd), excitation)| term.force(*q, *qd, *excitation)).collect()
+}
+
+/// Half the jump of a term's force at every sample whose velocity is no further from 0 than √3 std of what is known of it: then the instant
+/// of a reversal is uncertain by as much as a uniform distribution over those samples says. Empty for a force that does not jump.
+fn doubt(term: Term, motion: &Trajectory) -> Vec<f64> {
+    let near = (3.0 * motion.velocity_variance).sqrt();
+    let jump = |q: f64| 0.5 * (term.force(q, f64::MIN_POSITIVE, 0.0) - term.force(q, -f64::MIN_POSITIVE, 0.0)).abs();
+    let pairs = motion.q.iter().zip(&motion.qd);
+    let doubt: Vec<f64> = pairs.map(|(q, qd)| if qd.abs() <= near { jump(*q) } else { 0.0 }).collect();
+    if doubt.iter().all(|jump| *jump == 0.0) { Vec::new() } else { doubt }
+}
+
+/// Variance of ∫ f φ dt where the force is uniform within ± `doubt` over every run of samples.
+fn jumped(phi: &[f64], doubt: &[f64]) -> f64 {
+    let (mut variance, mut run) = (0.0, 0.0);
+    for (phi, doubt) in phi.iter().zip(doubt) {
+        if *doubt > 0.0 {
+            run += phi * doubt;
+        } else {
+            variance += run * run / 3.0;
+            run = 0.0;
+        }
+    }
+    variance + run * run / 3.0
 }
 
 /// A term as series against φ and its derivatives. Products of powers take the readings themselves, whose noise is known; effects, which
