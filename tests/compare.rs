@@ -99,7 +99,7 @@ fn a_complete_model_is_at_its_noise_floor() {
         for with_velocity in [true, false] {
             for (extra, friction) in [(vec![], 0.0), (vec![coulomb], 0.5)] {
                 let law = |_: f64, q: f64, qd: f64| duffing(q, qd) + friction * if qd > 0.0 { 1.0 } else { -1.0 };
-                let recording = record(seed, 60.0, noise, with_velocity, law);
+                let recording = record(seed, 120.0, noise, with_velocity, law);
                 let found = found(&recording, &fitted(&extra));
                 let error = &found.given.error;
                 let ratio = error.force_residual / error.noise_floor;
@@ -135,9 +135,13 @@ fn hidden_coulomb_friction_is_located_around_velocity_reversals() {
     let recording = record(seed, 60.0, 0.01, true, |_, q, qd| duffing(q, qd) + 6.0 * qd.signum());
     let found = found(&recording, &fitted(&[]));
     assert_eq!(found.verdict(), Verdict::FormWrong, "seed {seed}");
-    let fail = place(&found, Over::Speed, seed);
-    assert!(fail.bounds.lower.is_none() && fail.bounds.upper.unwrap() < 0.7 * rms(&recording, |_, qd| qd), "{fail:?}");
-    assert!(found.sentence(fail).contains("around velocity reversals"), "seed {seed}");
+    let sentences: Vec<String> = found.best.fails.iter().take(2).map(|fail| found.sentence(fail)).collect();
+    let reversals =
+        found.best.fails.iter().take(2).find(|fail| found.sentence(fail).contains("around velocity reversals"));
+    let bounds = reversals.unwrap_or_else(|| panic!("seed {seed}: {sentences:#?}")).bounds;
+    let speed = rms(&recording, |_, qd| qd);
+    assert!(bounds.upper.is_some_and(|upper| upper < 0.9 * speed), "seed {seed}: {sentences:#?}");
+    assert!(bounds.lower.is_none_or(|lower| lower > -0.9 * speed), "seed {seed}: {sentences:#?}");
 }
 
 #[test]

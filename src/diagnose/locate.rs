@@ -35,7 +35,7 @@ const TWO_SIDED: f64 = 1.3;
 const CLOSED: f64 = 0.6;
 
 /// What the evidence of a band of frequencies counts: the force is a poorer measure of what to expect than time.
-const BAND: f64 = 0.2;
+const BAND: f64 = 0.1;
 
 /// What a failure is laid out over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

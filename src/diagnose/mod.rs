@@ -11,6 +11,7 @@ mod record;
 mod rows;
 mod scan;
 mod sentence;
+mod series;
 mod spectrum;
 mod trajectory;
 mod window;

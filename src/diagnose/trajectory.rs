@@ -153,7 +153,7 @@ fn reach(pieces: &[Piece], noise: [f64; 2]) -> usize {
         ratios.iter().zip(shortest).all(|(ratio, shortest)| *ratio <= (1.0 + allowed) * shortest.max(1.0 - allowed))
     };
     let longest = pieces.iter().map(|piece| (piece.len() - 1) / 2).min().unwrap_or(REACHES[0]);
-    REACHES.into_iter().filter(|reach| *reach <= longest && fits(*reach)).last().unwrap_or(REACHES[0])
+    REACHES.into_iter().rfind(|reach| *reach <= longest && fits(*reach)).unwrap_or(REACHES[0])
 }
 
 /// Scatter of the readings of q and q̇ about the polynomial ÷ what their noise explains; 0 where not measured.

@@ -5,7 +5,7 @@ use super::bench::{Bench, MODEL, plain};
 /// A noisy Duffing record of the built-in plant, `record.csv`, and the numbers of its law.
 fn bench(name: &str) -> Bench {
     let bench = Bench::new(name);
-    let output = bench.run(&["simulate", "duffing-white-noise", "--seed", "3", "--noise", "0.01", "-o", "record.csv"]);
+    let output = bench.run(&["simulate", "duffing-white", "--seed", "3", "--noise", "0.01", "-o", "record.csv"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     bench
 }
@@ -57,7 +57,7 @@ fn numbers_out_of_range_and_records_that_do_not_move_are_refused() {
     bench.write("data.csv", &plain("t,q,qd,F", 500));
     let compare = |extra: &[&'static str]| [&["compare", "data.csv", "--model", "model.toml"], extra].concat();
     bench.refused(&compare(&["--window", "0"]), &["--window", "positive"]);
-    bench.refused(&compare(&["--horizon", "-1"]), &["--horizon", "positive"]);
+    bench.refused(&compare(&["--horizon", "nan"]), &["--horizon", "positive"]);
     bench.refused(&["compare", "absent.csv", "--model", "model.toml"], &["absent.csv"]);
     bench.refused(&["compare", "--model", "model.toml"], &["DATA"]);
 }
