@@ -16,7 +16,7 @@ const TIME_BINS: usize = 48;
 const SIDE: usize = 6;
 
 /// Evidence that a place must have, nats.
-const EVIDENCE: f64 = 6.0;
+const EVIDENCE: f64 = 3.0;
 
 /// Share of the energy that a place must hold, and how many times its share of the time.
 const SHARE: f64 = 0.25;
