@@ -76,7 +76,7 @@ pub enum ModelError {
         /// The table it stands in.
         table: &'static str,
         /// Which one, and why.
-        source: InnerError,
+        source: Box<InnerError>,
     },
     /// The value of an inner parameter is neither a number nor to be fitted.
     #[error("[terms]: \"{key}\": {inner} = {value}: write a finite number to hold it, or \"fit\"")]
@@ -104,7 +104,7 @@ pub enum ModelError {
         /// The formula.
         text: String,
         /// Where, and why.
-        source: FormulaError,
+        source: Box<FormulaError>,
     },
     /// A user's effect has the name of another term, or none that can be one.
     #[error(

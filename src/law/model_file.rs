@@ -148,8 +148,11 @@ fn read_expression(name: &str, value: &toml::Value) -> Result<Expression, ModelE
     let text = table.get("expression").and_then(toml::Value::as_str);
     let text = text.ok_or_else(|| ModelError::NoExpression { name: name.into() })?;
     let parsed = Expression::parse(name, text);
-    let mut expression =
-        parsed.map_err(|source| ModelError::Expression { name: name.into(), text: text.into(), source })?;
+    let mut expression = parsed.map_err(|source| ModelError::Expression {
+        name: name.into(),
+        text: text.into(),
+        source: source.into(),
+    })?;
     let starts = read_inner(name, table, "expression", expression.parameters(), "effects")?;
     expression.set(&values(&starts, expression.values()));
     Ok(expression)
@@ -192,7 +195,7 @@ fn read_effect(
     let names: Vec<String> = effect.inner().iter().map(|parameter| parameter.name.into()).collect();
     let inner = read(&names)?;
     let effect = effect.with_inner(&values(&inner, &effect.inner_values()));
-    Ok((Term::Effect(effect.map_err(|source| ModelError::Inner { table: "terms", source })?), inner))
+    Ok((Term::Effect(effect.map_err(|source| ModelError::Inner { table: "terms", source: source.into() })?), inner))
 }
 
 fn values(inner: &[Option<f64>], defaults: &[f64]) -> Vec<f64> {
@@ -209,7 +212,7 @@ fn read_inner(
 ) -> Result<InnerValues, ModelError> {
     if let Some(name) = table.keys().find(|name| *name != beside && !names.contains(name)) {
         let source = InnerError::Unknown { effect: key.into(), name: name.clone(), known: names.to_vec() };
-        return Err(ModelError::Inner { table: place, source });
+        return Err(ModelError::Inner { table: place, source: source.into() });
     }
     let value = |name: &String| match table.get(name) {
         None => Ok(None),
