@@ -12,6 +12,7 @@
 pub mod cli;
 #[cfg(feature = "cli")]
 pub mod data;
+pub mod diagnose;
 pub mod evidence;
 pub mod identify;
 pub mod law;

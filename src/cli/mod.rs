@@ -3,6 +3,7 @@
 //! Human text goes to stdout; `--json` prints exactly one JSON document there instead. Errors and warnings go to stderr. Exit status:
 //! 0 done, 1 a gate or a check failed, 2 bad usage or bad input.
 
+mod compare;
 mod error;
 mod identify;
 mod output;
@@ -24,6 +25,7 @@ struct CommandLine {
 
 #[derive(Subcommand)]
 enum Command {
+    Compare(compare::Arguments),
     Identify(identify::Arguments),
     Simulate(simulate::Arguments),
 }
@@ -31,6 +33,7 @@ enum Command {
 impl Command {
     fn run(self) -> Result<(), CommandError> {
         match self {
+            Command::Compare(arguments) => compare::run(&arguments),
             Command::Identify(arguments) => identify::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
         }

@@ -77,6 +77,8 @@ pub struct IntervalMap {
     pub transition: [[f64; 2]; 2],
     /// B, one column of (q, q̇) for each free coefficient.
     pub input: Vec<[f64; 2]>,
+    /// What an acceleration of 1 over the whole interval does to (q, q̇).
+    pub push: [f64; 2],
 }
 
 impl IntervalMap {
@@ -85,6 +87,7 @@ impl IntervalMap {
     fn set(&mut self, step: &Linearized, slopes: &[f64]) {
         let [to_q, to_qd] = step.input;
         self.transition = step.transition;
+        self.push = step.input;
         for (input, slope) in self.input.iter_mut().zip(slopes) {
             *input = [to_q * slope, to_qd * slope];
         }
@@ -99,6 +102,8 @@ impl IntervalMap {
             let [q, qd] = *input;
             *input = [a * q + b * qd + to_q * slope, c * q + d * qd + to_qd * slope];
         }
+        let [q, qd] = self.push;
+        self.push = [a * q + b * qd + to_q, c * q + d * qd + to_qd];
         let [[e, f], [g, h]] = self.transition;
         self.transition = [[a * e + b * g, a * f + b * h], [c * e + d * g, c * f + d * h]];
     }
@@ -109,6 +114,8 @@ impl IntervalMap {
 pub struct Pass {
     /// The filter in use.
     pub filter: Filter,
+    /// The same before the last sample was taken.
+    pub predicted: Filter,
     /// Its likelihood.
     pub track: Track,
     /// Likelihoods under the process noise times [`RIVALS`].
@@ -138,11 +145,12 @@ impl Pass {
         let filter = Filter { state: State::default(), covariance: [0.0; 3] };
         Pass {
             filter,
+            predicted: filter,
             track: Track::default(),
             rivals: [Track::default(); 2],
             information: Information::none(n),
             sensitivity: vec![[0.0; 2]; n],
-            map: IntervalMap { transition: [[0.0; 2]; 2], input: vec![[0.0; 2]; n] },
+            map: IntervalMap { transition: [[0.0; 2]; 2], input: vec![[0.0; 2]; n], push: [0.0; 2] },
             parts: 1,
             rival_filters: [filter; 2],
             fastest: 0.0,
@@ -182,9 +190,15 @@ impl Pass {
         }
         self.compiled.follow(motion);
         self.advance(noise, observation);
+        self.predicted = self.filter;
         let innovations = Channel::ALL.map(|channel| self.correct(channel, noise, observation));
         self.inform(&innovations);
         innovations
+    }
+
+    /// ∂/∂θ of what the last sample was expected to measure in the channel, n.
+    pub fn expected(&self, channel: Channel) -> &[f64] {
+        &self.rows[channel as usize].as_flattened()[..self.sensitivity.len()]
     }
 
     fn advance(&mut self, noise: &Noise, observation: &Observation) {

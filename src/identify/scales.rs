@@ -11,19 +11,20 @@ pub struct Scales {
     slopes: Vec<f64>,
     force: f64,
     inertial: f64,
+    stiffness: f64,
     count: f64,
 }
 
 impl Scales {
     /// Nothing seen yet of `n` free coefficients.
     pub fn new(n: usize) -> Scales {
-        Scales { slopes: vec![0.0; n], force: 0.0, inertial: 0.0, count: 0.0 }
+        Scales { slopes: vec![0.0; n], force: 0.0, inertial: 0.0, stiffness: 0.0, count: 0.0 }
     }
 
     /// Forgets everything.
     pub fn clear(&mut self) {
         self.slopes.fill(0.0);
-        (self.force, self.inertial, self.count) = (0.0, 0.0, 0.0);
+        (self.force, self.inertial, self.stiffness, self.count) = (0.0, 0.0, 0.0, 0.0);
     }
 
     /// Takes the interval that the pass has just run over, under the coefficients `all`.
@@ -35,6 +36,7 @@ impl Scales {
         self.force += (observation.drive.part(0, 1)[0] / inertia).powi(2);
         let stiffness = pass.map.transition[1][0] / observation.dt;
         self.inertial += (stiffness * pass.filter.state.q).powi(2);
+        self.stiffness += stiffness.abs();
         self.count += 1.0;
     }
 
@@ -42,6 +44,11 @@ impl Scales {
     pub fn acceleration(&self) -> f64 {
         let sum = if self.force > 0.0 { self.force } else { self.inertial };
         (sum / self.count.max(1.0)).sqrt()
+    }
+
+    /// 1 ÷ natural angular frequency of the law about its motion, s; ∞ without stiffness.
+    pub fn natural_time(&self) -> f64 {
+        (self.count / self.stiffness).sqrt()
     }
 
     /// RMS of ∂q̈/∂θ of the free coefficient.

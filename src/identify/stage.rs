@@ -47,7 +47,7 @@ const PROCESS_SHARE: f64 = 2.0;
 const LASTING: f64 = 2.5;
 
 /// Smallest sensor noise std, relative to the largest value measured: rounding and the integration's own error.
-const NOISE_FLOOR: f64 = 1e-7;
+const NOISE_FLOOR: f64 = 3e-7;
 
 /// The record of a stage is folded into a prior when it fills this fraction of the window.
 const FULL: f64 = 0.9;
@@ -336,12 +336,9 @@ impl Stage {
         self.fold(window);
     }
 
-    /// Takes over how the estimate of another stage over the same record has stood: what stands trial is the law, however found.
-    pub fn inherit_trial(&mut self, other: &Stage) {
-        if self.start == other.start {
-            (self.stood, self.trial.length) = (other.stood, other.trial.length);
-            self.trial.all.copy_from_slice(&other.trial.all);
-        }
+    /// Whether both stages found one law in the same record.
+    pub fn agrees_with(&self, other: &Stage) -> bool {
+        self.start == other.start && differ_by(&self.all, &other.all) < STOOD
     }
 
     /// Lets the law stand trial: statistics that a wrong structure or a wrong minimum makes up do not survive more data.
@@ -350,10 +347,7 @@ impl Stage {
         if !self.settled() || (length as f64) < TRIAL * self.trial.length as f64 {
             return;
         }
-        let pairs = self.all.iter().zip(&self.trial.all);
-        let change: f64 = pairs.map(|(new, old)| (new - old).powi(2)).sum();
-        let squares: f64 = self.all.iter().map(|value| value * value).sum();
-        let stood = self.trial.length > 0 && change < STOOD * squares;
+        let stood = self.trial.length > 0 && differ_by(&self.all, &self.trial.all) < STOOD;
         self.stood = if stood { self.stood + 1 } else { 0 };
         self.trial.length = length;
         self.trial.all.copy_from_slice(&self.all);
@@ -451,6 +445,12 @@ impl Stage {
         self.running_scales.clear();
         self.blocks.begin(length);
     }
+}
+
+/// e of eq. (8) between two laws.
+fn differ_by(new: &[f64], old: &[f64]) -> f64 {
+    let change: f64 = new.iter().zip(old).map(|(new, old)| (new - old).powi(2)).sum();
+    change / new.iter().map(|value| value * value).sum::<f64>()
 }
 
 /// The state at the first sample, from that sample and the next alone.

@@ -64,8 +64,14 @@ const START_ERROR: f64 = 0.3;
 /// The same where no displacement is measured: each weak row then has an offset of its own, which the filter does not need.
 const START_ERROR_WITHOUT_Q: f64 = 1.0;
 
-/// Record after which an unvouched law is contested by the latest record alone, s ÷ `sample_time` as [`OLDEST`].
-const FRESH_START: f64 = 12.0;
+/// The law's own covariance counts this many times where it leaves the state open: it is that of a linearisation.
+const DISTRUST: f64 = 10.0;
+
+/// An error of the law acts one way for this many samples at most.
+const LONGEST_ERROR: f64 = 1000.0;
+
+/// Samples after which an unvouched law is contested by the latest record alone.
+const FRESH_START: u64 = 12_000;
 
 /// What the latest record must explain better than the whole one to replace it, nats per measurement.
 const CLEARLY: f64 = 0.1;
@@ -115,6 +121,10 @@ struct Live {
     all: Vec<f64>,
     active: Vec<bool>,
     noise: Noise,
+    /// Covariance of the free coefficients, n × n.
+    covariance: Vec<f64>,
+    /// For how long an error of the law acts one way, s.
+    lasting: f64,
     next: u64,
     running: bool,
     prediction: State,
@@ -138,6 +148,8 @@ impl Tracker {
                 all: problem.known.clone(),
                 active: vec![true; n],
                 noise: Noise { sensor: [1.0; 2], process: 1.0 },
+                covariance: vec![0.0; n * n],
+                lasting: 0.0,
                 next: 0,
                 running: false,
                 prediction: State::default(),
@@ -196,7 +208,7 @@ impl Tracker {
         self.window.push(sample);
         self.follow(problem, settings, output);
         if !output.valid {
-            self.begin_afresh(settings);
+            self.begin_afresh();
             self.challenge(problem, settings);
         }
         self.challenge_noise(problem, settings);
@@ -212,9 +224,9 @@ impl Tracker {
 
     /// A record that has grown long without a law to vouch for may hold a switch that nobody saw: the weak rows begin anew, so that
     /// the next challenger knows the latest record alone.
-    fn begin_afresh(&mut self, settings: &Settings) {
+    fn begin_afresh(&mut self) {
         let (end, since) = (self.window.end(), self.challenged_from);
-        let patience = (FRESH_START / settings.sample_time) as u64 + 2 * (since - self.stage.start.min(since));
+        let patience = FRESH_START + 2 * (since - self.stage.start.min(since));
         if self.challenging || self.phase == Phase::Gathering || end - since < patience {
             return;
         }
@@ -300,12 +312,14 @@ impl Tracker {
         }
         if self.challenger.settled() {
             self.challenging = false;
+            if self.challenger.agrees_with(&self.stage) {
+                self.next_guess = self.window.end() + self.stage.length(self.window.end());
+            }
             let measurements = 2.0 * self.challenger.length(self.window.ready()) as f64;
             let later = self.challenger.start > self.stage.start;
             let margin = if later { CLEARLY } else { 3.0 / measurements };
             if self.challenger.likelihood > self.stage.likelihood + margin {
                 std::mem::swap(&mut self.challenger, &mut self.stage);
-                self.stage.inherit_trial(&self.challenger);
             }
         } else if self.challenger.passes > PATIENCE {
             self.challenging = false;
@@ -538,7 +552,19 @@ impl Tracker {
 impl Live {
     fn step(&mut self, problem: &Problem, observation: &Observation) -> [Option<crate::evidence::Innovation>; 2] {
         let motion = Motion { terms: &problem.terms, coefficients: &self.all };
-        self.pass.step(&motion, &problem.free_terms, &self.noise, observation)
+        let noise = Noise { process: self.noise.process + self.doubt(observation.dt), ..self.noise };
+        self.pass.step(&motion, &problem.free_terms, &noise, observation)
+    }
+
+    /// Intensity of the acceleration that the law's own uncertainty leaves open over an interval like the last one, (m/s²)² s: where the
+    /// motion leaves what its record has seen, an uncertain law must not bind the state.
+    fn doubt(&self, dt: f64) -> f64 {
+        let inputs = &self.pass.map.input;
+        let rows = self.covariance.chunks_exact(inputs.len()).zip(inputs);
+        let variance: f64 = rows
+            .map(|(row, input)| input[1] * row.iter().zip(inputs).map(|(entry, other)| entry * other[1]).sum::<f64>())
+            .sum();
+        DISTRUST * variance.max(0.0) / (dt * dt) * self.lasting
     }
 
     /// Takes over the stage's estimate and the run that led to it.
@@ -547,8 +573,11 @@ impl Live {
         self.all.copy_from_slice(&stage.all);
         self.active.copy_from_slice(&stage.active);
         self.noise = stage.noise;
+        self.covariance.copy_from_slice(&stage.solution.covariance);
+        let [before, last] = [window.ready() - 2, window.ready() - 1].map(|number| window.sample(number).t);
+        self.lasting = stage.scales.natural_time().min(LONGEST_ERROR * (last - before));
         if !self.running {
-            self.restart_prediction(window.sample(window.ready() - 1).t);
+            self.restart_prediction(last);
         }
         self.next = window.ready();
         self.running = true;

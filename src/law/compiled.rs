@@ -1,7 +1,7 @@
 //! A law with numbers, arranged for speed.
 //!
 //! Every term is a product of one factor of q, one of q̇ and a power of F: the factors that the terms share, powers foremost, are
-//! evaluated once at a point into a [`Table`], and a term is three places in it. Terms whose coefficient is 0 cost nothing where
+//! evaluated once at a point into a [`Table`], and a term is three places in it. Effects with inner parameters get the places that are left. Terms whose coefficient is 0 cost nothing where
 //! only the force is wanted. The order of a sum, and so its last bits, depend on nothing but terms and coefficients.
 
 use super::effect::Effect;
@@ -24,8 +24,45 @@ struct Places {
     excitation: u8,
 }
 
+/// First places of the effects with inner parameters.
+const SHAPED_Q: u8 = EFFECTS + OF_Q.len() as u8;
+const SHAPED_QD: u8 = EFFECTS + OF_QD.len() as u8;
+
+/// Which effects with inner parameters stand at the last places of q's table and of q̇'s.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Shapes {
+    q: [Option<Effect>; FACTORS - SHAPED_Q as usize],
+    qd: [Option<Effect>; FACTORS - SHAPED_QD as usize],
+}
+
+impl Shapes {
+    /// The effect's place among those of q (or of q̇), its own or the next free one.
+    fn place(slots: &mut [Option<Effect>], first: u8, effect: Effect) -> Option<u8> {
+        let index = slots.iter().position(|slot| slot.is_none_or(|other| other == effect))?;
+        slots[index] = Some(effect);
+        Some(first + index as u8)
+    }
+
+    /// Of the part of the term that does not multiply q̈; none for the inertia, for an effect with memory and where there is no
+    /// place left.
+    fn places(&mut self, term: Term) -> Option<Places> {
+        match term {
+            Term::Effect(effect @ (Effect::DeadZoneStiffness { .. } | Effect::OneSidedStop { .. })) => {
+                Shapes::place(&mut self.q, SHAPED_Q, effect).map(|q| Places { q, ..Places::default() })
+            }
+            Term::Effect(effect @ Effect::StribeckFriction { .. }) => {
+                Shapes::place(&mut self.qd, SHAPED_QD, effect).map(|qd| Places { qd, ..Places::default() })
+            }
+            Term::Effect(Effect::ExcitationGainNonlinearity { power }) => {
+                Some(Places { excitation: power.value() as u8, ..Places::default() })
+            }
+            _ => Places::of(term),
+        }
+    }
+}
+
 impl Places {
-    /// Of the part of the term that does not multiply q̈; none for the inertia.
+    /// Of the part of the term that does not multiply q̈; none for the inertia and for an effect that has no fixed place.
     fn of(term: Term) -> Option<Places> {
         let places = |q, qd| Some(Places { q, qd, excitation: 0 });
         match term {
@@ -37,6 +74,7 @@ impl Places {
             Term::Effect(Effect::SignedQuadraticStiffness) => places(EFFECTS + 1, 0),
             Term::Effect(Effect::BilinearStiffness) => places(EFFECTS + 2, 0),
             Term::Effect(Effect::PositionDependentInertia) => places(1, 2),
+            Term::Effect(_) | Term::Expression(_) => None,
         }
     }
 }
@@ -84,6 +122,7 @@ pub struct Compiled {
     parts: [Part; Model::MAX_TERMS],
     count: usize,
     free: [Free; Model::MAX_TERMS],
+    shapes: Shapes,
     reach: Reach,
     free_reach: Reach,
     /// What multiplies q̈: `mass[0] + mass[1] q²`.
@@ -99,6 +138,7 @@ impl Default for Compiled {
             parts: [Part::default(); Model::MAX_TERMS],
             count: 0,
             free: [Free::default(); Model::MAX_TERMS],
+            shapes: Shapes::default(),
             reach: Reach::default(),
             free_reach: Reach::default(),
             mass: [0.0; 2],
@@ -115,16 +155,29 @@ pub(super) struct Table {
 }
 
 impl Compiled {
-    /// Takes the free terms, at most [`Model::MAX_TERMS`], for `slopes`.
+    /// The first term that a compiled law cannot have: one with memory, or one more effect with inner parameters than there are
+    /// places (3 of q, 4 of q̇).
+    pub fn refused(terms: &[Term]) -> Option<Term> {
+        let mut shapes = Shapes::default();
+        terms.iter().copied().find(|term| *term != Term::Inertia && shapes.places(*term).is_none())
+    }
+
+    /// Takes the free terms, at most [`Model::MAX_TERMS`], for `slopes`; the motion is to be compiled after them. A
+    /// [refused](Compiled::refused) term makes the slopes, or the acceleration, NaN.
     pub fn seek(&mut self, free: &[Term]) {
         self.free_reach = Reach::default();
+        self.shapes = Shapes::default();
         for (slot, term) in self.free.iter_mut().zip(free) {
-            let places = Places::of(*term);
+            let places = self.shapes.places(*term);
             let places_or_one = places.unwrap_or_default();
             let at_zero = term.mass(0.0);
             *slot = Free {
                 places: places_or_one,
-                force: if places.is_some() { 1.0 } else { 0.0 },
+                force: match (term, places) {
+                    (Term::Inertia, _) => 0.0,
+                    (_, Some(_)) => 1.0,
+                    (_, None) => f64::NAN,
+                },
                 mass: [at_zero, term.mass(1.0) - at_zero],
             };
             self.free_reach.include(places_or_one);
@@ -150,10 +203,13 @@ impl Compiled {
             let at_zero = term.mass(0.0);
             self.mass[0] += coefficient * at_zero;
             self.mass[1] += coefficient * (term.mass(1.0) - at_zero);
-            if let Some(places) = Places::of(*term).filter(|_| *coefficient != 0.0) {
-                self.parts[self.count] = Part { places, coefficient: *coefficient };
+            if *term != Term::Inertia && *coefficient != 0.0 {
+                self.parts[self.count] = match self.shapes.places(*term) {
+                    Some(places) => Part { places, coefficient: *coefficient },
+                    None => Part { places: Places::default(), coefficient: f64::NAN },
+                };
+                self.reach.include(self.parts[self.count].places);
                 self.count += 1;
-                self.reach.include(places);
             }
         }
         self.inverse_mass = self.mass[0].recip();
@@ -162,7 +218,7 @@ impl Compiled {
     /// Writes the law's factors at a point.
     #[inline]
     pub(super) fn fill(&self, table: &mut Table, state: State, excitation: f64) {
-        table.fill(self.reach, state, excitation);
+        table.fill(&self.shapes, self.reach, state, excitation);
     }
 
     /// Writes the law's and the free terms' factors at a point.
@@ -171,7 +227,7 @@ impl Compiled {
         let (law, free) = (self.reach, self.free_reach);
         let excited = law.excitation.max(free.excitation);
         let reach = Reach { q: law.q.max(free.q), qd: law.qd.max(free.qd), excitation: excited };
-        table.fill(reach, state, excitation);
+        table.fill(&self.shapes, reach, state, excitation);
     }
 
     /// (q̈, 1 ÷ mass).
@@ -199,6 +255,14 @@ impl Compiled {
             let slots = &mut by_qd[usize::from(EFFECTS)..];
             OF_QD.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.gradient(0.0, state.qd).1);
         }
+        if self.reach.q >= SHAPED_Q {
+            let slots = &mut by_q[usize::from(SHAPED_Q)..];
+            fill_shapes(&self.shapes.q, slots, |effect| effect.gradient(state.q, 0.0).0);
+        }
+        if self.reach.qd >= SHAPED_QD {
+            let slots = &mut by_qd[usize::from(SHAPED_QD)..];
+            fill_shapes(&self.shapes.qd, slots, |effect| effect.gradient(0.0, state.qd).1);
+        }
         let mut gradient = [0.0; 2];
         for Part { places, coefficient } in &self.parts[..self.count] {
             let scaled = coefficient * table.excitation[usize::from(places.excitation) & MASK];
@@ -224,17 +288,23 @@ impl Table {
     pub(super) const EMPTY: Table = Table { q: [0.0; FACTORS], qd: [0.0; FACTORS], excitation: [0.0; FACTORS] };
 
     #[inline]
-    fn fill(&mut self, reach: Reach, state: State, excitation: f64) {
+    fn fill(&mut self, shapes: &Shapes, reach: Reach, state: State, excitation: f64) {
         powers(&mut self.q, state.q, reach.q);
         powers(&mut self.qd, state.qd, reach.qd);
         powers(&mut self.excitation, excitation, reach.excitation);
         if reach.q >= EFFECTS {
             let slots = &mut self.q[usize::from(EFFECTS)..];
-            OF_Q.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.force(state.q, 0.0));
+            OF_Q.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.force(state.q, 0.0, 0.0));
         }
         if reach.qd >= EFFECTS {
             let slots = &mut self.qd[usize::from(EFFECTS)..];
-            OF_QD.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.force(0.0, state.qd));
+            OF_QD.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.force(0.0, state.qd, 0.0));
+        }
+        if reach.q >= SHAPED_Q {
+            fill_shapes(&shapes.q, &mut self.q[usize::from(SHAPED_Q)..], |effect| effect.force(state.q, 0.0, 0.0));
+        }
+        if reach.qd >= SHAPED_QD {
+            fill_shapes(&shapes.qd, &mut self.qd[usize::from(SHAPED_QD)..], |effect| effect.force(0.0, state.qd, 0.0));
         }
     }
 
@@ -243,6 +313,11 @@ impl Table {
         let product = self.q[usize::from(places.q) & MASK] * self.qd[usize::from(places.qd) & MASK];
         product * self.excitation[usize::from(places.excitation) & MASK]
     }
+}
+
+#[inline]
+fn fill_shapes(shapes: &[Option<Effect>], slots: &mut [f64], value: impl Fn(Effect) -> f64) {
+    shapes.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.map_or(0.0, &value));
 }
 
 /// base⁰ … base^reach, at least up to the cube.
@@ -271,7 +346,7 @@ mod tests {
         let monomial = |q, qd, excitation| Term::Monomial(Monomial { q, qd, excitation });
         let monomials =
             [(0, 0, 0), (1, 0, 0), (3, 2, 0), (9, 0, 0), (0, 5, 0), (1, 0, 2)].map(|(q, qd, f)| monomial(q, qd, f));
-        let effects = Effect::ALL.map(Term::Effect);
+        let effects = Effect::ALL.into_iter().filter(|effect| effect.is_pointwise()).map(Term::Effect);
         let terms: Vec<Term> = [Term::Inertia].into_iter().chain(monomials).chain(effects).collect();
         let coefficients = (0..terms.len()).map(|index| 0.3 + 0.17 * index as f64).collect();
         (terms, coefficients)
@@ -309,6 +384,24 @@ mod tests {
                 assert!((found / expected - 1.0).abs() < 1e-13, "{found} against {expected}");
             }
         }
+    }
+
+    #[test]
+    fn what_cannot_be_compiled_is_named_and_never_silent() {
+        let gaps = |count: usize| {
+            let stop = |index| Effect::prototype("one_sided_stop").unwrap().with_inner(&[index as f64]).unwrap();
+            (0..count).map(|index| Term::Effect(stop(index))).collect::<Vec<_>>()
+        };
+        assert_eq!(Compiled::refused(&every_kind().0), None);
+        assert_eq!(Compiled::refused(&gaps(3)), None);
+        assert_eq!(Compiled::refused(&gaps(4)), Some(gaps(4)[3]));
+        let hysteresis = Term::Effect(Effect::prototype("hysteresis").unwrap());
+        assert_eq!(Compiled::refused(&[Term::Inertia, hysteresis]), Some(hysteresis));
+        let mut compiled = Compiled::default();
+        compiled.compile(&Motion { terms: &[Term::Inertia, hysteresis], coefficients: &[1.0, 2.0] });
+        let mut table = Table::EMPTY;
+        compiled.fill(&mut table, State::default(), 0.0);
+        assert!(compiled.acceleration(&table, 0.0).0.is_nan());
     }
 
     #[test]

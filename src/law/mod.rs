@@ -4,22 +4,39 @@
 //! on the right with its coefficient fixed to 1 (or, unforced, with the inertia fixed to 1 and F = 0). Each
 //! [`Term`] is one f: the inertia q̈, a product of powers `q^a q̇^b F^c`, or a named physical effect of the catalogue.
 
+mod catalogue;
 mod compiled;
+mod dimension;
 mod drive;
+mod dynamics;
 mod effect;
+mod expression;
+mod formula;
+mod history;
 mod hold;
+mod inner;
 mod linearized;
+mod memory;
 mod model;
 mod motion;
+mod series;
 mod term;
 mod text;
 
+pub use catalogue::{Catalogue, Entry, Sign};
 pub use compiled::Compiled;
+pub use dimension::Dimension;
 pub use drive::{BandLimited, Drive, NODES, REACH, look_ahead};
+pub use dynamics::{Dynamics, DynamicsError, MAX_MEMORY, Phase};
 pub use effect::Effect;
+pub use expression::Expression;
+pub use formula::FormulaError;
+pub use history::{History, Samples};
 pub use hold::Hold;
+pub use inner::{Inner, InnerError, InnerParameter, InnerRange, InnerUnit};
 pub use linearized::Linearized;
 pub use model::{Columns, Given, Model, ModelError, ModelTerm};
 pub use motion::{Motion, State};
+pub use series::{Trajectory, term_series};
 pub use term::{Monomial, Term, TermError};
 pub use text::equation;

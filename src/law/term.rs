@@ -29,6 +29,8 @@ pub enum Term {
     Monomial(Monomial),
     /// A named effect that is no monomial.
     Effect(Effect),
+    /// A user's own effect: a place among [`super::Model::expressions`].
+    Expression(u8),
 }
 
 /// Why a text names no term.
@@ -88,7 +90,7 @@ impl Term {
         if let Some((_, term)) = NAMED_TERMS.iter().find(|(id, _)| *id == text) {
             return Ok(*term);
         }
-        if let Some(effect) = Effect::from_id(text) {
+        if let Some(effect) = Effect::prototype(text) {
             return Ok(Term::Effect(effect));
         }
         if text == "1" {
@@ -97,11 +99,12 @@ impl Term {
         parse_product(text).map(Term::Monomial)
     }
 
-    /// The canonical name: `qdd`, `q^2*qd`, `1`, or the effect id.
+    /// The canonical name: `qdd`, `q^2*qd`, `1`, or the effect id; [`super::Model::name_of`] knows the names of expressions.
     pub fn name(self) -> String {
         match self {
             Term::Inertia => "qdd".into(),
             Term::Effect(effect) => effect.id().into(),
+            Term::Expression(index) => format!("expression_{}", u16::from(index) + 1),
             Term::Monomial(Monomial { q: 0, qd: 0, excitation: 0 }) => "1".into(),
             Term::Monomial(powers) => {
                 let factor = |base: &str, power: u8| match power {
@@ -131,6 +134,7 @@ impl Term {
         match self {
             Term::Inertia => "q̈".into(),
             Term::Effect(effect) => effect.symbol().into(),
+            Term::Expression(_) => self.name(),
             Term::Monomial(powers) => [("F", powers.excitation), ("q", powers.q), ("q̇", powers.qd)]
                 .into_iter()
                 .filter(|(_, power)| *power > 0)
@@ -140,12 +144,14 @@ impl Term {
         }
     }
 
-    /// The part of the term that does not multiply q̈, at (q, q̇, F); 0 for the inertia.
+    /// The part of the term that does not multiply q̈, at (q, q̇, F); 0 for the inertia, NaN for an effect with memory
+    /// and for an expression, which the term alone does not determine.
     #[inline]
     pub fn force(self, q: f64, qd: f64, excitation: f64) -> f64 {
         match self {
             Term::Inertia => 0.0,
-            Term::Effect(effect) => effect.force(q, qd),
+            Term::Effect(effect) => effect.force(q, qd, excitation),
+            Term::Expression(_) => f64::NAN,
             Term::Monomial(p) => power(q, p.q) * power(qd, p.qd) * power(excitation, p.excitation),
         }
     }
@@ -156,6 +162,7 @@ impl Term {
         match self {
             Term::Inertia => (0.0, 0.0),
             Term::Effect(effect) => effect.gradient(q, qd),
+            Term::Expression(_) => (f64::NAN, f64::NAN),
             Term::Monomial(p) => {
                 let scale = power(excitation, p.excitation);
                 (scale * power_derivative(q, p.q) * power(qd, p.qd), scale * power(q, p.q) * power_derivative(qd, p.qd))
@@ -173,9 +180,33 @@ impl Term {
         }
     }
 
+    /// The named effect that the term is, if it is one.
+    #[inline]
+    pub fn effect(self) -> Option<Effect> {
+        match self {
+            Term::Effect(effect) => Some(effect),
+            _ => None,
+        }
+    }
+
     /// Whether the term depends on the excitation.
     pub fn uses_excitation(self) -> bool {
-        matches!(self, Term::Monomial(Monomial { excitation, .. }) if excitation > 0)
+        match self {
+            Term::Inertia => false,
+            Term::Monomial(powers) => powers.excitation > 0,
+            Term::Effect(effect) => effect.uses_excitation(),
+            Term::Expression(_) => false,
+        }
+    }
+
+    /// Whether [`Term::force`] says all of the term besides what multiplies q̈: false for effects with memory.
+    #[inline]
+    pub fn is_pointwise(self) -> bool {
+        match self {
+            Term::Inertia | Term::Monomial(_) => true,
+            Term::Effect(effect) => effect.is_pointwise(),
+            Term::Expression(_) => false,
+        }
     }
 }
 

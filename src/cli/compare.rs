@@ -1,0 +1,385 @@
+//! `switchid compare`: a model against measurements.
+
+use super::error::CommandError;
+use super::output::{self, Pairs};
+use crate::data;
+use crate::diagnose::{Bounds, Comparison, Error, Fail, NOISE_RATIO, Options, Over, Side, Verdict, compare};
+use crate::identify::{self, Recording, Settings};
+use crate::law::{Hold, Model, equation};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+const EXAMPLE: &str = r#"Examples:
+  switchid compare recording.csv --model model.toml
+  switchid compare first.csv second.csv@20:60 --model model.toml --window 0.3 --json
+
+Two laws stand side by side: the model as given, its numbers held, and the best of its form, every
+coefficient fitted. Where the first errs much more, the form is right and the numbers are off.
+The force residual is the RMS of what the law leaves over of the force, averaged over windows, ÷ RMS of
+the excitation (of the inertia force in free motion); the noise floor is what it would be were the law right."#;
+
+/// Compare a model with measurements: how wrong it is, where, and how wrong it could at best be
+#[derive(Args)]
+#[command(after_help = EXAMPLE)]
+pub(super) struct Arguments {
+    /// The recordings (CSV with a header), or sections of them: DATA@t0:t1 in seconds
+    #[arg(required = true)]
+    data: Vec<String>,
+    /// The model file (TOML)
+    #[arg(long, short)]
+    model: PathBuf,
+    /// What the excitation did between samples; else the model says, or the best one is kept
+    #[arg(long, value_parser = PossibleValuesParser::new(Hold::ALL.map(Hold::id)))]
+    hold: Option<String>,
+    /// Length of the windows over which the residual force is averaged; else chosen from the motion
+    #[arg(long, value_name = "S")]
+    window: Option<f64>,
+    /// Length of the windows of open-loop prediction
+    #[arg(long, value_name = "S", default_value_t = Options::default().horizon)]
+    horizon: f64,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    let options = options(arguments)?;
+    let model = data::open_model(&arguments.model)?;
+    let opened = arguments.data.iter().map(|data| data::open_recording(data, &model)).collect::<Result<Vec<_>, _>>()?;
+    let recordings: Vec<(&Recording, Hold)> =
+        opened.iter().map(|opened| (&opened.recording, hold(arguments, &model, &opened.recording))).collect();
+    let found = compare(&model, &recordings, &options);
+    let holds: Vec<Hold> = recordings.iter().map(|(_, hold)| *hold).collect();
+    if arguments.json {
+        output::print_json(&Report::of(&found, &holds))
+    } else {
+        output::print(&text(&found, &model, &arguments.model.display().to_string()))
+    }
+}
+
+fn options(arguments: &Arguments) -> Result<Options, CommandError> {
+    let positive = |option: &'static str, value: f64| {
+        let range = "a positive number of seconds";
+        if value > 0.0 && value.is_finite() { Ok(value) } else { Err(CommandError::Option { option, value, range }) }
+    };
+    let window = arguments.window.map(|window| positive("window", window)).transpose()?;
+    Ok(Options { window, horizon: positive("horizon", arguments.horizon)? })
+}
+
+fn hold(arguments: &Arguments, model: &Model, recording: &Recording) -> Hold {
+    let asked = arguments.hold.as_deref().and_then(Hold::from_id);
+    let settings = || identify::settings_for(recording, Settings::default());
+    asked.or(model.hold).unwrap_or_else(|| identify::choose_hold(model, recording, &settings()))
+}
+
+#[derive(Serialize)]
+struct Report {
+    verdict: &'static str,
+    error: ErrorReport,
+    coefficients: Pairs,
+    std: Pairs,
+    fails: Vec<FailReport>,
+    best: SideReport,
+    recordings: Vec<RecordingReport>,
+}
+
+#[derive(Serialize)]
+struct SideReport {
+    error: ErrorReport,
+    coefficients: Pairs,
+    std: Pairs,
+    undetermined: Vec<String>,
+    fails: Vec<FailReport>,
+}
+
+#[derive(Serialize)]
+struct FailReport {
+    kind: &'static str,
+    over: &'static str,
+    bounds: Vec<BoundsReport>,
+    data: Option<String>,
+    share: f64,
+    time_share: f64,
+    evidence: f64,
+    sentence: String,
+}
+
+#[derive(Serialize)]
+struct BoundsReport {
+    of: &'static str,
+    lower: Option<f64>,
+    upper: Option<f64>,
+}
+
+#[derive(Serialize)]
+struct RecordingReport {
+    data: String,
+    hold: &'static str,
+    noise: Pairs,
+    error: ErrorReport,
+    best: ErrorReport,
+}
+
+#[derive(Serialize)]
+struct ErrorReport {
+    force_residual: f64,
+    window: f64,
+    noise_floor: f64,
+    ratio: Option<f64>,
+    free_run_nrmse: Option<f64>,
+    free_run_nrmse_velocity: Option<f64>,
+    free_run_diverged: Option<f64>,
+    window_rmse: Option<f64>,
+    horizon: f64,
+}
+
+impl Report {
+    fn of(found: &Comparison, holds: &[Hold]) -> Report {
+        let error = |error: &Error| ErrorReport::of(error, found);
+        let recordings = found.sources.iter().enumerate().map(|(index, source)| RecordingReport {
+            data: source.clone(),
+            hold: holds[index].id(),
+            noise: noise(found.noise[index]),
+            error: error(&found.given.each[index]),
+            best: error(&found.best.each[index]),
+        });
+        Report {
+            verdict: id(found.verdict()),
+            error: error(&found.given.error),
+            coefficients: coefficients(&found.given),
+            std: std(&found.given),
+            fails: found.given.fails.iter().map(|fail| FailReport::of(fail, found)).collect(),
+            best: SideReport {
+                error: error(&found.best.error),
+                coefficients: coefficients(&found.best),
+                std: std(&found.best),
+                undetermined: found.best.law.undetermined.iter().map(|term| term.name()).collect(),
+                fails: found.best.fails.iter().map(|fail| FailReport::of(fail, found)).collect(),
+            },
+            recordings: recordings.collect(),
+        }
+    }
+}
+
+impl FailReport {
+    fn of(fail: &Fail, found: &Comparison) -> FailReport {
+        let over = over(fail.over);
+        let one = |of: &'static str, bounds: Bounds| BoundsReport { of, lower: bounds.lower, upper: bounds.upper };
+        let bounds = match fail.over {
+            Over::PhasePlane => vec![one("q", fail.bounds), one("qd", fail.velocity)],
+            _ => vec![one(over, fail.bounds)],
+        };
+        FailReport {
+            kind: if fail.over == Over::Time { "time" } else { "region" },
+            over,
+            bounds,
+            data: fail.recording.and_then(|index| found.sources.get(index).cloned()),
+            share: fail.share,
+            time_share: fail.time_share,
+            evidence: fail.evidence,
+            sentence: found.sentence(fail),
+        }
+    }
+}
+
+fn over(over: Over) -> &'static str {
+    match over {
+        Over::Time => "t",
+        Over::Displacement => "q",
+        Over::Excursion => "excursion",
+        Over::Velocity => "qd",
+        Over::Speed => "speed",
+        Over::Amplitude => "amplitude",
+        Over::PhasePlane => "phase_plane",
+        Over::Frequency => "frequency",
+    }
+}
+
+impl ErrorReport {
+    fn of(error: &Error, found: &Comparison) -> ErrorReport {
+        ErrorReport {
+            force_residual: error.force_residual,
+            window: found.window,
+            noise_floor: error.noise_floor,
+            ratio: Some(error.ratio()).filter(|ratio| ratio.is_finite()),
+            free_run_nrmse: error.free_run_nrmse,
+            free_run_nrmse_velocity: error.free_run_nrmse_velocity,
+            free_run_diverged: error.diverged,
+            window_rmse: error.window_rmse,
+            horizon: found.horizon,
+        }
+    }
+}
+
+fn id(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::AtNoise => "at_noise",
+        Verdict::NumbersOff => "numbers_off",
+        Verdict::NumbersOffAndMore => "numbers_off_and_more",
+        Verdict::FormWrong => "form_wrong",
+    }
+}
+
+fn noise(std: [f64; 2]) -> Pairs {
+    let channels = ["q", "qd"].into_iter().zip(std).filter(|(_, std)| *std > 0.0);
+    Pairs(channels.map(|(channel, std)| (channel.to_string(), std)).collect())
+}
+
+fn coefficients(side: &Side) -> Pairs {
+    let law = &side.law;
+    let known = law.terms.iter().zip(&law.coefficients).filter(|(term, _)| !law.undetermined.contains(term));
+    Pairs(known.map(|(term, value)| (term.name(), *value)).collect())
+}
+
+fn std(side: &Side) -> Pairs {
+    let pairs = side.law.terms.iter().zip(&side.law.std);
+    Pairs(pairs.filter_map(|(term, std)| Some((term.name(), (*std)?))).collect())
+}
+
+fn text(found: &Comparison, model: &Model, file: &str) -> String {
+    let mut text = how_wrong(found) + "\nwhere: " + &place(found) + "\n";
+    text += &next(found, file);
+    text += "\n\n";
+    text += &table(found);
+    text += &numbers(found, model);
+    text += &recordings(found);
+    text += &fails("where the model as given fails", found, &found.given);
+    if found.given.law != found.best.law {
+        text += &fails("where the best of this form fails", found, &found.best);
+    }
+    text
+}
+
+/// The second line.
+fn place(found: &Comparison) -> String {
+    match found.given.fails.first() {
+        Some(fail) => found.sentence(fail),
+        None if found.given.error.ratio() <= NOISE_RATIO => "nowhere: what is left is noise".into(),
+        None => "spread evenly, no time, speed, amplitude or frequency stands out".into(),
+    }
+}
+
+fn fails(title: &str, found: &Comparison, side: &Side) -> String {
+    let lines: String = side.fails.iter().map(|fail| format!("  {}\n", found.sentence(fail))).collect();
+    if lines.is_empty() { lines } else { format!("\n{title}:\n{lines}") }
+}
+
+/// The first line.
+fn how_wrong(found: &Comparison) -> String {
+    let error = &found.given.error;
+    let against = if found.forced { "excitation" } else { "inertia force" };
+    let residual = percent(error.force_residual);
+    let floor = percent(error.noise_floor);
+    let mut line = format!("how wrong: {residual} of the {against} is not explained; noise alone would leave {floor}");
+    if found.given.law != found.best.law {
+        let _ = write!(line, ", the best numbers of this form leave {}", percent(found.best.error.force_residual));
+    }
+    line
+}
+
+/// What to do.
+fn next(found: &Comparison, file: &str) -> String {
+    let diagnose = format!("`switchid diagnose {} --model {file}`", found.sources.join(" "));
+    match found.verdict() {
+        Verdict::AtNoise => "next: nothing to gain here, the model is down to the noise".into(),
+        Verdict::NumbersOff => {
+            format!("next: the form is right, the numbers are off: take the best ones ({})", off(found))
+        }
+        Verdict::NumbersOffAndMore => {
+            format!("next: the numbers are off ({}) and more is missing: run {diagnose}", off(found))
+        }
+        Verdict::FormWrong => {
+            format!("next: more than noise is left that no numbers of this form explain: run {diagnose}")
+        }
+    }
+}
+
+/// Coefficients that are off, the most certain one first.
+fn off(found: &Comparison) -> String {
+    let (given, best) = (&found.given.law, &found.best.law);
+    let distance = |index: usize| {
+        best.std[index].map_or(0.0, |std| (given.coefficients[index] - best.coefficients[index]).abs() / std)
+    };
+    let mut indices: Vec<usize> = (0..best.terms.len()).filter(|index| distance(*index) > 3.0).collect();
+    indices.sort_by(|a, b| distance(*b).total_cmp(&distance(*a)));
+    let change = |index: &usize| {
+        let name = best.terms[*index].name();
+        format!("{name} {:.4} is rather {:.4}", given.coefficients[*index], best.coefficients[*index])
+    };
+    indices.iter().take(3).map(change).collect::<Vec<_>>().join(", ")
+}
+
+fn table(found: &Comparison) -> String {
+    let sides = [&found.given.error, &found.best.error];
+    let mut text = format!("{:<34}{:>14}{:>20}\n", "", "as given", "best of this form");
+    let mut line = |name: &str, values: [String; 2]| {
+        let _ = writeln!(text, "{name:<34}{:>14}{:>20}", values[0], values[1]);
+    };
+    let number = |value: Option<f64>| value.map_or_else(|| "–".into(), |value| format!("{value:.4e}"));
+    line(
+        &format!("force residual ({:.3} s windows)", found.window),
+        sides.map(|side| number(Some(side.force_residual))),
+    );
+    line("noise floor", sides.map(|side| number(Some(side.noise_floor))));
+    line("residual ÷ noise floor", sides.map(|side| format!("{:.2}", side.ratio())));
+    line(
+        "free run, RMSE ÷ std",
+        sides.map(|side| side.diverged.map_or(number(side.free_run_nrmse), |t| format!("diverges {t:.2} s"))),
+    );
+    if sides.iter().any(|side| side.free_run_nrmse_velocity.is_some()) {
+        line("  of the velocity", sides.map(|side| number(side.free_run_nrmse_velocity)));
+    }
+    line(&format!("open loop over {} s, RMSE", found.horizon), sides.map(|side| number(side.window_rmse)));
+    text
+}
+
+fn numbers(found: &Comparison, model: &Model) -> String {
+    let (given, best) = (&found.given.law, &found.best.law);
+    let pairs: Vec<_> = best
+        .terms
+        .iter()
+        .zip(&best.coefficients)
+        .zip(&best.std)
+        .map(|((term, value), std)| (*term, *value, *std))
+        .collect();
+    let mut text = format!("\nbest of this form: {}\n", equation(&pairs, found.forced));
+    for (index, entry) in model.terms.iter().enumerate() {
+        let known = |law: &crate::diagnose::Estimate| match law.std[index] {
+            Some(std) => format!("{:.6e} ± {std:.1e}", law.coefficients[index]),
+            None if law.undetermined.contains(&entry.term) => "not determined".into(),
+            None => format!("{:.6e} (held)", law.coefficients[index]),
+        };
+        let _ = writeln!(text, "  {:<28} {:>26} {:>26}", entry.key, known(given), known(best));
+    }
+    text
+}
+
+fn recordings(found: &Comparison) -> String {
+    if found.sources.len() < 2 {
+        return String::new();
+    }
+    let mut text = String::from("\nby recording: force residual as given, best, noise floor; free run as given\n");
+    for (index, source) in found.sources.iter().enumerate() {
+        let (given, best) = (&found.given.each[index], &found.best.each[index]);
+        let free = given.free_run_nrmse.map_or_else(|| "diverges".into(), |value| format!("{value:.4e}"));
+        let _ = writeln!(
+            text,
+            "  {:.4e} {:.4e} {:.4e}  {free:>10}  {source}",
+            given.force_residual, best.force_residual, given.noise_floor
+        );
+    }
+    text
+}
+
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    match percent {
+        percent if percent >= 10.0 => format!("{percent:.0} %"),
+        percent if percent >= 1.0 => format!("{percent:.1} %"),
+        percent if percent >= 0.1 => format!("{percent:.2} %"),
+        percent => format!("{percent:.1e} %"),
+    }
+}

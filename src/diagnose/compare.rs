@@ -1,0 +1,238 @@
+//! A model against measurements: how wrong it is, and how wrong it could at best be.
+//!
+//! Two laws stand side by side: the model *as given*, its numbers held, and the *best of this form*, every coefficient sought. Where the
+//! first errs much more than the second, the form is right and the numbers are off. Beside both stands the noise floor, what the residual
+//! would be were the law right.
+
+use super::coefficients::{Estimate, Held, best_coefficients};
+use super::force::left_over;
+use super::free_run::{Distance, FreeRun, variance};
+use super::locate::{Fail, locate};
+use super::record::{Balance, Record};
+use super::window::{choose_window, periods};
+use crate::identify::Recording;
+use crate::law::{Hold, Model, Motion, Term};
+
+/// What a user may set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Length of the windows of the weak residual, s; `None` = automatic.
+    pub window: Option<f64>,
+    /// Length of the windows of open-loop prediction, s.
+    pub horizon: f64,
+}
+
+impl Default for Options {
+    fn default() -> Options {
+        Options { window: None, horizon: 1.0 }
+    }
+}
+
+/// How wrong a law is on a set of recordings.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Error {
+    /// RMS weak residual ÷ RMS weak excitation, of free motion ÷ RMS weak inertia.
+    pub force_residual: f64,
+    /// What `force_residual` would be were the law right.
+    pub noise_floor: f64,
+    /// RMSE of the free run of q (of q̇ where q is not measured) ÷ std of the measurement.
+    pub free_run_nrmse: Option<f64>,
+    /// The same of q̇ where both are measured.
+    pub free_run_nrmse_velocity: Option<f64>,
+    /// Time at which the free run left all bounds, s.
+    pub diverged: Option<f64>,
+    /// RMSE of open-loop prediction over windows of `horizon`, in units of q (of q̇ where q is not measured).
+    pub window_rmse: Option<f64>,
+}
+
+/// A law, and how wrong it is: on all recordings together, and on each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Side {
+    /// Its coefficients.
+    pub law: Estimate,
+    /// Its error on all recordings together.
+    pub error: Error,
+    /// Its error on each recording.
+    pub each: Vec<Error>,
+    /// Where it fails, the most evident place first; none where the error is spread evenly or is noise.
+    pub fails: Vec<Fail>,
+}
+
+/// What comparing a model with recordings tells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Where each recording came from.
+    pub sources: Vec<String>,
+    /// Estimated std of the sensors of q and q̇ in each recording; 0 where not measured.
+    pub noise: Vec<[f64; 2]>,
+    /// Length of the windows of the weak residual, s.
+    pub window: f64,
+    /// Length of the windows of open-loop prediction, s.
+    pub horizon: f64,
+    /// Period of the displacement, 2π rms(q) ÷ rms(q̇), s.
+    pub period: f64,
+    /// Whether there is an excitation in any recording.
+    pub forced: bool,
+    /// The model with its numbers held.
+    pub given: Side,
+    /// The best of its form.
+    pub best: Side,
+}
+
+/// What a comparison comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The residual of the model as given is its noise: nothing to gain.
+    AtNoise,
+    /// The numbers are off; the best ones bring this form down to the noise.
+    NumbersOff,
+    /// The numbers are off, and even the best ones leave more than noise.
+    NumbersOffAndMore,
+    /// The best numbers gain little, and more than noise is left: the form is wrong.
+    FormWrong,
+}
+
+/// Residual ÷ noise floor up to which the residual counts as noise.
+pub const NOISE_RATIO: f64 = 1.15;
+
+/// Residual as given ÷ best from which the numbers are off.
+const NUMBERS_RATIO: f64 = 1.1;
+
+/// Std by which at least one coefficient must then be off.
+const NUMBERS_SIGMA: f64 = 3.0;
+
+impl Error {
+    /// Residual ÷ noise floor.
+    pub fn ratio(&self) -> f64 {
+        if self.noise_floor > 0.0 { self.force_residual / self.noise_floor } else { f64::INFINITY }
+    }
+}
+
+impl Comparison {
+    /// What it comes to.
+    pub fn verdict(&self) -> Verdict {
+        let [given, best] = [&self.given, &self.best].map(|side| &side.error);
+        let off = given.force_residual > NUMBERS_RATIO * best.force_residual && self.numbers_differ();
+        match (off, best.ratio() <= NOISE_RATIO) {
+            (true, true) => Verdict::NumbersOff,
+            (true, false) => Verdict::NumbersOffAndMore,
+            (false, true) => Verdict::AtNoise,
+            (false, false) => Verdict::FormWrong,
+        }
+    }
+
+    /// The sentence of a place of failure.
+    pub fn sentence(&self, fail: &Fail) -> String {
+        let several = self.sources.len() > 1;
+        let source = fail.recording.filter(|_| several).and_then(|index| self.sources.get(index));
+        fail.sentence(source.map(String::as_str), self.period)
+    }
+
+    fn numbers_differ(&self) -> bool {
+        let pairs = self.given.law.coefficients.iter().zip(&self.best.law.coefficients).zip(&self.best.law.std);
+        pairs.into_iter().any(|((given, best), std)| std.is_some_and(|std| (given - best).abs() > NUMBERS_SIGMA * std))
+    }
+}
+
+/// Compares a model with recordings, each with what its excitation did between samples. `recordings` holds at least one.
+pub fn compare(model: &Model, recordings: &[(&Recording, Hold)], options: &Options) -> Comparison {
+    let terms: Vec<_> = model.terms.iter().map(|entry| entry.term).collect();
+    let records: Vec<Record> =
+        recordings.iter().map(|(recording, hold)| Record::new(recording, *hold, &terms, &[])).collect();
+    let forced = records.iter().any(|record| record.forced);
+    let (as_given, free) = (Held::as_given(model, forced), Held::none(model, forced));
+    let window = options.window.unwrap_or_else(|| choose_window(&records, &free));
+    let rows: Vec<_> = records.iter().flat_map(|record| record.rows(record.windows(window))).collect();
+    let side = |held: &Held| side(best_coefficients(held, &rows), &records, window, options.horizon);
+    let best = side(&free);
+    let given = if as_given == free { best.clone() } else { side(&as_given) };
+    Comparison {
+        sources: records.iter().map(|record| record.source.clone()).collect(),
+        noise: records.iter().map(|record| record.noise).collect(),
+        window,
+        horizon: options.horizon,
+        period: periods(&records).displacement,
+        forced,
+        given,
+        best,
+    }
+}
+
+/// What is summed over recordings before errors are formed.
+#[derive(Clone, Copy, Default)]
+struct Totals {
+    balance: Balance,
+    free: Distance,
+    diverged: Option<f64>,
+    windowed: Distance,
+    windows_diverged: bool,
+    /// Σ (reading − mean)² by channel.
+    spread: [f64; 2],
+}
+
+fn side(law: Estimate, records: &[Record], window: f64, horizon: f64) -> Side {
+    let period = periods(records).displacement;
+    let stretch = 2.0 * period;
+    let totals: Vec<Totals> =
+        records.iter().map(|record| Totals::of(record, &law, [window, stretch, horizon])).collect();
+    let error = totals.iter().fold(Totals::default(), |sum, totals| sum.and(totals)).error();
+    let inertia = law.terms.iter().position(|term| *term == Term::Inertia).unwrap_or(0);
+    let noisy = error.ratio() <= NOISE_RATIO;
+    let left = if noisy { Vec::new() } else { left_over(records, &law.coefficients, inertia, window) };
+    Side { error, fails: locate(&left, period), each: totals.iter().map(Totals::error).collect(), law }
+}
+
+impl Totals {
+    /// Of one recording; `lengths` are those of the weak windows, of the stretch that gives the initial state, of the horizon, s.
+    fn of(record: &Record, law: &Estimate, [window, stretch, horizon]: [f64; 3]) -> Totals {
+        let mut totals = Totals {
+            balance: record.balance(record.windows(window), &law.terms, &law.coefficients),
+            ..Totals::default()
+        };
+        let samples = |length: f64| (length / record.sample_time).round().max(2.0) as usize;
+        let motion = Motion { terms: &law.terms, coefficients: &law.coefficients };
+        for prepared in &record.pieces {
+            let run = FreeRun::new(prepared, &motion);
+            match run.whole(samples(stretch)) {
+                Ok(distance) => totals.free = totals.free.and(distance),
+                Err(t) => totals.diverged = totals.diverged.or(Some(t)),
+            }
+            match run.windows(samples(horizon)) {
+                Ok(distance) => totals.windowed = totals.windowed.and(distance),
+                Err(_) => totals.windows_diverged = true,
+            }
+            for (spread, signal) in totals.spread.iter_mut().zip(prepared.piece.measured()) {
+                *spread += signal.map_or(0.0, |values| variance(values) * values.len() as f64);
+            }
+        }
+        totals
+    }
+
+    fn and(self, other: &Totals) -> Totals {
+        Totals {
+            balance: self.balance.and(other.balance),
+            free: self.free.and(other.free),
+            diverged: self.diverged.or(other.diverged),
+            windowed: self.windowed.and(other.windowed),
+            windows_diverged: self.windows_diverged || other.windows_diverged,
+            spread: [self.spread[0] + other.spread[0], self.spread[1] + other.spread[1]],
+        }
+    }
+
+    fn error(&self) -> Error {
+        let measured = |channel: usize| self.spread[channel] > 0.0;
+        let first = if measured(0) { 0 } else { 1 };
+        let nrmse = |channel: usize| {
+            let share = (self.free.squares[channel] / self.spread[channel]).sqrt();
+            (self.diverged.is_none() && measured(channel)).then_some(share)
+        };
+        Error {
+            force_residual: self.balance.force_residual(),
+            noise_floor: self.balance.noise_floor(),
+            free_run_nrmse: nrmse(first),
+            free_run_nrmse_velocity: if first == 0 { nrmse(1) } else { None },
+            diverged: self.diverged,
+            window_rmse: self.windowed.rms(first).filter(|_| !self.windows_diverged),
+        }
+    }
+}

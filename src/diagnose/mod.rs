@@ -1,0 +1,35 @@
+//! Which physical effect a model lacks, and where it fails.
+
+mod coefficients;
+mod compare;
+mod fit;
+mod force;
+mod free_run;
+mod judge;
+mod locate;
+mod noise;
+mod piece;
+mod record;
+mod rows;
+mod run;
+mod scan;
+mod screen;
+mod search;
+mod sentence;
+mod series;
+mod smooth;
+mod spectrum;
+mod start;
+mod trajectory;
+mod variants;
+mod window;
+
+pub use coefficients::{Estimate, Held};
+pub use compare::{Comparison, Error, NOISE_RATIO, Options, Side, Verdict, compare};
+pub use fit::{Fit, Form, fit, refit};
+pub use judge::Trial;
+pub use locate::{Bounds, Fail, Over};
+pub use piece::Piece;
+pub use screen::{Gain, screen};
+pub use search::{Search, search};
+pub use variants::{Scale, Variant, same_effect, variants};

@@ -1,0 +1,260 @@
+//! One run of the filter over a piece, with forces given as series beside the law's own terms.
+//!
+//! A term whose force cannot be computed from the state alone (it remembers, it looks back, it is a candidate that the law does not
+//! have) enters as a series: its mean over every interval between samples along the smoothed motion. Its sensitivity is carried
+//! through the filter like that of any term, so that its coefficient, its information and what it would gain are those of the
+//! likelihood, with the noise of all samples accounted for.
+
+use super::piece::Piece;
+use crate::evidence::{Channel, Filter, Innovation, Noise, Observation, Pass};
+use crate::law::{Drive, Effect, Motion, State, Term};
+use nalgebra::{DMatrix, DVector};
+
+/// Parts into which an interval is cut under a law whose force jumps: the instant of a jump is known to within one.
+const PARTS_OF_A_JUMP: usize = 4;
+
+/// The law that runs: terms of the state, and series beside them.
+#[derive(Clone, Copy, Debug)]
+pub struct Law<'a> {
+    /// Terms of the state.
+    pub terms: &'a [Term],
+    /// Their coefficients.
+    pub coefficients: &'a [f64],
+    /// Positions of the terms whose coefficients are sought.
+    pub free: &'a [usize],
+    /// Coefficients of the series.
+    pub series: &'a [f64],
+    /// Variances of the noise.
+    pub noise: Noise,
+}
+
+/// Sums over a stretch of samples: what it says on the unknowns (free terms, then series) and on each candidate beside them.
+#[derive(Clone, Debug)]
+pub struct Sums {
+    /// Σ ψψᵀ/s of the unknowns, P × P.
+    pub information: DMatrix<f64>,
+    /// Σ ψε/s, P.
+    pub score: DVector<f64>,
+    /// The same of each unknown with each candidate, P × K.
+    pub cross: DMatrix<f64>,
+    /// Σ ψ²/s of each candidate, K.
+    pub own: DVector<f64>,
+    /// Σ ψε/s of each candidate, K.
+    pub own_score: DVector<f64>,
+    /// Σ ε²/s.
+    pub energy: f64,
+    /// Σ ln s.
+    pub log_variance: f64,
+    /// Number of innovations.
+    pub count: f64,
+}
+
+/// A sample as the filter saw it, for the smoother.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// Before the measurement.
+    pub predicted: Filter,
+    /// After it.
+    pub filtered: Filter,
+    /// ∂x⁺/∂x of the interval before.
+    pub transition: [[f64; 2]; 2],
+}
+
+/// What a run leaves beside its sums.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// One per stretch.
+    pub sums: Vec<Sums>,
+    /// One per sample after the first.
+    pub steps: Vec<Step>,
+    /// Log-likelihood, and what the rival levels of process noise would make of it.
+    pub log_likelihood: f64,
+    /// Under the process noise times [`crate::evidence::RIVALS`].
+    pub rivals: [f64; 2],
+    /// Σ ε²/s and number of innovations by channel.
+    pub squares: [f64; 2],
+    /// Number of innovations by channel.
+    pub count: [f64; 2],
+    /// Whether the motion stayed finite.
+    pub finite: bool,
+}
+
+impl Sums {
+    /// Nothing seen of `unknowns` and `candidates`.
+    pub fn none(unknowns: usize, candidates: usize) -> Sums {
+        Sums {
+            information: DMatrix::zeros(unknowns, unknowns),
+            score: DVector::zeros(unknowns),
+            cross: DMatrix::zeros(unknowns, candidates),
+            own: DVector::zeros(candidates),
+            own_score: DVector::zeros(candidates),
+            energy: 0.0,
+            log_variance: 0.0,
+            count: 0.0,
+        }
+    }
+
+    /// Adds another stretch's.
+    pub fn merge(&mut self, other: &Sums) {
+        self.information += &other.information;
+        self.score += &other.score;
+        self.cross += &other.cross;
+        self.own += &other.own;
+        self.own_score += &other.own_score;
+        self.energy += other.energy;
+        self.log_variance += other.log_variance;
+        self.count += other.count;
+    }
+
+    fn add(&mut self, unknowns: &[f64], candidates: &[f64], innovation: &Innovation) {
+        let (weight, residual) = (innovation.precision, innovation.residual);
+        self.energy += residual * residual * weight;
+        self.log_variance += innovation.variance.ln();
+        self.count += 1.0;
+        for (column, psi) in unknowns.iter().enumerate() {
+            let scaled = psi * weight;
+            self.score[column] += scaled * residual;
+            for (entry, other) in self.information.column_mut(column).iter_mut().zip(unknowns) {
+                *entry += scaled * other;
+            }
+        }
+        let sums = self.cross.as_mut_slice().chunks_exact_mut(unknowns.len().max(1));
+        for ((cross, psi), (own, score)) in sums.zip(candidates).zip(self.own.iter_mut().zip(self.own_score.iter_mut()))
+        {
+            let scaled = psi * weight;
+            *own += scaled * psi;
+            *score += scaled * residual;
+            for (entry, other) in cross.iter_mut().zip(unknowns) {
+                *entry += scaled * other;
+            }
+        }
+    }
+}
+
+/// Sensitivities of the state to a set of forces that are given as series.
+struct Carried {
+    state: Vec<[f64; 2]>,
+    rows: [Vec<f64>; 2],
+}
+
+impl Carried {
+    fn new(count: usize) -> Carried {
+        Carried { state: vec![[0.0; 2]; count], rows: [vec![0.0; count], vec![0.0; count]] }
+    }
+
+    /// Over an interval in which the forces have these means, and through its measurements.
+    fn step(&mut self, forces: &[f64], pass: &Pass, inverse_mass: f64, gains: [[f64; 2]; 2]) {
+        let [[a, b], [c, d]] = pass.map.transition;
+        let push = pass.map.push.map(|push| -push * inverse_mass);
+        let [first, second] = gains;
+        let [q_rows, qd_rows] = &mut self.rows;
+        for (((state, force), q_row), qd_row) in self.state.iter_mut().zip(forces).zip(q_rows).zip(qd_rows) {
+            let [q, qd] = *state;
+            let (q, qd) = (a * q + b * qd + push[0] * force, c * q + d * qd + push[1] * force);
+            *q_row = q;
+            let (q, qd) = (q - first[0] * q, qd - first[1] * q);
+            *qd_row = qd;
+            *state = [q - second[0] * qd, qd - second[1] * qd];
+        }
+    }
+}
+
+/// Runs the filter over a piece. `series` and `candidates` hold the mean force of every interval, one row per interval;
+/// `stretches[k]` says to which sum interval k belongs.
+pub fn run(
+    law: &Law,
+    piece: &Piece,
+    pass: &mut Pass,
+    series: &[Vec<f64>],
+    candidates: &[Vec<f64>],
+    stretches: &[usize],
+) -> Outcome {
+    let free: Vec<Term> = law.free.iter().map(|index| law.terms[*index]).collect();
+    let (n, extra) = (free.len(), law.series.len());
+    let kinds = candidates.first().map_or(0, Vec::len);
+    let stretch_count = stretches.iter().max().map_or(1, |last| last + 1);
+    let mut outcome = Outcome::none(stretch_count, n + extra, kinds, piece.len());
+    let motion = Motion { terms: law.terms, coefficients: law.coefficients };
+    let (mut carried, mut tried) = (Carried::new(extra), Carried::new(kinds));
+    let mut unknowns = vec![0.0; n + extra];
+    pass.begin(first_state(piece, &law.noise));
+    if law
+        .terms
+        .iter()
+        .any(|term| matches!(term, Term::Effect(Effect::CoulombFriction | Effect::StribeckFriction { .. })))
+    {
+        pass.parts = pass.parts.max(PARTS_OF_A_JUMP);
+    }
+    for (k, observation) in piece.observations.iter().enumerate() {
+        let observation = beside(observation, law.series, series.get(k));
+        let innovations = pass.step(&motion, &free, &law.noise, &observation);
+        let inverse_mass = motion.mass(pass.filter.state.q).recip();
+        let gains = innovations.map(|innovation| innovation.map_or([0.0; 2], |innovation| innovation.gain));
+        if let Some(forces) = series.get(k) {
+            carried.step(forces, pass, inverse_mass, gains);
+        }
+        if let Some(forces) = candidates.get(k) {
+            tried.step(forces, pass, inverse_mass, gains);
+        }
+        let sums = &mut outcome.sums[stretches.get(k).copied().unwrap_or(0)];
+        for channel in Channel::ALL {
+            if let Some(innovation) = &innovations[channel as usize] {
+                unknowns[..n].copy_from_slice(pass.expected(channel));
+                unknowns[n..].copy_from_slice(&carried.rows[channel as usize]);
+                sums.add(&unknowns, &tried.rows[channel as usize], innovation);
+            }
+        }
+        outcome.steps.push(Step { predicted: pass.predicted, filtered: pass.filter, transition: pass.map.transition });
+        outcome.finite &= pass.filter.state.is_finite();
+    }
+    outcome.log_likelihood = pass.track.log_likelihood();
+    outcome.rivals = [pass.rivals[0].log_likelihood(), pass.rivals[1].log_likelihood()];
+    (outcome.squares, outcome.count) = (pass.track.squares, pass.track.count);
+    outcome
+}
+
+impl Outcome {
+    fn none(stretches: usize, unknowns: usize, candidates: usize, samples: usize) -> Outcome {
+        Outcome {
+            sums: vec![Sums::none(unknowns, candidates); stretches],
+            steps: Vec::with_capacity(samples),
+            log_likelihood: 0.0,
+            rivals: [0.0; 2],
+            squares: [0.0; 2],
+            count: [0.0; 2],
+            finite: true,
+        }
+    }
+}
+
+/// The observation with the series' forces taken off its excitation.
+fn beside(observation: &Observation, coefficients: &[f64], forces: Option<&Vec<f64>>) -> Observation {
+    let Some(forces) = forces.filter(|_| !coefficients.is_empty()) else { return *observation };
+    let force: f64 = coefficients.iter().zip(forces).map(|(coefficient, force)| coefficient * force).sum();
+    let drive = match observation.drive {
+        Drive::Held(value) => Drive::Held(value - force),
+        Drive::Line(from, to) => Drive::Line(from - force, to - force),
+        Drive::Nodes(nodes) => Drive::Nodes(nodes.map(|value| value - force)),
+    };
+    Observation { drive, ..*observation }
+}
+
+/// The state at the first sample, from it and its neighbours alone.
+fn first_state(piece: &Piece, noise: &Noise) -> Filter {
+    let [q, qd] = noise.sensor;
+    let dt = piece.t[1] - piece.t[0];
+    match piece.measured() {
+        [Some(displacement), Some(velocity)] => {
+            Filter { state: State { q: displacement[0], qd: velocity[0] }, covariance: [q, 0.0, qd] }
+        }
+        [Some(displacement), None] => {
+            let slope = (displacement[1] - displacement[0]) / dt;
+            let spread = 10.0 * (slope * slope + q / (dt * dt));
+            Filter { state: State { q: displacement[0], qd: slope }, covariance: [q, 0.0, spread] }
+        }
+        [_, velocity] => {
+            let first = velocity.map_or(0.0, |velocity| velocity[0]);
+            Filter { state: State { q: 0.0, qd: first }, covariance: [1.0, 0.0, qd] }
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Where an energy is concentrated: the interval of bins that stands out most against what it would hold were the energy spread evenly.
+//!
+//! A scan statistic (Kulldorff, Communications in Statistics 26 (1997), 1481): with the share p of the energy in a region and the share b of
+//! the time spent there, its score is N (p ln(p/b) + (1 − p) ln((1 − p)/(1 − b))), N the number of independent places.
+
+/// Bins over one quantity: the energy in each, and what it is measured against.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bins {
+    /// Energy, ≥ 0.
+    pub energy: Vec<f64>,
+    /// Time spent, or whatever else the energy would be proportional to, ≥ 0.
+    pub baseline: Vec<f64>,
+}
+
+/// A region that stands out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peak {
+    /// First bin.
+    pub from: usize,
+    /// One past the last bin.
+    pub to: usize,
+    /// Share of the energy.
+    pub share: f64,
+    /// Share of the baseline.
+    pub baseline: f64,
+    /// Evidence per independent place, nats, as far as it counts.
+    pub divergence: f64,
+}
+
+/// p ln(p/b) + (1 − p) ln((1 − p)/(1 − b)); 0 where the region holds no more than its share.
+pub fn divergence(share: f64, baseline: f64) -> f64 {
+    if share <= baseline || baseline <= 0.0 {
+        return 0.0;
+    }
+    let rest = if share < 1.0 { (1.0 - share) * ((1.0 - share) / (1.0 - baseline)).ln() } else { 0.0 };
+    share * (share / baseline).ln() + rest
+}
+
+impl Bins {
+    /// Empty bins.
+    pub fn new(count: usize) -> Bins {
+        Bins { energy: vec![0.0; count], baseline: vec![0.0; count] }
+    }
+
+    /// Adds to a bin.
+    pub fn add(&mut self, bin: usize, energy: f64, baseline: f64) {
+        if let (Some(sum), Some(base)) = (self.energy.get_mut(bin), self.baseline.get_mut(bin)) {
+            *sum += energy;
+            *base += baseline;
+        }
+    }
+
+    /// The interval of bins that stands out most; none where all is even. An interval that is closed at both ends was sought among many more
+    /// than one that is open: its divergence counts `closed` times.
+    pub fn peak(&self, closed: f64) -> Option<Peak> {
+        let [energy, baseline] = [&self.energy, &self.baseline].map(|values| cumulated(values));
+        let count = self.energy.len();
+        let (all, whole) = (energy[count], baseline[count]);
+        if all <= 0.0 || whole <= 0.0 {
+            return None;
+        }
+        let intervals = (0..count).flat_map(|from| (from + 1..=count).map(move |to| (from, to)));
+        let peaks = intervals.map(|(from, to)| {
+            let (share, baseline) = ((energy[to] - energy[from]) / all, (baseline[to] - baseline[from]) / whole);
+            let counts = if from > 0 && to < count { closed } else { 1.0 };
+            Peak { from, to, share, baseline, divergence: counts * divergence(share, baseline) }
+        });
+        peaks.max_by(|a, b| a.divergence.total_cmp(&b.divergence)).filter(|peak| peak.divergence > 0.0)
+    }
+}
+
+fn cumulated(values: &[f64]) -> Vec<f64> {
+    let mut sum = 0.0;
+    let sums = values.iter().map(|value| {
+        sum += value;
+        sum
+    });
+    std::iter::once(0.0).chain(sums).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bins_that_hold_the_energy_are_found() {
+        let mut bins = Bins::new(10);
+        (0..10).for_each(|bin| bins.add(bin, if (3..5).contains(&bin) { 4.0 } else { 0.25 }, 1.0));
+        let peak = bins.peak(1.0).unwrap();
+        assert_eq!((peak.from, peak.to), (3, 5));
+        assert!((peak.share - 0.8).abs() < 1e-12 && (peak.baseline - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn even_energy_stands_out_nowhere() {
+        let mut bins = Bins::new(7);
+        (0..7).for_each(|bin| bins.add(bin, 2.0 * (1.0 + bin as f64), 1.0 + bin as f64));
+        assert!(bins.peak(1.0).is_none_or(|peak| peak.divergence < 1e-12));
+    }
+}

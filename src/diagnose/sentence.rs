@@ -1,0 +1,120 @@
+//! A place of failure in words.
+
+use super::locate::{Bounds, Fail, Over};
+
+/// Share of the motion's frequency by which a band may miss a multiple of it.
+const NEAR: f64 = 0.15;
+
+impl Fail {
+    /// One plain sentence; `source` names its recording where there are several, `period` is the displacement's, s.
+    pub fn sentence(&self, source: Option<&str>, period: f64) -> String {
+        let share = (100.0 * self.share).round();
+        let spent = (100.0 * self.time_share).round().max(1.0);
+        let (place, reason) = (self.place(), self.reason(period));
+        let of = if self.over == Over::Frequency { "of the force" } else { "of the time" };
+        let where_from =
+            source.filter(|_| self.recording.is_some()).map_or_else(String::new, |name| format!(" of {name}"));
+        format!("{share} % of the error lies {place}{where_from} ({spent} % {of}): {reason}")
+    }
+
+    fn place(&self) -> String {
+        match self.over {
+            Over::Time => self.bounds.time(),
+            Over::Displacement => self.bounds.text("q"),
+            Over::Excursion => self.bounds.text("|q − mean|"),
+            Over::Velocity => self.bounds.text("q̇"),
+            Over::Speed => self.bounds.text("|q̇|"),
+            Over::Amplitude => self.bounds.text("amplitude"),
+            Over::Frequency => self.bounds.band(),
+            Over::PhasePlane => format!("{} and {}", self.bounds.text("q"), self.velocity.text("q̇")),
+        }
+    }
+
+    fn reason(&self, period: f64) -> String {
+        let Bounds { lower, upper } = self.bounds;
+        let three = |low: &str, high: &str, middle: &str| match (lower, upper) {
+            (None, Some(_)) => low.to_string(),
+            (Some(_), None) => high.to_string(),
+            _ => middle.to_string(),
+        };
+        match self.over {
+            Over::Time => three("at the beginning", "towards the end", "in one interval of time"),
+            Over::Displacement => three("on the negative side", "on the positive side", "at one position"),
+            Over::Excursion => three("near the middle position", "at large excursions to both sides", "off the middle"),
+            Over::Velocity => self.direction(),
+            Over::Speed => three("around velocity reversals", "at high speed", "at medium speed"),
+            Over::Amplitude => three(
+                "while the vibration is small",
+                "while the vibration is large",
+                "while the vibration has medium amplitude",
+            ),
+            Over::Frequency => self.multiple(period),
+            Over::PhasePlane => "in one corner of the phase plane".into(),
+        }
+    }
+
+    fn direction(&self) -> String {
+        match (self.bounds.lower, self.bounds.upper) {
+            (Some(lower), _) if lower >= 0.0 => "while moving in the positive direction".into(),
+            (_, Some(upper)) if upper <= 0.0 => "while moving in the negative direction".into(),
+            (Some(_), Some(_)) => "around velocity reversals".into(),
+            _ => "more in one direction than in the other".into(),
+        }
+    }
+
+    /// Which multiple of the motion's frequency lies in the band.
+    fn multiple(&self, period: f64) -> String {
+        let frequency = period.recip();
+        let (lower, upper) = (self.bounds.lower.unwrap_or(0.0), self.bounds.upper.unwrap_or(f64::INFINITY));
+        let inside = |multiple: f64| lower < (multiple + NEAR) * frequency && (multiple - NEAR) * frequency < upper;
+        let shown = number(frequency);
+        match () {
+            () if self.bounds.upper.is_none() => "at the high frequencies".into(),
+            () if inside(1.0) => format!("around the frequency of the motion, {shown} Hz"),
+            () if upper < frequency => format!("slower than the motion, which is near {shown} Hz"),
+            () if inside(2.0) => format!("around twice the frequency of the motion, {shown} Hz"),
+            () if inside(3.0) => format!("around three times the frequency of the motion, {shown} Hz"),
+            () => format!("faster than the motion, which is near {shown} Hz"),
+        }
+    }
+}
+
+impl Bounds {
+    fn text(self, name: &str) -> String {
+        match (self.lower.map(number), self.upper.map(number)) {
+            (None, Some(upper)) => format!("within {name} < {upper}"),
+            (Some(lower), None) => format!("at {name} > {lower}"),
+            (Some(lower), Some(upper)) => format!("within {lower} < {name} < {upper}"),
+            (None, None) => format!("at every {name}"),
+        }
+    }
+
+    fn time(self) -> String {
+        match (self.lower.map(number), self.upper.map(number)) {
+            (None, Some(upper)) => format!("before t = {upper} s"),
+            (Some(lower), None) => format!("after t = {lower} s"),
+            (Some(lower), Some(upper)) => format!("between t = {lower} s and {upper} s"),
+            (None, None) => "at every time".into(),
+        }
+    }
+
+    fn band(self) -> String {
+        match (self.lower.map(number), self.upper.map(number)) {
+            (None, Some(upper)) => format!("below {upper} Hz"),
+            (Some(lower), None) => format!("above {lower} Hz"),
+            (Some(lower), Some(upper)) => format!("between {lower} and {upper} Hz"),
+            (None, None) => "at every frequency".into(),
+        }
+    }
+}
+
+/// Three significant digits.
+pub(super) fn number(value: f64) -> String {
+    let exponent = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    if (-4..6).contains(&exponent) {
+        let decimals = (2 - exponent).max(0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.2e}")
+    }
+}

@@ -1,0 +1,141 @@
+//! Every candidate of the catalogue, its inner parameters on a grid in the record's own units.
+//!
+//! The grid is coarse: a screen of it finds the neighbourhood, then [`Variant::neighbours`] narrows it, a third of the spacing at a time.
+
+use super::piece::Piece;
+use crate::law::{Effect, State, Term};
+
+/// A candidate with numbers for its inner parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variant {
+    /// The candidate.
+    pub term: Term,
+    /// Ratio between neighbouring values of its inner parameters on the grid it comes from.
+    pub spacing: f64,
+}
+
+/// How large and how fast the recorded motion is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// Largest |q|.
+    pub displacement: f64,
+    /// Largest |q̇|.
+    pub velocity: f64,
+    /// RMS q̇ ÷ RMS q and RMS q̈ ÷ RMS q̇, rad/s: where the motion's power lies.
+    pub frequency: [f64; 2],
+    /// Shortest time between samples, s.
+    pub sample_time: f64,
+}
+
+impl Scale {
+    /// The scale of smoothed motions.
+    pub fn of(pieces: &[Piece], states: &[Vec<State>]) -> Scale {
+        let all = || states.iter().flatten();
+        let largest = |value: fn(&State) -> f64| all().map(|state| value(state).abs()).fold(0.0, f64::max);
+        let power = |value: fn(&State) -> f64| all().map(|state| value(state).powi(2)).sum::<f64>();
+        let steps = pieces.iter().zip(states).flat_map(|(piece, states)| {
+            piece.t.windows(2).zip(states.windows(2)).map(|(t, s)| ((s[1].qd - s[0].qd) / (t[1] - t[0])).powi(2))
+        });
+        let accelerations: f64 = steps.sum();
+        let times = pieces.iter().flat_map(|piece| piece.t.windows(2).map(|t| t[1] - t[0]));
+        let [q, qd] = [power(|state| state.q), power(|state| state.qd)];
+        Scale {
+            displacement: largest(|state| state.q),
+            velocity: largest(|state| state.qd),
+            frequency: [(qd / q).sqrt(), (accelerations / qd).sqrt()],
+            sample_time: times.fold(f64::INFINITY, f64::min),
+        }
+    }
+
+    /// Grids of the effect's inner parameters, one list per parameter, and the ratio between neighbours.
+    fn grids(&self, effect: Effect) -> (Vec<Vec<f64>>, f64) {
+        let lengths =
+            |from: f64, to: f64, ratio: f64| geometric(from * self.displacement, to * self.displacement, ratio);
+        let [slow, fast] = self.frequency;
+        let highest = 0.5 / self.sample_time;
+        match effect {
+            Effect::StribeckFriction { .. } => (vec![geometric(0.02 * self.velocity, 0.7 * self.velocity, 2.0)], 2.0),
+            Effect::DeadZoneStiffness { .. } => (vec![lengths(0.04, 0.9, 1.5)], 1.5),
+            Effect::OneSidedStop { .. } => (vec![lengths(0.04, 0.95, 1.5)], 1.5),
+            Effect::ExcitationGainNonlinearity { .. } => (vec![vec![2.0, 3.0]], 1.0),
+            Effect::ExcitationDelay { .. } => (vec![geometric(0.3 * self.sample_time, 1.0 / slow, 1.8)], 1.8),
+            Effect::Hysteresis { .. } => (vec![lengths(0.03, 1.5, 2.0), vec![0.5, 1.0], vec![1.0, 2.0]], 2.0),
+            Effect::HiddenResonator { .. } => {
+                (vec![geometric(0.3 * slow, (3.0 * fast).min(highest), 1.15), vec![0.02, 0.12]], 1.15)
+            }
+            _ => (Vec::new(), 1.0),
+        }
+    }
+}
+
+/// The candidates that the form does not have already.
+pub fn variants(candidates: &[Term], present: &[Term], scale: &Scale) -> Vec<Variant> {
+    let absent = candidates.iter().filter(|term| !present.iter().any(|other| same_effect(**term, *other)));
+    absent.flat_map(|term| with_grid(*term, scale)).collect()
+}
+
+fn with_grid(term: Term, scale: &Scale) -> Vec<Variant> {
+    let Term::Effect(effect) = term else { return vec![Variant { term, spacing: 1.0 }] };
+    let (grids, spacing) = scale.grids(effect);
+    let mut points = vec![Vec::new()];
+    for grid in &grids {
+        points = points.iter().flat_map(|point| grid.iter().map(move |value| extended(point, *value))).collect();
+    }
+    let variant = |point: &Vec<f64>| Some(Variant { term: Term::Effect(effect.with_inner(point).ok()?), spacing });
+    points.iter().filter_map(variant).collect()
+}
+
+/// Whether both are the same effect, whatever its inner parameters.
+pub fn same_effect(one: Term, other: Term) -> bool {
+    match (one, other) {
+        (Term::Effect(one), Term::Effect(other)) => one.id() == other.id(),
+        _ => one == other,
+    }
+}
+
+impl Variant {
+    /// The variant and its neighbours at a third of its spacing, each inner parameter in turn.
+    pub fn neighbours(&self) -> Vec<Variant> {
+        let spacing = self.spacing.cbrt();
+        let mut all = vec![Variant { term: self.term, spacing }];
+        let Term::Effect(effect) = self.term else { return all };
+        let values = effect.inner_values();
+        for index in (0..values.len()).filter(|index| is_continuous(effect, *index)) {
+            for power in [-2, -1, 1, 2] {
+                let mut moved = values.clone();
+                moved[index] *= spacing.powi(power);
+                let term = effect.with_inner(&moved).map(Term::Effect);
+                all.extend(term.ok().map(|term| Variant { term, spacing }));
+            }
+        }
+        all
+    }
+
+    /// Number of inner parameters that were fitted.
+    pub fn fitted(&self) -> usize {
+        match self.term {
+            Term::Effect(effect) => effect.inner().len(),
+            _ => 0,
+        }
+    }
+}
+
+/// Whether the inner parameter of that position takes any value, not a few.
+pub(super) fn is_continuous(effect: Effect, index: usize) -> bool {
+    match effect {
+        Effect::ExcitationGainNonlinearity { .. } => false,
+        Effect::Hysteresis { .. } => index == 0,
+        _ => true,
+    }
+}
+
+fn extended(point: &[f64], value: f64) -> Vec<f64> {
+    point.iter().copied().chain([value]).collect()
+}
+
+fn geometric(from: f64, to: f64, ratio: f64) -> Vec<f64> {
+    if !(from > 0.0 && to > from && to.is_finite()) {
+        return Vec::new();
+    }
+    std::iter::successors(Some(from), |value| Some(value * ratio)).take_while(|value| *value <= to).collect()
+}

@@ -1,0 +1,138 @@
+//! The catalogue of physical effects: what each one is, what it looks like when a model lacks it, and what may be taken for it.
+
+mod entries;
+
+use super::{Effect, InnerParameter, Term};
+
+/// The sign that physics allows a coefficient on the left-hand side.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// A negative coefficient would be a source of energy, or no such thing exists.
+    Positive,
+    /// Either sign.
+    Any,
+}
+
+impl Sign {
+    /// Whether a coefficient may have this value.
+    pub fn allows(self, coefficient: f64) -> bool {
+        self == Sign::Any || coefficient > 0.0
+    }
+}
+
+/// An effect of the catalogue.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry {
+    /// Its stable id.
+    pub id: &'static str,
+    /// The term, inner parameters at their defaults.
+    pub term: Term,
+    /// What stands on the left-hand side behind the coefficient.
+    pub equation: &'static str,
+    /// The sign that physics allows the coefficient.
+    pub sign: Sign,
+    /// What a residual looks like that lacks it, one sentence.
+    pub residual: &'static str,
+    /// Why a system may have it, one sentence.
+    pub reason: &'static str,
+    /// Where it is described.
+    pub reference: &'static str,
+    /// Effects that records of small amplitude, few frequencies or much noise cannot tell from it.
+    pub look_alikes: &'static [&'static str],
+    /// Effects that are this one for a limit of this one's inner parameters.
+    pub contains: &'static [&'static str],
+}
+
+impl Entry {
+    /// The inner parameters.
+    pub fn inner(&self) -> &'static [InnerParameter] {
+        self.term.effect().map_or(&[], Effect::inner)
+    }
+}
+
+/// The catalogue.
+#[derive(Clone, Copy, Debug)]
+pub struct Catalogue;
+
+impl Catalogue {
+    /// Every effect.
+    pub const ENTRIES: &'static [Entry] = &entries::ENTRIES;
+
+    /// The effect of that id.
+    pub fn find(id: &str) -> Option<&'static Entry> {
+        Catalogue::ENTRIES.iter().find(|entry| entry.id == id)
+    }
+
+    /// The effect that a term is, whatever its inner parameters.
+    pub fn of(term: Term) -> Option<&'static Entry> {
+        match term {
+            Term::Effect(effect) => Catalogue::find(effect.id()),
+            _ => Catalogue::ENTRIES.iter().find(|entry| entry.term == term),
+        }
+    }
+
+    /// Whether the first effect is a limiting case of the second.
+    pub fn is_contained(smaller: &str, larger: &str) -> bool {
+        Catalogue::find(larger).is_some_and(|entry| entry.contains.contains(&smaller))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::{Inner, Monomial};
+
+    #[test]
+    fn every_effect_stands_once_under_its_own_id() {
+        for (index, entry) in Catalogue::ENTRIES.iter().enumerate() {
+            assert_eq!(Term::parse(entry.id), Ok(entry.term), "{}", entry.id);
+            assert!(Catalogue::ENTRIES[..index].iter().all(|other| other.term != entry.term), "{}", entry.id);
+            assert!(entry.term.dimension().is_some());
+        }
+        for effect in Effect::ALL {
+            assert_eq!(Catalogue::of(Term::Effect(effect)).unwrap().id, effect.id());
+        }
+        assert_eq!(Catalogue::ENTRIES.len(), 22);
+    }
+
+    #[test]
+    fn what_is_named_beside_an_effect_is_in_the_catalogue_and_mutual() {
+        for entry in Catalogue::ENTRIES {
+            for other in entry.look_alikes {
+                let other = Catalogue::find(other).unwrap_or_else(|| panic!("{}: {other}", entry.id));
+                assert!(other.look_alikes.contains(&entry.id), "{} and {}", entry.id, other.id);
+                assert_ne!(other.id, entry.id);
+            }
+            assert!(entry.contains.iter().all(|other| Catalogue::find(other).is_some() && *other != entry.id));
+        }
+    }
+
+    #[test]
+    fn sentences_are_sentences() {
+        for entry in Catalogue::ENTRIES {
+            for text in [entry.residual, entry.reason, entry.reference] {
+                assert!(text.ends_with('.') && text.len() > 20, "{}: {text}", entry.id);
+            }
+        }
+    }
+
+    /// The limiting case has the feature of the larger effect at an extreme of its inner parameters, up to a factor.
+    #[test]
+    fn contained_effects_are_limits() {
+        let at = |effect: Effect| effect.force(0.7, -0.3, 0.4);
+        assert!((at(Effect::StribeckFriction { speed: Inner::new(1e9) }) - at(Effect::CoulombFriction)).abs() < 1e-8);
+        assert_eq!(at(Effect::OneSidedStop { gap: Inner::new(0.0) }), at(Effect::BilinearStiffness));
+        assert_eq!(at(Effect::DeadZoneStiffness { gap: Inner::new(0.0) }), 0.7);
+        assert!(Catalogue::is_contained("coulomb_friction", "stribeck_friction"));
+        assert!(!Catalogue::is_contained("stribeck_friction", "coulomb_friction"));
+    }
+
+    #[test]
+    fn a_term_is_found_whatever_its_inner_parameters() {
+        let gap = Effect::OneSidedStop { gap: Inner::new(0.37) };
+        assert_eq!(Catalogue::of(Term::Effect(gap)).unwrap().id, "one_sided_stop");
+        assert_eq!(Catalogue::of(Term::power(2, 1)).unwrap().id, "van_der_pol_damping");
+        assert_eq!(Catalogue::of(Term::Monomial(Monomial { q: 1, qd: 0, excitation: 1 })), None);
+        assert!(Sign::Any.allows(-1.0) && !Sign::Positive.allows(-1.0));
+    }
+}

@@ -1,0 +1,285 @@
+//! Integration in time of a law with any terms: effects with memory, delayed excitation, expressions.
+//!
+//! The coordinate's (q, q̇) and the internal states of the effects are integrated jointly by the classical Runge–Kutta method (order 4). A
+//! step within which an internal state changes much is cut into parts. Laws without such terms are faster by [`Motion`].
+
+use super::memory::{LARGEST, parts};
+use super::{Effect, Expression, History, Motion, State, Term};
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// The most internal states of a law.
+pub const MAX_MEMORY: usize = 8;
+
+/// Where a law with memory is: the coordinate and the internal states of its effects, in the order of its terms.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Phase {
+    /// Displacement and velocity.
+    pub state: State,
+    /// Internal states; those that no effect uses are 0.
+    pub memory: [f64; MAX_MEMORY],
+}
+
+impl Phase {
+    /// Whether all values are finite numbers.
+    pub fn is_finite(&self) -> bool {
+        self.state.is_finite() && self.memory.iter().all(|value| value.is_finite())
+    }
+
+    fn moved(&self, slope: &Phase, dt: f64) -> Phase {
+        let state = State { q: self.state.q + dt * slope.state.q, qd: self.state.qd + dt * slope.state.qd };
+        Phase { state, memory: std::array::from_fn(|index| self.memory[index] + dt * slope.memory[index]) }
+    }
+}
+
+/// Why a law cannot be integrated.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum DynamicsError {
+    /// More internal states than there is room for.
+    #[error("the effects of the law have {count} internal states; at most {MAX_MEMORY} are supported")]
+    Memory {
+        /// How many they have.
+        count: usize,
+    },
+    /// A term names an expression that is not there.
+    #[error("{term} has no formula: the model has {count} expressions")]
+    Expression {
+        /// The term.
+        term: Term,
+        /// How many expressions there are.
+        count: usize,
+    },
+}
+
+/// A law with numbers whose terms may be any.
+#[derive(Clone, Copy, Debug)]
+pub struct Dynamics<'a> {
+    motion: Motion<'a>,
+    expressions: &'a [Expression],
+}
+
+/// The instant of a stage of a step: time, present excitation, and which of start, middle and end it is.
+#[derive(Clone, Copy)]
+struct Instant<'h, H> {
+    history: &'h H,
+    from: f64,
+    to: f64,
+    which: usize,
+    excitation: f64,
+}
+
+impl<H: History> Instant<'_, H> {
+    fn t(&self) -> f64 {
+        [self.from, 0.5 * (self.from + self.to), self.to][self.which]
+    }
+
+    fn delayed(&self, delay: f64) -> f64 {
+        self.history.over(self.from - delay, self.to - delay)[self.which]
+    }
+}
+
+impl<'a> Dynamics<'a> {
+    /// A law of these terms and coefficients; `expressions` are those that its terms name.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] for too many internal states or an expression that is not there.
+    pub fn new(motion: Motion<'a>, expressions: &'a [Expression]) -> Result<Dynamics<'a>, DynamicsError> {
+        let count = motion.terms.iter().filter_map(|term| term.effect()).map(Effect::memory_length).sum();
+        if count > MAX_MEMORY {
+            return Err(DynamicsError::Memory { count });
+        }
+        let absent = |term: &&Term| matches!(term, Term::Expression(index) if usize::from(*index) >= expressions.len());
+        match motion.terms.iter().find(absent) {
+            Some(term) => Err(DynamicsError::Expression { term: *term, count: expressions.len() }),
+            None => Ok(Dynamics { motion, expressions }),
+        }
+    }
+
+    /// The law at this state with nothing stored in its effects.
+    pub fn rest(&self, state: State) -> Phase {
+        let mut phase = Phase { state, ..Phase::default() };
+        for (effect, first) in self.memories() {
+            let length = effect.memory_length();
+            phase.memory[first..first + length].copy_from_slice(&effect.rest(state)[..length]);
+        }
+        phase
+    }
+
+    /// Moves from time `t` to `t + dt`, s, under that excitation.
+    pub fn step<H: History>(&self, phase: &Phase, t: f64, dt: f64, excitation: &H) -> Phase {
+        let rate = self.memories().map(|(effect, _)| effect.memory_rate(phase.state.qd)).fold(0.0, f64::max);
+        let parts = parts(rate, dt);
+        let width = dt / parts as f64;
+        let start = |part: usize| t + width * part as f64;
+        (0..parts).fold(*phase, |phase, part| self.runge_kutta(&phase, start(part), start(part + 1), excitation))
+    }
+
+    fn runge_kutta<H: History>(&self, phase: &Phase, from: f64, to: f64, history: &H) -> Phase {
+        let values = history.over(from, to);
+        let at = |which: usize| Instant { history, from, to, which, excitation: values[which] };
+        let dt = to - from;
+        let first = self.slope(phase, at(0));
+        let second = self.slope(&phase.moved(&first, 0.5 * dt), at(1));
+        let third = self.slope(&phase.moved(&second, 0.5 * dt), at(1));
+        let fourth = self.slope(&phase.moved(&third, dt), at(2));
+        let outer = phase.moved(&first, dt / 6.0).moved(&fourth, dt / 6.0);
+        outer.moved(&second, dt / 3.0).moved(&third, dt / 3.0)
+    }
+
+    fn slope<H: History>(&self, phase: &Phase, instant: Instant<H>) -> Phase {
+        let mut slope = Phase::default();
+        let mut force = 0.0;
+        let mut first = 0;
+        for (term, coefficient) in self.motion.terms.iter().zip(self.motion.coefficients) {
+            let memory = &phase.memory[first..];
+            force += coefficient * self.force(*term, phase.state, memory, &instant);
+            if let Some(effect) = term.effect().filter(|effect| effect.memory_length() > 0) {
+                let length = effect.memory_length();
+                let rates: [f64; LARGEST] = effect.memory_slope(phase.state, memory);
+                slope.memory[first..first + length].copy_from_slice(&rates[..length]);
+                first += length;
+            }
+        }
+        let acceleration = (instant.excitation - force) / self.motion.mass(phase.state.q);
+        slope.state = State { q: phase.state.qd, qd: acceleration };
+        slope
+    }
+
+    /// The feature of a term without its part that multiplies q̈; `memory` begins with the term's own states.
+    fn force<H: History>(&self, term: Term, state: State, memory: &[f64], instant: &Instant<H>) -> f64 {
+        match term {
+            Term::Effect(Effect::ExcitationDelay { delay }) => instant.excitation - instant.delayed(delay.value()),
+            Term::Effect(effect) if effect.memory_length() > 0 => effect.feature(state, memory),
+            Term::Expression(index) => {
+                self.expressions[usize::from(index)].value(state.q, state.qd, instant.excitation, instant.t())
+            }
+            _ => term.force(state.q, state.qd, instant.excitation),
+        }
+    }
+
+    /// The effects with internal states, and where those begin.
+    fn memories(&self) -> impl Iterator<Item = (Effect, usize)> {
+        let effects = self.motion.terms.iter().filter_map(|term| term.effect());
+        effects.filter(|effect| effect.memory_length() > 0).scan(0, |next, effect| {
+            let first = *next;
+            *next += effect.memory_length();
+            Some((effect, first))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Hold;
+    use crate::law::history::Samples;
+
+    fn effect(id: &str, inner: &[f64]) -> Term {
+        Term::Effect(Effect::prototype(id).unwrap().with_inner(inner).unwrap())
+    }
+
+    fn terms(more: &[Term]) -> Vec<Term> {
+        [&[Term::Inertia, Term::power(0, 1), Term::power(1, 0), Term::power(3, 0)], more].concat()
+    }
+
+    fn end(terms: &[Term], coefficients: &[f64], steps: usize) -> Phase {
+        let drag = Expression::parse("drag", "tanh(3*qd) + 0.2*sin(t)*F").unwrap();
+        let expressions = [drag];
+        let dynamics = Dynamics::new(Motion { terms, coefficients }, &expressions).unwrap();
+        let dt = 2.0 / steps as f64;
+        let excitation = |t: f64| 1.5 * (1.3 * t).sin() + 0.2;
+        let start = dynamics.rest(State { q: 0.8, qd: -0.3 });
+        (0..steps).fold(start, |phase, step| dynamics.step(&phase, step as f64 * dt, dt, &excitation))
+    }
+
+    #[test]
+    fn converges_with_order_four() {
+        let resonator = effect("hidden_resonator", &[3.0, 0.05]);
+        let smooth = [resonator, effect("excitation_delay", &[0.23]), Term::Expression(0)];
+        let terms = terms(&smooth);
+        let coefficients = [1.3, 0.3, 4.0, 0.7, 0.4, 0.6, 0.3];
+        let exact = end(&terms, &coefficients, 8192);
+        let error = |steps| {
+            let phase = end(&terms, &coefficients, steps);
+            (phase.state.q - exact.state.q).abs() + (phase.memory[1] - exact.memory[1]).abs()
+        };
+        for steps in [64, 128, 256] {
+            let order = (error(steps) / error(2 * steps)).log2();
+            assert!((3.7..4.4).contains(&order), "order {order} from {steps} steps");
+        }
+    }
+
+    #[test]
+    fn a_law_without_memory_moves_as_motion_does() {
+        let terms = terms(&[effect("dead_zone_stiffness", &[0.2])]);
+        let motion = Motion { terms: &terms, coefficients: &[1.3, 0.3, 4.0, 0.7, 2.0] };
+        let dynamics = Dynamics::new(motion, &[]).unwrap();
+        let state = State { q: 0.8, qd: -0.3 };
+        let moved = dynamics.step(&dynamics.rest(state), 0.0, 0.01, &|t: f64| 0.4 + 3.0 * t).state;
+        let expected = motion.step_linear(state, 0.01, 0.4, 0.43);
+        assert!((moved.q - expected.q).abs() < 1e-15 && (moved.qd - expected.qd).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_hidden_mass_moves_as_two_coupled_masses_do() {
+        let (mass, stiffness, hidden, omega) = (2.0, 5.0, 0.5, 3.0);
+        let terms = [Term::Inertia, Term::power(1, 0), effect("hidden_resonator", &[omega, 0.0])];
+        let motion = Motion { terms: &terms, coefficients: &[mass, stiffness, hidden] };
+        let dynamics = Dynamics::new(motion, &[]).unwrap();
+        let mut phase = dynamics.rest(State { q: 0.3, qd: 0.0 });
+        let energy = |phase: &Phase| {
+            let ([y, yd, ..], State { q, qd }) = (phase.memory, phase.state);
+            0.5 * (mass * qd * qd + stiffness * q * q + hidden * (yd * yd + omega * omega * (q - y).powi(2)))
+        };
+        let before = energy(&phase);
+        (0..4000).for_each(|step| phase = dynamics.step(&phase, step as f64 * 5e-3, 5e-3, &|_: f64| 0.0));
+        assert!((energy(&phase) / before - 1.0).abs() < 1e-7);
+        assert!((phase.memory[0] - phase.state.q).abs() > 1e-3, "the hidden mass moves on its own");
+    }
+
+    #[test]
+    fn a_delay_with_coefficient_one_is_a_later_excitation() {
+        let (base, delay) = (terms(&[]), 0.0435);
+        let late = terms(&[effect("excitation_delay", &[delay])]);
+        let coefficients = [1.3, 0.3, 4.0, 0.7, 1.0];
+        let excitation = |t: f64| (2.0 * t).sin() + t;
+        let here = Dynamics::new(Motion { terms: &late, coefficients: &coefficients }, &[]).unwrap();
+        let there = Dynamics::new(Motion { terms: &base, coefficients: &coefficients[..4] }, &[]).unwrap();
+        let phase = here.rest(State { q: 0.8, qd: -0.3 });
+        let a = here.step(&phase, 1.0, 0.01, &excitation);
+        let b = there.step(&phase, 1.0, 0.01, &|t: f64| excitation(t - delay));
+        assert!((a.state.q - b.state.q).abs() < 1e-15 && (a.state.qd - b.state.qd).abs() < 1e-14);
+    }
+
+    #[test]
+    fn hysteresis_saturates_at_its_yield_displacement() {
+        let terms = [Term::Inertia, effect("hysteresis", &[0.05, 0.7, 1.6])];
+        let dynamics = Dynamics::new(Motion { terms: &terms, coefficients: &[1.0, 0.0] }, &[]).unwrap();
+        let start = dynamics.rest(State { q: 0.0, qd: 2.0 });
+        let there = (0..100).fold(start, |phase, step| dynamics.step(&phase, step as f64 * 0.01, 0.01, &|_: f64| 0.0));
+        assert!((there.memory[0] - 0.05).abs() < 1e-9, "{}", there.memory[0]);
+    }
+
+    #[test]
+    fn a_held_excitation_that_jumps_within_the_delayed_step_keeps_its_impulse() {
+        let times: Vec<f64> = (0..20).map(|index| f64::from(index) * 0.01).collect();
+        let force: Vec<f64> = (0..20).map(|index| f64::from(index * index % 7)).collect();
+        let samples = Samples { t: &times, excitation: &force, hold: Hold::Zero };
+        let terms = [Term::Inertia, effect("excitation_delay", &[0.013])];
+        let dynamics = Dynamics::new(Motion { terms: &terms, coefficients: &[1.0, 1.0] }, &[]).unwrap();
+        let step = |phase, step: usize| dynamics.step(&phase, times[step], 0.01, &samples);
+        let velocity = (0..19).fold(dynamics.rest(State::default()), step).state.qd;
+        let expected = force[0] * 0.013 + force[..17].iter().sum::<f64>() * 0.01 + force[17] * 0.007;
+        assert!((velocity - expected).abs() < 1e-12, "{velocity} against {expected}");
+    }
+
+    #[test]
+    fn what_cannot_be_integrated_is_refused() {
+        let many: Vec<Term> = (1..6).map(|n| effect("hidden_resonator", &[f64::from(n), 0.0])).collect();
+        let motion = Motion { terms: &many, coefficients: &[1.0; 5] };
+        assert_eq!(Dynamics::new(motion, &[]).unwrap_err(), DynamicsError::Memory { count: 10 });
+        let absent = [Term::Expression(1)];
+        let motion = Motion { terms: &absent, coefficients: &[1.0] };
+        assert!(matches!(Dynamics::new(motion, &[]), Err(DynamicsError::Expression { .. })));
+    }
+}

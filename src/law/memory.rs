@@ -1,0 +1,91 @@
+//! Internal states of effects with memory, and how they follow a motion.
+//!
+//! Hysteresis has z (m), the hidden resonator y (m) and ẏ (m/s); the equations stand in [`super::effect`]. At rest z = 0, and the hidden mass moves
+//! with the coordinate.
+
+use super::{Effect, State};
+
+/// The most internal states of one effect.
+pub(super) const LARGEST: usize = 2;
+
+impl Effect {
+    /// How many internal states the effect has; a delayed excitation remembers the excitation, not the motion, and has none.
+    pub fn memory_length(self) -> usize {
+        match self {
+            Effect::Hysteresis { .. } => 1,
+            Effect::HiddenResonator { .. } => 2,
+            _ => 0,
+        }
+    }
+
+    /// The internal states when nothing is stored in them.
+    pub(super) fn rest(self, state: State) -> [f64; LARGEST] {
+        match self {
+            Effect::HiddenResonator { .. } => [state.q, state.qd],
+            _ => [0.0; LARGEST],
+        }
+    }
+
+    /// The feature of an effect with internal states, at a state of the coordinate.
+    #[inline]
+    pub(super) fn feature(self, state: State, memory: &[f64]) -> f64 {
+        match (self, memory) {
+            (Effect::Hysteresis { .. }, [z, ..]) => *z,
+            (Effect::HiddenResonator { frequency, damping_ratio }, [y, yd, ..]) => {
+                let (omega, zeta) = (frequency.value(), damping_ratio.value());
+                omega * omega * (state.q - y) + 2.0 * zeta * omega * (state.qd - yd)
+            }
+            _ => f64::NAN,
+        }
+    }
+
+    /// The rates of the internal states.
+    #[inline]
+    pub(super) fn memory_slope(self, state: State, memory: &[f64]) -> [f64; LARGEST] {
+        match (self, memory) {
+            (Effect::Hysteresis { yield_displacement, share, exponent }, [z, ..]) => {
+                let shape =
+                    Shape { limit: yield_displacement.value(), share: share.value(), exponent: exponent.value() };
+                [shape.slope(state.qd, *z), 0.0]
+            }
+            (Effect::HiddenResonator { .. }, [_, yd, ..]) => [*yd, self.feature(state, memory)],
+            _ => [0.0; LARGEST],
+        }
+    }
+
+    /// How fast the internal states change at most at this speed of the coordinate, 1/s.
+    pub(super) fn memory_rate(self, qd: f64) -> f64 {
+        match self {
+            Effect::Hysteresis { yield_displacement, share, exponent } => {
+                qd.abs() * exponent.value() * share.value().max(1.0) / yield_displacement.value()
+            }
+            Effect::HiddenResonator { frequency, damping_ratio } => {
+                frequency.value() * (1.0 + 2.0 * damping_ratio.value())
+            }
+            _ => 0.0,
+        }
+    }
+}
+
+/// A Bouc–Wen loop.
+struct Shape {
+    limit: f64,
+    share: f64,
+    exponent: f64,
+}
+
+impl Shape {
+    /// ż = q̇ − (s |q̇| |z|^(n−1) z + (1 − s) q̇ |z|^n) ÷ x_y^n.
+    #[inline]
+    fn slope(&self, qd: f64, z: f64) -> f64 {
+        let ratio = z / self.limit;
+        let filled = if self.exponent == 1.0 { ratio.abs() } else { ratio.abs().powf(self.exponent) };
+        qd - filled * (self.share * qd.abs() * super::effect::sign(z) + (1.0 - self.share) * qd)
+    }
+}
+
+/// Into how many equal parts a step is cut so that a rate of `rate` (1/s) is followed well; at most 1000.
+pub(super) fn parts(rate: f64, dt: f64) -> usize {
+    const PER_PART: f64 = 0.25;
+    (rate * dt.abs() / PER_PART).ceil().clamp(1.0, 1000.0) as usize
+}
