@@ -33,8 +33,16 @@ const NUMERIC: std::ops::RangeInclusive<u8> = 6..=15;
 /// Bit of a matrix's flags.
 const COMPLEX: u8 = 0x08;
 
+/// A variable's numbers, or why it has none.
+type Values = Result<Vec<f64>, Unfit>;
+
+struct Variable {
+    name: Name,
+    values: Values,
+}
+
 /// The variables of a file, those of structures apart.
-pub(super) struct Variables(Vec<(Name, Result<Vec<f64>, Unfit>)>);
+pub(super) struct Variables(Vec<Variable>);
 
 /// Why the bytes make no sense.
 type Broken = String;
@@ -50,16 +58,16 @@ pub(super) fn open(source: &Source, bytes: &[u8]) -> Result<Variables, DataError
 
 impl Arrays for Variables {
     fn names(&self) -> Vec<String> {
-        let names: Vec<Name> = self.0.iter().map(|(name, _)| name.clone()).collect();
+        let names: Vec<Name> = self.0.iter().map(|variable| variable.name.clone()).collect();
         matlab::headers(&names)
     }
 
     fn values(&self, index: usize) -> Result<Vec<f64>, Unfit> {
-        self.0.get(index).map_or_else(|| Err(Unfit::Is("absent".into())), |(_, values)| values.clone())
+        self.0.get(index).map_or_else(|| Err(Unfit::Is("absent".into())), |variable| variable.values.clone())
     }
 }
 
-fn variables(bytes: &[u8]) -> Result<Vec<(Name, Result<Vec<f64>, Unfit>)>, Broken> {
+fn variables(bytes: &[u8]) -> Result<Vec<Variable>, Broken> {
     let (header, rest) = bytes.split_at_checked(HEADER).ok_or("its header breaks off")?;
     let mut elements = Elements { rest, big_endian: header.ends_with(b"MI") };
     let mut found = Vec::new();
@@ -117,7 +125,7 @@ impl<'a> Elements<'a> {
 
 impl Element<'_> {
     /// The variable that a matrix is; the fields of a structure; nothing for other elements.
-    fn variables(&self, big_endian: bool) -> Result<Vec<(Name, Result<Vec<f64>, Unfit>)>, Broken> {
+    fn variables(&self, big_endian: bool) -> Result<Vec<Variable>, Broken> {
         if self.kind != MATRIX || self.content.is_empty() {
             return Ok(Vec::new());
         }
@@ -127,11 +135,11 @@ impl Element<'_> {
             return Ok(Vec::new());
         }
         if matrix.class != STRUCTURE || matrix.shape.iter().product::<usize>() != 1 {
-            return Ok(vec![(Name::of(&matrix.name.clone()), matrix.values()?)]);
+            return Ok(vec![Variable { name: Name::of(&matrix.name), values: matrix.values()? }]);
         }
         let name = matrix.name.clone();
         let fields = matrix.fields()?.into_iter();
-        Ok(fields.map(|(field, values)| (Name::field(&name, &field), values)).collect())
+        Ok(fields.map(|(field, values)| Variable { name: Name::field(&name, &field), values }).collect())
     }
 
     fn numbers(&self, big_endian: bool) -> Result<Vec<f64>, Broken> {
@@ -174,7 +182,7 @@ impl<'a> Matrix<'a> {
         Ok(Matrix { class: (flags & 0xff) as u8, flags: (flags >> 8 & 0xff) as u8, shape, name, rest })
     }
 
-    fn values(&mut self) -> Result<Result<Vec<f64>, Unfit>, Broken> {
+    fn values(&mut self) -> Result<Values, Broken> {
         if !NUMERIC.contains(&self.class) {
             return Ok(Err(Unfit::Is(class_name(self.class).into())));
         }
@@ -194,7 +202,7 @@ impl<'a> Matrix<'a> {
     }
 
     /// The fields of a structure: the length of a name, all names, then one matrix each.
-    fn fields(&mut self) -> Result<Vec<(String, Result<Vec<f64>, Unfit>)>, Broken> {
+    fn fields(&mut self) -> Result<Vec<(String, Values)>, Broken> {
         let length = word(self.rest.required()?.content, self.rest.big_endian)? as usize;
         let names = self.rest.required()?;
         let names =

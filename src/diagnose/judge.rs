@@ -118,7 +118,8 @@ fn polished(fit: &Fit, pieces: &[Piece]) -> Option<Fit> {
         let slope = |index: &usize| {
             let sides = [DIFFERENCE.exp(), (-DIFFERENCE).exp()].map(|factor| at(*index, factor));
             let [Some(above), Some(below)] = sides else { return vec![0.0; piece.len() - 1] };
-            let pairs = series::means(above, &[], piece, states).into_iter().zip(series::means(below, &[], piece, states));
+            let pairs =
+                series::means(above, &[], piece, states).into_iter().zip(series::means(below, &[], piece, states));
             pairs.map(|(above, below)| coefficient * (above - below) / (2.0 * DIFFERENCE)).collect()
         };
         moving.iter().map(slope).collect()

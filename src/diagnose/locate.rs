@@ -103,8 +103,7 @@ pub fn locate(left: &[Left], period: f64) -> Vec<Fail> {
         return Vec::new();
     }
     let mean = places.iter().map(|place| place.q).sum::<f64>() / places.len() as f64;
-    let setting =
-        Setting { mean, radian: period / std::f64::consts::TAU, period, independent: independent(left) };
+    let setting = Setting { mean, radian: period / std::f64::consts::TAU, period, independent: independent(left) };
     let overs = [Over::Speed, Over::Velocity, Over::Displacement, Over::Excursion, Over::Amplitude];
     let mut fails: Vec<Fail> = overs.into_iter().filter_map(|over| setting.over(over, &places)).collect();
     let best = fails.iter().map(|fail| fail.evidence).fold(0.0, f64::max);

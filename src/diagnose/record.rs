@@ -42,7 +42,8 @@ impl Record {
         let pieces = Piece::all(recording, hold);
         let noise = sensor_noise(&pieces);
         let motions = Trajectory::all(&pieces, noise);
-        let prepared = pieces.into_iter().zip(motions).map(|(piece, motion)| Prepared::new(piece, motion, terms, expressions));
+        let prepared =
+            pieces.into_iter().zip(motions).map(|(piece, motion)| Prepared::new(piece, motion, terms, expressions));
         Record {
             source: recording.source().into(),
             noise,

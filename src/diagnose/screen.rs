@@ -61,7 +61,8 @@ pub(super) fn sums(fit: &Fit, pieces: &[Piece], candidates: &Columns) -> Vec<Sum
     let mut before = 0;
     let mut pass = Pass::new(parts.free.len());
     for (piece, states) in pieces.iter().zip(&fit.states) {
-        let rows = [columns(&beside, &fit.form.expressions, piece, states), candidates(piece, states)].map(|columns| series::rows(&columns));
+        let rows = [columns(&beside, &fit.form.expressions, piece, states), candidates(piece, states)]
+            .map(|columns| series::rows(&columns));
         let stretch = |k: usize| (before + k) * STRETCHES / samples.max(1);
         let stretches: Vec<usize> = (0..piece.len() - 1).map(stretch).collect();
         before += piece.len() - 1;

@@ -157,7 +157,7 @@ fn bad_samples_are_named() {
 #[test]
 fn a_file_that_breaks_off_is_refused_wherever_it_does() {
     let whole = file(&plain());
-    for length in (1..whole.len()) {
+    for length in 1..whole.len() {
         let model = super::model("");
         let bench = Bench::of(&whole[..length]);
         let found = switchid::data::open_recording(&bench.path().display().to_string(), &model);
