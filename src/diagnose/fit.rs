@@ -87,11 +87,11 @@ impl Form {
         form
     }
 
-    /// The form without its last term.
-    pub fn without_last(&self) -> Form {
+    /// The form without the term of that position.
+    pub fn without(&self, index: usize) -> Form {
         let mut form = self.clone();
-        form.terms.pop();
-        form.held.pop();
+        form.terms.remove(index);
+        form.held.remove(index);
         form
     }
 

@@ -129,8 +129,8 @@ fn polished(fit: &Fit, pieces: &[Piece]) -> Option<Fit> {
     for (index, step) in moving.iter().zip(&steps) {
         moved[*index] *= step.coefficient.clamp(-LARGEST_STEP, LARGEST_STEP).exp();
     }
-    let mut form = fit.form.without_last().with(Term::Effect(effect.with_inner(&moved).ok()?));
-    form.held.clone_from(&fit.form.held);
+    let mut form = fit.form.clone();
+    *form.terms.last_mut()? = Term::Effect(effect.with_inner(&moved).ok()?);
     if moving.is_empty() { None } else { refit(&form, pieces, &fit.coefficients, fit.noise) }
 }
 

@@ -2,9 +2,12 @@
 
 mod coefficients;
 mod compare;
+mod diagnosis;
+mod errors;
 mod fit;
 mod force;
 mod free_run;
+mod improve;
 mod judge;
 mod locate;
 mod noise;
@@ -26,7 +29,11 @@ mod window;
 
 pub use coefficients::{Estimate, Held};
 pub use compare::{Comparison, Error, NOISE_RATIO, Options, Side, Verdict, compare};
+pub use diagnosis::{
+    Candidate, Diagnosis, Evidence, Finding, LEVEL, best_of_form, candidates, diagnose, effect_name, excess, is_evident,
+};
 pub use fit::{Fit, Form, fit, refit};
+pub use improve::{Addition, Improvement, Step, add, error, improve, improved_model};
 pub use judge::Trial;
 pub use locate::{Bounds, Fail, Over};
 pub use piece::Piece;
