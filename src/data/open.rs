@@ -25,7 +25,7 @@ pub struct Opened {
 pub fn open_recording(data: &str, model: &Model) -> Result<Opened, DataError> {
     let (source, bytes) = Source::open(data)?;
     let (layout, signals) = read(&source, bytes, model)?;
-    let unmet = model.terms.iter().find(|entry| entry.term.uses_excitation() && layout.excitation.is_none());
+    let unmet = model.terms.iter().find(|entry| model.uses_excitation(entry.term) && layout.excitation.is_none());
     if let Some(entry) = unmet {
         let (file, kind) = (source.file, source.kind);
         return Err(DataError::NeedsExcitation { file, kind, term: entry.key.clone() });
