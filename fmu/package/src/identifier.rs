@@ -4,7 +4,7 @@ use crate::archive::{Fmu, PackageError};
 use crate::documentation;
 use crate::variables::{at_least, choice, input, output, real, units, variable};
 use switchid::identify::{Method, OutputDescription, OutputKind, Outputs, Parameter, Status};
-use switchid::law::{Hold, Model, Term};
+use switchid::law::{Catalogue, Hold, Model, Term};
 use switchid_fmu_slave::{Description, Enumeration, Kind, Variable};
 
 /// An identifier for a model, still without binaries.
@@ -71,6 +71,7 @@ fn to_variable(of: &OutputDescription) -> Variable {
         OutputKind::Count => Kind::Integer { start: 0, min: None, max: None },
         OutputKind::Flag => Kind::Boolean { start: false },
         OutputKind::Status => Kind::Enumeration { of: "Status".into(), start: 1 },
+        OutputKind::Effect => Kind::Enumeration { of: "Effect".into(), start: 1 },
     };
     output(variable(&of.name, kind, &of.description), initial_dependencies(&of.name))
 }
@@ -112,9 +113,12 @@ fn enumerations() -> Vec<Enumeration> {
         };
         item(status.id(), text)
     });
+    let none = std::iter::once(item("none", "Nothing stands out"));
+    let effects = none.chain(Catalogue::ENTRIES.iter().map(|entry| item(entry.id, entry.equation)));
     vec![
         Enumeration { name: "Method".into(), items: methods.into() },
         Enumeration { name: "Hold".into(), items: holds.into() },
         Enumeration { name: "Status".into(), items: statuses.into() },
+        Enumeration { name: "Effect".into(), items: effects.collect() },
     ]
 }
