@@ -3,3 +3,4 @@
 mod bad_input;
 mod bench;
 mod good_input;
+mod units;
