@@ -4,6 +4,7 @@
 //! 0 done, 1 a gate or a check failed, 2 bad usage or bad input.
 
 mod compare;
+mod compare_report;
 mod error;
 mod identify;
 mod output;

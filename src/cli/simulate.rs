@@ -3,7 +3,7 @@
 use super::error::CommandError;
 use super::output::{self, Pairs, Table};
 use crate::data;
-use crate::simulate::{Builtin, Scenario, Stage, record};
+use crate::simulate::{Builtin, Excitation, Hidden, Scenario, Stage, record};
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -17,6 +17,10 @@ record.csv has the columns t,q,qd,F; record.truth.json the stages that were simu
 Built-in: duffing-sine, duffing-white, van-der-pol-sine, van-der-pol-white (five stages each),
 duffing-noise, van-der-pol-noise (one stage, the publication's noise cases).
 
+Excitations besides that of the example (angular frequencies in rad/s, sweep time in s):
+  { kind = "multisine", from = 1.0, to = 20.0, count = 20, rms = 2.0 }
+  { kind = "sweep", from = 1.0, to = 20.0, period = 30.0, rms = 2.0 }
+
 A scenario file:
   terms = ["qdd", "qd", "q", "q^3"]
   duration = 30.0                     # s
@@ -24,6 +28,10 @@ A scenario file:
   noise = { q = 0.01, qd = 0.01 }     # std
   initial = { q = 0.5, qd = 0.0 }
   excitation = { kind = "sine" }      # or "none", or { kind = "white_noise", intensity = 3.0 }
+
+  [hidden]                            # effects besides the law's terms, in every stage
+  coulomb_friction = 0.3
+  dead_zone_stiffness = { coefficient = 2.0, gap = 0.1 }
 
   [[stage]]
   start = 0.0                         # s
@@ -62,7 +70,8 @@ struct Truth {
     scenario: String,
     seed: u64,
     noise: Pairs,
-    excitation: crate::simulate::Excitation,
+    excitation: Excitation,
+    hidden: Hidden,
     switch_times: Vec<f64>,
     stages: Vec<TrueStage>,
 }
@@ -145,6 +154,7 @@ fn truth(scenario: &Scenario) -> Truth {
         seed: scenario.seed,
         noise: Pairs(vec![("q".into(), scenario.noise.q), ("qd".into(), scenario.noise.qd)]),
         excitation: scenario.excitation,
+        hidden: scenario.hidden.clone(),
         switch_times: scenario.switch_times().into_iter().filter(|t| *t < scenario.duration).collect(),
         stages: stages.map(|(stage, end)| true_stage(scenario, stage, end.min(scenario.duration))).collect(),
     }

@@ -46,6 +46,19 @@ struct ByChannel {
 }
 
 impl Model {
+    /// Reads a table of terms, beside one of the user's own effects.
+    ///
+    /// # Errors
+    /// [`ModelError`] names the key at fault.
+    pub fn read_terms(
+        terms: &toml::Table,
+        effects: &toml::Table,
+    ) -> Result<(Vec<ModelTerm>, Vec<Expression>), ModelError> {
+        let mut expressions = read_expressions(effects)?;
+        let terms = terms.iter().map(|(key, value)| read_term(key, value, &mut expressions));
+        Ok((terms.collect::<Result<Vec<_>, _>>()?, expressions))
+    }
+
     /// Reads a model file.
     ///
     /// # Errors
@@ -55,9 +68,7 @@ impl Model {
         if let Some(names) = file.coordinates.filter(|names| names.as_slice() != ["q"]) {
             return Err(ModelError::Coordinates { names });
         }
-        let mut expressions = read_expressions(&file.effects)?;
-        let terms = file.terms.iter().map(|(key, value)| read_term(key, value, &mut expressions));
-        let terms = terms.collect::<Result<Vec<_>, _>>()?;
+        let (terms, expressions) = Model::read_terms(&file.terms, &file.effects)?;
         let potential = file.potential.keys().map(|key| read_potential(key)).collect::<Result<Vec<_>, _>>()?;
         let model = Model {
             name: file.name.unwrap_or_else(|| "unnamed".into()),
@@ -178,12 +189,8 @@ fn read_expression(name: &str, value: &toml::Value) -> Result<Expression, ModelE
     Ok(expression)
 }
 
-/// One term of a model or a scenario; sets the inner parameters of an expression that it names.
-pub(super) fn read_term(
-    key: &str,
-    value: &toml::Value,
-    expressions: &mut [Expression],
-) -> Result<ModelTerm, ModelError> {
+/// One term; sets the inner parameters of an expression that it names.
+fn read_term(key: &str, value: &toml::Value, expressions: &mut [Expression]) -> Result<ModelTerm, ModelError> {
     let empty = toml::Table::new();
     let table = value.as_table().unwrap_or(&empty);
     let coefficient = match value.as_table() {

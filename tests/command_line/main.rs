@@ -2,5 +2,6 @@
 
 mod bad_input;
 mod bench;
+mod compare;
 mod good_input;
 mod units;
