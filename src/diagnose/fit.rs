@@ -4,6 +4,7 @@
 //! likelihood, sensor noise from the innovations, process noise from two rival filters, from much of it down to what the data want.
 //! Terms that no state gives (memory, delay, expressions of time) are series along the smoothed motion, renewed with it.
 
+use super::diagnosis::effect_name;
 use super::piece::Piece;
 use super::run::{self, Law, Outcome, Sums};
 use super::series::{self, is_series};
@@ -93,6 +94,16 @@ impl Form {
         form.terms.remove(index);
         form.held.remove(index);
         form
+    }
+
+    /// The effect id of a term, a user's name of an expression, else the canonical name.
+    pub fn effect_name(&self, term: Term) -> String {
+        match term {
+            Term::Expression(index) => {
+                self.expressions.get(usize::from(index)).map_or_else(|| term.name(), |own| own.name().into())
+            }
+            _ => effect_name(term),
+        }
     }
 
     fn inertia(&self) -> Option<usize> {
