@@ -1,16 +1,14 @@
 //! `switchid compare`: a model against measurements.
 
 use super::error::CommandError;
+use super::input::{Input, ModelArguments};
 use super::output::{self, Pairs};
-use crate::data;
+use super::words::percent;
 use crate::diagnose::{Bounds, Comparison, Error, Fail, NOISE_RATIO, Options, Over, Side, Verdict, compare};
-use crate::identify::{self, Recording, Settings};
 use crate::law::{Hold, Model, equation};
 use clap::Args;
-use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 use std::fmt::Write;
-use std::path::PathBuf;
 
 const EXAMPLE: &str = r#"Examples:
   switchid compare recording.csv --model model.toml
@@ -28,12 +26,8 @@ pub(super) struct Arguments {
     /// The recordings (CSV with a header), or sections of them: DATA@t0:t1 in seconds
     #[arg(required = true)]
     data: Vec<String>,
-    /// The model file (TOML)
-    #[arg(long, short)]
-    model: PathBuf,
-    /// What the excitation did between samples; else the model says, or the best one is kept
-    #[arg(long, value_parser = PossibleValuesParser::new(Hold::ALL.map(Hold::id)))]
-    hold: Option<String>,
+    #[command(flatten)]
+    model: ModelArguments,
     /// Length of the windows over which the residual force is averaged; else chosen from the motion
     #[arg(long, value_name = "S")]
     window: Option<f64>,
@@ -47,16 +41,14 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let options = options(arguments)?;
-    let model = data::open_model(&arguments.model)?;
-    let opened = arguments.data.iter().map(|data| data::open_recording(data, &model)).collect::<Result<Vec<_>, _>>()?;
-    let recordings: Vec<(&Recording, Hold)> =
-        opened.iter().map(|opened| (&opened.recording, hold(arguments, &model, &opened.recording))).collect();
-    let found = compare(&model, &recordings, &options);
+    let input = Input::open(&arguments.data, &arguments.model)?;
+    let recordings = input.recordings();
+    let found = compare(&input.model, &recordings, &options);
     let holds: Vec<Hold> = recordings.iter().map(|(_, hold)| *hold).collect();
     if arguments.json {
         output::print_json(&Report::of(&found, &holds))
     } else {
-        output::print(&text(&found, &model, &arguments.model.display().to_string()))
+        output::print(&text(&found, &input.model, &input.file))
     }
 }
 
@@ -67,12 +59,6 @@ fn options(arguments: &Arguments) -> Result<Options, CommandError> {
     };
     let window = arguments.window.map(|window| positive("window", window)).transpose()?;
     Ok(Options { window, horizon: positive("horizon", arguments.horizon)? })
-}
-
-fn hold(arguments: &Arguments, model: &Model, recording: &Recording) -> Hold {
-    let asked = arguments.hold.as_deref().and_then(Hold::from_id);
-    let settings = || identify::settings_for(recording, Settings::default());
-    asked.or(model.hold).unwrap_or_else(|| identify::choose_hold(model, recording, &settings()))
 }
 
 #[derive(Serialize)]
@@ -372,14 +358,4 @@ fn recordings(found: &Comparison) -> String {
         );
     }
     text
-}
-
-fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    match percent {
-        percent if percent >= 10.0 => format!("{percent:.0} %"),
-        percent if percent >= 1.0 => format!("{percent:.1} %"),
-        percent if percent >= 0.1 => format!("{percent:.2} %"),
-        percent => format!("{percent:.1e} %"),
-    }
 }

@@ -3,13 +3,19 @@
 //! Human text goes to stdout; `--json` prints exactly one JSON document there instead. Errors and warnings go to stderr. Exit status:
 //! 0 done, 1 a gate or a check failed, 2 bad usage or bad input.
 
+mod add;
 mod compare;
+mod diagnose;
 mod error;
 mod identify;
+mod improve;
+mod input;
 mod output;
+mod picture;
 mod progress;
 mod simulate;
 mod trace;
+mod words;
 
 use clap::{Parser, Subcommand};
 use error::CommandError;
@@ -26,6 +32,9 @@ struct CommandLine {
 #[derive(Subcommand)]
 enum Command {
     Compare(compare::Arguments),
+    Diagnose(diagnose::Arguments),
+    Add(add::Arguments),
+    Improve(improve::Arguments),
     Identify(identify::Arguments),
     Simulate(simulate::Arguments),
 }
@@ -34,6 +43,9 @@ impl Command {
     fn run(self) -> Result<(), CommandError> {
         match self {
             Command::Compare(arguments) => compare::run(&arguments),
+            Command::Diagnose(arguments) => diagnose::run(&arguments),
+            Command::Add(arguments) => add::run(&arguments),
+            Command::Improve(arguments) => improve::run(&arguments),
             Command::Identify(arguments) => identify::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
         }

@@ -96,13 +96,18 @@ impl Form {
         form
     }
 
-    /// The effect id of a term, a user's name of an expression, else the canonical name.
+    /// The effect id of a term; the user's name of an expression.
     pub fn effect_name(&self, term: Term) -> String {
+        if matches!(term, Term::Expression(_)) { self.term_name(term) } else { effect_name(term) }
+    }
+
+    /// The canonical name of a term; the user's name of an expression.
+    pub fn term_name(&self, term: Term) -> String {
         match term {
             Term::Expression(index) => {
                 self.expressions.get(usize::from(index)).map_or_else(|| term.name(), |own| own.name().into())
             }
-            _ => effect_name(term),
+            _ => term.name(),
         }
     }
 
