@@ -2,15 +2,13 @@
 
 use super::compare_report::Report;
 use super::error::CommandError;
+use super::input::{Input, ModelArguments};
 use super::output;
-use crate::data;
+use super::words::percent;
 use crate::diagnose::{Comparison, Estimate, NOISE_RATIO, Options, Side, Verdict, compare};
-use crate::identify::{self, Gap, Recording, Settings};
 use crate::law::{Hold, Model, equation};
 use clap::Args;
-use clap::builder::PossibleValuesParser;
 use std::fmt::Write;
-use std::path::PathBuf;
 
 const EXAMPLE: &str = r#"Examples:
   switchid compare recording.csv --model model.toml
@@ -28,12 +26,8 @@ pub(super) struct Arguments {
     /// The recordings (CSV with a header), or sections of them: DATA@t0:t1 in seconds
     #[arg(required = true)]
     data: Vec<String>,
-    /// The model file (TOML)
-    #[arg(long, short)]
-    model: PathBuf,
-    /// What the excitation did between samples; else the model says, or the best one is kept
-    #[arg(long, value_parser = PossibleValuesParser::new(Hold::ALL.map(Hold::id)))]
-    hold: Option<String>,
+    #[command(flatten)]
+    model: ModelArguments,
     /// Length of the windows over which the residual force is averaged; else chosen from the motion
     #[arg(long, value_name = "S")]
     window: Option<f64>,
@@ -47,17 +41,14 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let options = options(arguments)?;
-    let model = data::open_model(&arguments.model)?;
-    let opened = arguments.data.iter().map(|data| data::open_recording(data, &model)).collect::<Result<Vec<_>, _>>()?;
-    let recordings: Vec<(&Recording, Hold)> =
-        opened.iter().map(|opened| (&opened.recording, hold(arguments, &model, &opened.recording))).collect();
-    let found = compare(&model, &recordings, &options);
-    opened.iter().flat_map(|opened| warnings(&opened.recording)).for_each(|text| output::complain("warning", &text));
+    let input = Input::open(&arguments.data, &arguments.model)?;
+    let recordings = input.recordings();
+    let found = compare(&input.model, &recordings, &options);
     let holds: Vec<Hold> = recordings.iter().map(|(_, hold)| *hold).collect();
     if arguments.json {
         output::print_json(&Report::of(&found, &holds))
     } else {
-        output::print(&text(&found, &model, &arguments.model.display().to_string()))
+        output::print(&text(&found, &input.model, &input.file))
     }
 }
 
@@ -68,24 +59,6 @@ fn options(arguments: &Arguments) -> Result<Options, CommandError> {
     };
     let window = arguments.window.map(|window| positive("window", window)).transpose()?;
     Ok(Options { window, horizon: positive("horizon", arguments.horizon)? })
-}
-
-/// What was taken otherwise than the file says.
-fn warnings(recording: &Recording) -> Vec<String> {
-    let source = recording.source();
-    let gap =
-        |gap: Gap| format!("{source}: no samples from {} s to {} s: nothing is carried over it", gap.start, gap.end);
-    let mut warnings: Vec<String> = recording.gaps().into_iter().map(gap).collect();
-    if !recording.channels().excitation {
-        warnings.push(format!("{source}: there is no excitation: taken as free motion"));
-    }
-    warnings
-}
-
-fn hold(arguments: &Arguments, model: &Model, recording: &Recording) -> Hold {
-    let asked = arguments.hold.as_deref().and_then(Hold::from_id);
-    let settings = || identify::settings_for(recording, Settings::default());
-    asked.or(model.hold).unwrap_or_else(|| identify::choose_hold(model, recording, &settings()))
 }
 
 fn text(found: &Comparison, model: &Model, file: &str) -> String {
@@ -227,12 +200,3 @@ fn ratio(ratio: f64) -> String {
     if ratio < 100.0 { format!("{ratio:.2}") } else { format!("{ratio:.0}") }
 }
 
-fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    match percent {
-        percent if percent >= 10.0 => format!("{percent:.0} %"),
-        percent if percent >= 1.0 => format!("{percent:.1} %"),
-        percent if percent >= 0.1 => format!("{percent:.2} %"),
-        percent => format!("{percent:.1e} %"),
-    }
-}

@@ -72,6 +72,59 @@ pub(super) enum CommandError {
         /// What is allowed.
         range: &'static str,
     },
+    /// No law can be fitted.
+    #[error(
+        "{data}: no law of the form of {model} can be determined: the record is too short or hardly moves, or terms are \
+         proportional to each other on it; give a longer record or fewer terms"
+    )]
+    Undetermined {
+        /// The recordings.
+        data: String,
+        /// The model's file.
+        model: String,
+    },
+    /// An effect that neither the catalogue nor the model has.
+    #[error("there is no effect \"{effect}\"{}: write one of {}", did_you_mean(.nearest), .known.join(", "))]
+    NoEffect {
+        /// What was asked for.
+        effect: String,
+        /// Names that are spelled much like it.
+        nearest: Vec<String>,
+        /// All names.
+        known: Vec<String>,
+    },
+    /// An effect that the model has already.
+    #[error("{model} has the effect \"{effect}\" already (key \"{key}\"): nothing is added")]
+    Present {
+        /// The effect.
+        effect: String,
+        /// The model's file.
+        model: String,
+        /// Its key there.
+        key: String,
+    },
+    /// An effect whose coefficient no fit with it determines.
+    #[error("{data}: this record does not determine \"{effect}\": its force vanishes there or is that of the other terms")]
+    NotDetermined {
+        /// The recordings.
+        data: String,
+        /// The effect.
+        effect: String,
+    },
+    /// A file that would be overwritten.
+    #[error("{file}: exists already: name another file with -o, or add --force to overwrite it")]
+    Exists {
+        /// The file.
+        file: String,
+    },
+    /// A picture that cannot be drawn.
+    #[error("{file}: cannot be drawn: {reason}")]
+    Draw {
+        /// The file.
+        file: String,
+        /// Why.
+        reason: String,
+    },
     /// A file cannot be written.
     #[error("{file}: cannot be written: {reason}")]
     Write {
@@ -92,4 +145,8 @@ impl CommandError {
     pub(super) fn write(file: &str, reason: impl ToString) -> CommandError {
         CommandError::Write { file: file.into(), reason: reason.to_string() }
     }
+}
+
+fn did_you_mean(nearest: &[String]) -> String {
+    if nearest.is_empty() { String::new() } else { format!(" (did you mean {}?)", nearest.join(" or ")) }
 }

@@ -3,15 +3,21 @@
 //! Human text goes to stdout; `--json` prints exactly one JSON document there instead. Errors and warnings go to stderr. Exit status:
 //! 0 done, 1 a gate or a check failed, 2 bad usage or bad input.
 
+mod add;
 mod compare;
 mod compare_report;
+mod diagnose;
 mod error;
 mod fmu;
 mod identify;
+mod improve;
+mod input;
 mod output;
+mod picture;
 mod progress;
 mod simulate;
 mod trace;
+mod words;
 
 use clap::{Parser, Subcommand};
 use error::CommandError;
@@ -29,6 +35,9 @@ struct CommandLine {
 enum Command {
     Compare(compare::Arguments),
     Fmu(fmu::Arguments),
+    Diagnose(diagnose::Arguments),
+    Add(add::Arguments),
+    Improve(improve::Arguments),
     Identify(identify::Arguments),
     Simulate(simulate::Arguments),
 }
@@ -38,6 +47,9 @@ impl Command {
         match self {
             Command::Compare(arguments) => compare::run(&arguments),
             Command::Fmu(arguments) => fmu::run(&arguments),
+            Command::Diagnose(arguments) => diagnose::run(&arguments),
+            Command::Add(arguments) => add::run(&arguments),
+            Command::Improve(arguments) => improve::run(&arguments),
             Command::Identify(arguments) => identify::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
         }

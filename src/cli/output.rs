@@ -1,6 +1,7 @@
 //! What goes to stdout, to stderr and into files.
 
 use super::error::CommandError;
+use crate::diagnose::Fit;
 use serde::{Serialize, Serializer};
 use std::fs::File;
 use std::io::{BufWriter, ErrorKind, Write};
@@ -34,6 +35,32 @@ fn json(file: &str, document: &impl Serialize) -> Result<String, CommandError> {
 /// Prints a line on stderr, `switchid: error: …`; where even that fails there is nobody left to tell.
 pub(super) fn complain(kind: &str, message: &str) {
     let _ = writeln!(std::io::stderr(), "switchid: {kind}: {}", message.trim_end());
+}
+
+/// A text file that overwrites nothing unasked.
+pub(super) struct Written<'a> {
+    path: &'a Path,
+}
+
+impl Written<'_> {
+    /// A file to be written later; refused at once where it exists and `force` is not given.
+    ///
+    /// # Errors
+    /// [`CommandError::Exists`].
+    pub(super) fn check(path: &Path, force: bool) -> Result<Written<'_>, CommandError> {
+        match path.exists() && !force {
+            true => Err(CommandError::Exists { file: path.display().to_string() }),
+            false => Ok(Written { path }),
+        }
+    }
+
+    /// Writes it.
+    ///
+    /// # Errors
+    /// [`CommandError::Write`].
+    pub(super) fn write(&self, text: &str) -> Result<(), CommandError> {
+        std::fs::write(self.path, text).map_err(|error| CommandError::write(&self.path.display().to_string(), error))
+    }
 }
 
 /// A CSV file of numbers under a header.
@@ -72,6 +99,25 @@ fn cell(number: f64) -> String {
 
 /// Pairs that become an object of JSON, in their order.
 pub(super) struct Pairs(pub(super) Vec<(String, f64)>);
+
+impl Pairs {
+    /// No pairs.
+    pub(super) fn none() -> Pairs {
+        Pairs(Vec::new())
+    }
+
+    /// The coefficients of a fitted law, by term.
+    pub(super) fn coefficients(fit: &Fit) -> Pairs {
+        let pairs = fit.form.terms.iter().zip(&fit.coefficients);
+        Pairs(pairs.map(|(term, value)| (fit.form.term_name(*term), *value)).collect())
+    }
+
+    /// The std of those that were sought.
+    pub(super) fn std(fit: &Fit) -> Pairs {
+        let terms = fit.form.terms.iter().enumerate().filter(|(index, _)| fit.form.held[*index].is_none());
+        Pairs(terms.map(|(index, term)| (fit.form.term_name(*term), fit.std(index))).collect())
+    }
+}
 
 impl Serialize for Pairs {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {

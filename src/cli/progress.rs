@@ -39,3 +39,20 @@ impl Progress {
         self.bar.finish_and_clear();
     }
 }
+
+/// A sign of life on the terminal while something runs whose end is not known.
+pub(super) struct Waiting;
+
+impl Waiting {
+    /// Runs `work`; after a second a terminal shows for how long it has been `doing` it.
+    pub(super) fn on<T>(doing: &'static str, work: impl FnOnce() -> T) -> T {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+        let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        bar.set_message(doing);
+        bar.enable_steady_tick(Duration::from_secs(1));
+        let result = work();
+        bar.finish_and_clear();
+        result
+    }
+}

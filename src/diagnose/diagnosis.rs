@@ -11,7 +11,7 @@ use super::judge::Trial;
 use super::piece::Piece;
 use super::search::{Search, search};
 use crate::identify::Recording;
-use crate::law::{Catalogue, Effect, Given, Hold, Model, Term};
+use crate::law::{Catalogue, Effect, Expression, Given, Hold, Model, Term};
 
 /// Chance, shared among all candidates tried, below which a gain is none.
 pub const LEVEL: f64 = 0.01;
@@ -135,7 +135,7 @@ pub fn best_of_form(model: &Model, evidence: &Evidence) -> Option<Fit> {
     let form = Form {
         terms: model.terms.iter().map(|entry| entry.term).collect(),
         held: model.terms.iter().map(|entry| held(entry.term, entry.given)).collect(),
-        expressions: Vec::new(),
+        expressions: model.expressions.clone(),
     };
     let mut fitted = fit(&form, &evidence.pieces)?;
     let maybe: Vec<Term> =
@@ -161,14 +161,15 @@ fn without_weakest(fitted: &Fit, maybe: &[Term], pieces: &[Piece]) -> Option<Fit
     refit(&form, pieces, &coefficients, fitted.noise)
 }
 
-/// Every candidate of the catalogue.
-pub fn candidates() -> Vec<Term> {
-    Catalogue::ENTRIES.iter().map(|entry| entry.term).collect()
+/// Every candidate: the catalogue, and the user's own effects.
+pub fn candidates(expressions: &[Expression]) -> Vec<Term> {
+    let own = (0..expressions.len()).map(|index| Term::Expression(index as u8));
+    Catalogue::ENTRIES.iter().map(|entry| entry.term).chain(own).collect()
 }
 
 /// Diagnoses a fitted law.
 pub fn diagnose(base: &Fit, evidence: &Evidence) -> Diagnosis {
-    let candidates = candidates();
+    let candidates = candidates(&base.form.expressions);
     let found = search(base, &evidence.pieces, &candidates);
     let ranked = ranked(base, &found);
     let windows = windows(base, &ranked, evidence);
@@ -234,7 +235,7 @@ fn ranked(base: &Fit, found: &Search) -> Vec<Trial> {
 }
 
 fn name(trial: &Trial) -> String {
-    effect_name(trial.term)
+    trial.fit.form.effect_name(trial.term)
 }
 
 /// The effect id of a term, or its canonical name.

@@ -4,6 +4,7 @@
 //! likelihood, sensor noise from the innovations, process noise from two rival filters, from much of it down to what the data want.
 //! Terms that no state gives (memory, delay, expressions of time) are series along the smoothed motion, renewed with it.
 
+use super::diagnosis::effect_name;
 use super::means::{self, is_series};
 use super::piece::Piece;
 use super::run::{self, Law, Outcome, Sums};
@@ -93,6 +94,21 @@ impl Form {
         form.terms.remove(index);
         form.held.remove(index);
         form
+    }
+
+    /// The effect id of a term; the user's name of an expression.
+    pub fn effect_name(&self, term: Term) -> String {
+        if matches!(term, Term::Expression(_)) { self.term_name(term) } else { effect_name(term) }
+    }
+
+    /// The canonical name of a term; the user's name of an expression.
+    pub fn term_name(&self, term: Term) -> String {
+        match term {
+            Term::Expression(index) => {
+                self.expressions.get(usize::from(index)).map_or_else(|| term.name(), |own| own.name().into())
+            }
+            _ => term.name(),
+        }
     }
 
     fn inertia(&self) -> Option<usize> {

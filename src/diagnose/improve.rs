@@ -1,6 +1,6 @@
 //! Effects added to a law until nothing is missing that the catalogue has.
 
-use super::diagnosis::{Diagnosis, Evidence, Finding, best_of_form, diagnose, effect_name};
+use super::diagnosis::{Diagnosis, Evidence, Finding, best_of_form, diagnose};
 use super::errors::Windows;
 use super::fit::{Fit, refit};
 use super::search::search;
@@ -45,7 +45,7 @@ pub fn improve(model: &Model, evidence: &Evidence) -> Option<Improvement> {
             return Some(Improvement { steps, last });
         };
         let (fit, removed) = without_superfluous(found.fit.clone(), &original, evidence);
-        let effect = Some(effect_name(found.term));
+        let effect = Some(fit.form.effect_name(found.term));
         steps.push(Step { effect, removed, error: error(&fit, evidence), fit });
     }
 }
@@ -93,7 +93,7 @@ fn without_superfluous(mut fit: Fit, original: &[Term], evidence: &Evidence) -> 
         let Some(smaller) = refit(&fit.form.without(index), &evidence.pieces, &coefficients, fit.noise) else {
             return (fit, removed);
         };
-        removed.push(effect_name(fit.form.terms[index]));
+        removed.push(fit.form.effect_name(fit.form.terms[index]));
         fit = smaller;
     }
 }
@@ -102,12 +102,12 @@ fn without_superfluous(mut fit: Fit, original: &[Term], evidence: &Evidence) -> 
 pub fn improved_model(model: &Model, fit: &Fit) -> Model {
     let key = |term: Term| {
         let own = model.terms.iter().find(|entry| entry.term == term).map(|entry| entry.key.clone());
-        own.unwrap_or_else(|| effect_name(term))
+        own.unwrap_or_else(|| fit.form.effect_name(term))
     };
-    let pairs = fit.form.terms.iter().zip(&fit.coefficients);
-    let terms = pairs.map(|(term, value)| {
-        let key = key(*term);
-        ModelTerm { key, ..ModelTerm::new(*term, Given::Known(*value)) }
-    });
-    Model { terms: terms.collect(), ..model.clone() }
+    let known = |(term, value): (&Term, &f64)| {
+        let open = vec![false; model.inner_names(*term).len()];
+        ModelTerm { term: *term, given: Given::Known(*value), key: key(*term), open }
+    };
+    let terms = fit.form.terms.iter().zip(&fit.coefficients).map(known).collect();
+    Model { terms, expressions: fit.form.expressions.clone(), ..model.clone() }
 }

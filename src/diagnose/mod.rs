@@ -2,6 +2,8 @@
 
 mod coefficients;
 mod compare;
+mod decide;
+mod depends;
 mod diagnosis;
 mod errors;
 mod fit;
@@ -24,12 +26,15 @@ mod series;
 mod smooth;
 mod spectrum;
 mod start;
+mod switched;
 mod trajectory;
 mod variants;
 mod window;
 
 pub use coefficients::{Estimate, Held};
 pub use compare::{Comparison, Error, NOISE_RATIO, Options, Side, Verdict, compare};
+pub use decide::{Decision, Reach, Visible, decide, visible};
+pub use depends::{Dependence, Source, depends_on};
 pub use diagnosis::{
     Candidate, Diagnosis, Evidence, Finding, LEVEL, best_of_form, candidates, diagnose, effect_name, excess, is_evident,
 };
@@ -40,4 +45,5 @@ pub use locate::{Bounds, Fail, Over};
 pub use piece::Piece;
 pub use screen::{Gain, screen};
 pub use search::{Search, search};
+pub use switched::{StageDiagnosis, Switched, diagnose_stages};
 pub use variants::{Scale, Variant, same_effect, variants};

@@ -192,6 +192,16 @@ impl Recording {
         pairs.map(|pair| Gap { start: pair[0], end: pair[1] }).collect()
     }
 
+    /// A part of it, by the positions of its samples.
+    ///
+    /// # Errors
+    /// [`RecordingError`] where the part has too few samples, or does not move.
+    pub fn section(&self, range: Range<usize>) -> Result<Recording, RecordingError> {
+        let cut = |values: &[f64]| values[range.clone()].to_vec();
+        let of = |values: &Option<Vec<f64>>| values.as_deref().map(cut);
+        Recording::new(&self.source, cut(&self.t), of(&self.q), of(&self.qd), of(&self.excitation))
+    }
+
     /// The runs of samples between gaps.
     pub fn pieces(&self) -> Vec<Range<usize>> {
         let cuts = self.gaps().into_iter().map(|gap| self.t.partition_point(|t| *t < gap.end));

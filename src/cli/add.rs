@@ -1,0 +1,136 @@
+//! `switchid add`: an effect joins the model.
+
+use super::error::CommandError;
+use super::input::{Input, ModelArguments};
+use super::output::{self, Pairs, Written};
+use super::progress::Waiting;
+use super::words::{number, percent};
+use crate::diagnose::{Addition, Evidence, Fit, add, improved_model, same_effect};
+use crate::law::{Catalogue, Model, Term};
+use clap::Args;
+use serde::Serialize;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+const EXAMPLE: &str = r#"Examples:
+  switchid add coulomb_friction --model model.toml --data recording.csv -o better.toml
+  switchid add tip_drag --model model.toml --data first.csv second.csv -o better.toml --json
+
+EFFECT is an id of the catalogue, a product of powers ("q^2*qd") or one of the model's own [effects]. Its inner
+parameters are fitted with all coefficients; the new model holds their numbers. The model itself is left alone."#;
+
+/// Likeness of two names from which one may be meant by the other.
+const ALIKE: f64 = 0.85;
+
+/// Add an effect to a model, refit it, and write the new model
+#[derive(Args)]
+#[command(after_help = EXAMPLE)]
+pub(super) struct Arguments {
+    /// The effect
+    effect: String,
+    /// The recordings (CSV with a header, MAT or Parquet), or sections of them: DATA@t0:t1 in seconds
+    #[arg(long, required = true, num_args = 1..)]
+    data: Vec<String>,
+    #[command(flatten)]
+    model: ModelArguments,
+    /// Where to write the new model
+    #[arg(short, long, value_name = "MODEL2")]
+    output: PathBuf,
+    /// Overwrite the output file where it exists
+    #[arg(long)]
+    force: bool,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Serialize)]
+struct Report {
+    effect: String,
+    error_before: f64,
+    error_after: f64,
+    coefficients: Pairs,
+    std: Pairs,
+    inner: Pairs,
+    gain: f64,
+    model: String,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    let written = Written::check(&arguments.output, arguments.force)?;
+    let input = Input::open(&arguments.data, &arguments.model)?;
+    let term = effect(&arguments.effect, &input)?;
+    let recordings = input.recordings();
+    let evidence = Evidence::new(&recordings);
+    let found = Waiting::on("fitting", || add(&input.model, term, &evidence));
+    let effect = arguments.effect.clone();
+    let found = found.ok_or_else(|| CommandError::NotDetermined { data: input.named(), effect })?;
+    written.write(&improved_model(&input.model, &found.after).to_toml())?;
+    if arguments.json {
+        output::print_json(&report(arguments, &found))
+    } else {
+        output::print(&text(arguments, &found))
+    }
+}
+
+/// The term of that name, which the model must not have yet.
+fn effect(name: &str, input: &Input) -> Result<Term, CommandError> {
+    let entry = input.model.named(name).map_err(|_| unknown(name, &input.model))?;
+    match input.model.terms.iter().find(|own| same_effect(own.term, entry.term)) {
+        Some(own) => {
+            let (effect, model, key) = (name.into(), input.file.clone(), own.key.clone());
+            Err(CommandError::Present { effect, model, key })
+        }
+        None => Ok(entry.term),
+    }
+}
+
+fn unknown(name: &str, model: &Model) -> CommandError {
+    let own = model.expressions.iter().map(|expression| expression.name().to_string());
+    let known: Vec<String> = Catalogue::ENTRIES.iter().map(|entry| entry.id.to_string()).chain(own).collect();
+    let alike = known.iter().map(|other| (strsim::jaro_winkler(name, other), other));
+    let mut alike: Vec<(f64, &String)> = alike.filter(|(likeness, _)| *likeness > ALIKE).collect();
+    alike.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let nearest = alike.into_iter().take(2).map(|(_, other)| other.clone()).collect();
+    CommandError::NoEffect { effect: name.into(), nearest, known }
+}
+
+fn report(arguments: &Arguments, found: &Addition) -> Report {
+    let fit = &found.after;
+    Report {
+        effect: arguments.effect.clone(),
+        error_before: found.error_before,
+        error_after: found.error_after,
+        coefficients: Pairs::coefficients(fit),
+        std: Pairs::std(fit),
+        inner: Pairs(inner(fit)),
+        gain: fit.log_likelihood - found.before.log_likelihood,
+        model: arguments.output.display().to_string(),
+    }
+}
+
+/// The inner parameters of the term that was added.
+fn inner(fit: &Fit) -> Vec<(String, f64)> {
+    let effect = fit.form.terms.last().and_then(|term| term.effect());
+    effect.map_or_else(Vec::new, |effect| {
+        effect.inner().iter().map(|parameter| parameter.name.to_string()).zip(effect.inner_values()).collect()
+    })
+}
+
+fn text(arguments: &Arguments, found: &Addition) -> String {
+    let fit = &found.after;
+    let mut text = format!(
+        "{}: error on held-out data {} → {}, {:.1} nats gained\n",
+        arguments.effect,
+        percent(found.error_before),
+        percent(found.error_after),
+        fit.log_likelihood - found.before.log_likelihood
+    );
+    for (index, (term, value)) in fit.form.terms.iter().zip(&fit.coefficients).enumerate() {
+        let _ = writeln!(text, "  {:<28} {:>26}", fit.form.effect_name(*term), number(*value, fit.std(index)));
+    }
+    for (name, value) in inner(fit) {
+        let _ = writeln!(text, "    {name:<26} {value:>26.6}");
+    }
+    text + &format!("written: {}\n", arguments.output.display())
+}

@@ -1,0 +1,64 @@
+//! What commands on recordings and a model have in common: opening them, and what the excitation did between samples.
+
+use super::error::CommandError;
+use crate::data;
+use crate::identify::{self, Recording, Settings};
+use crate::law::{Hold, Model};
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use std::path::PathBuf;
+
+/// The model, and the hold if the user names one.
+#[derive(Args)]
+pub(super) struct ModelArguments {
+    /// The model file (TOML)
+    #[arg(long, short)]
+    pub(super) model: PathBuf,
+    /// What the excitation did between samples; else the model says, or the best one is kept
+    #[arg(long, value_parser = PossibleValuesParser::new(Hold::ALL.map(Hold::id)))]
+    pub(super) hold: Option<String>,
+}
+
+/// A model with the recordings it is held against.
+pub(super) struct Input {
+    /// The model.
+    pub(super) model: Model,
+    /// Its file.
+    pub(super) file: String,
+    recordings: Vec<Recording>,
+    holds: Vec<Hold>,
+}
+
+impl Input {
+    /// Opens the model and every recording.
+    ///
+    /// # Errors
+    /// The first file that is at fault.
+    pub(super) fn open(data: &[String], arguments: &ModelArguments) -> Result<Input, CommandError> {
+        let model = data::open_model(&arguments.model)?;
+        let open = |data: &String| data::open_recording(data, &model).map(|opened| opened.recording);
+        let recordings = data.iter().map(open).collect::<Result<Vec<_>, _>>()?;
+        let asked = arguments.hold.as_deref().and_then(Hold::from_id);
+        let hold = |recording: &Recording| {
+            let settings = || identify::settings_for(recording, Settings::default());
+            asked.or(model.hold).unwrap_or_else(|| identify::choose_hold(&model, recording, &settings()))
+        };
+        let holds = recordings.iter().map(hold).collect();
+        Ok(Input { file: arguments.model.display().to_string(), model, recordings, holds })
+    }
+
+    /// The recordings with their holds.
+    pub(super) fn recordings(&self) -> Vec<(&Recording, Hold)> {
+        self.recordings.iter().zip(self.holds.iter().copied()).collect()
+    }
+
+    /// The arguments by which the recordings were named, as for another command.
+    pub(super) fn named(&self) -> String {
+        self.recordings.iter().map(Recording::source).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Why there is no law.
+    pub(super) fn undetermined(&self) -> CommandError {
+        CommandError::Undetermined { data: self.named(), model: self.file.clone() }
+    }
+}

@@ -1,0 +1,80 @@
+//! Pictures as SVG: the error falling step by step to the noise floor.
+
+use super::error::CommandError;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Width of the picture, and height of one step and of what is around them, pixels.
+const WIDTH: u32 = 760;
+const STEP: u32 = 44;
+const AROUND: u32 = 70;
+
+const BAR: RGBColor = RGBColor(46, 100, 158);
+const FLOOR: RGBColor = RGBColor(190, 60, 40);
+
+/// One step of the staircase.
+pub(super) struct Stair {
+    /// What was done.
+    pub(super) title: String,
+    /// Held-out error after it, as a share of the force.
+    pub(super) error: f64,
+}
+
+/// Bars of the error on a logarithmic axis, the noise floor as a line.
+///
+/// # Errors
+/// [`CommandError::Draw`] says what the drawing failed on.
+pub(super) fn staircase(stairs: &[Stair], floor: f64) -> Result<String, CommandError> {
+    let mut text = String::new();
+    draw(&mut text, stairs, floor)
+        .map_err(|reason| CommandError::Draw { file: "the staircase".into(), reason })?;
+    Ok(text)
+}
+
+fn draw(text: &mut String, stairs: &[Stair], floor: f64) -> Result<(), String> {
+    let said = |error: &dyn std::fmt::Display| error.to_string();
+    let height = AROUND + STEP * stairs.len() as u32;
+    let area = SVGBackend::with_string(text, (WIDTH, height)).into_drawing_area();
+    area.fill(&WHITE).map_err(|error| said(&error))?;
+    let errors = || stairs.iter().map(|stair| 100.0 * stair.error).chain([100.0 * floor]).filter(|error| *error > 0.0);
+    let range = 0.5 * errors().fold(f64::INFINITY, f64::min)..2.0 * errors().fold(0.0, f64::max);
+    let count = stairs.len() as f64;
+    let mut chart = ChartBuilder::on(&area)
+        .margin(12)
+        .x_label_area_size(40)
+        .y_label_area_size(220)
+        .build_cartesian_2d(range.clone().log_scale(), 0.0..count)
+        .map_err(|error| said(&error))?;
+    let left = range.start;
+    chart
+        .configure_mesh()
+        .disable_y_mesh()
+        .disable_y_axis()
+        .y_labels(0)
+        .x_desc("error on held-out data, % of the force")
+        .light_line_style(TRANSPARENT)
+        .draw()
+        .map_err(|error| said(&error))?;
+    let bars = stairs.iter().enumerate().map(|(index, stair)| {
+        let top = count - index as f64;
+        Rectangle::new([(left, top - 0.2), (100.0 * stair.error, top - 0.8)], BAR.filled())
+    });
+    chart.draw_series(bars).map_err(|error| said(&error))?;
+    chart
+        .draw_series([PathElement::new(vec![(100.0 * floor, 0.0), (100.0 * floor, count)], FLOOR.stroke_width(2))])
+        .map_err(|error| said(&error))?;
+    let labels = stairs.iter().enumerate().flat_map(|(index, stair)| {
+        let middle = count - index as f64 - 0.5;
+        let style = |position: HPos| ("sans-serif", 14).into_font().color(&BLACK).pos(Pos::new(position, VPos::Center));
+        [
+            EmptyElement::at((left, middle)) + Text::new(stair.title.clone(), (-8, 0), style(HPos::Right)),
+            EmptyElement::at((100.0 * stair.error, middle))
+                + Text::new(format!("{:.3} %", 100.0 * stair.error), (6, 0), style(HPos::Left)),
+        ]
+    });
+    chart.draw_series(labels).map_err(|error| said(&error))?;
+    let style = ("sans-serif", 12).into_font().color(&FLOOR);
+    let floor_label = EmptyElement::at((100.0 * floor, count)) + Text::new("noise floor", (4, -12), style);
+    chart.draw_series([floor_label]).map_err(|error| said(&error))?;
+    area.present().map_err(|error| said(&error))
+}
