@@ -118,7 +118,8 @@ fn the_default_inner_step_is_exact_to_rounding() {
 fn white_noise_has_the_variance_of_its_intensity_on_any_grid() {
     for sample_time in [1e-3, 4e-3] {
         let mut scenario = Builtin::DuffingWhite.scenario();
-        scenario.excitation = Excitation { kind: ExcitationKind::WhiteNoise, intensity: 3.0, sample_time };
+        scenario.excitation =
+            Excitation { kind: ExcitationKind::WhiteNoise, intensity: 3.0, sample_time, ..Default::default() };
         let forces: Vec<f64> = record(&scenario).unwrap().iter().map(|reading| reading.excitation).collect();
         let count = forces.len() as f64;
         let variance = forces.iter().map(|force| force * force).sum::<f64>() / count;

@@ -3,7 +3,7 @@
 use super::error::CommandError;
 use super::output::{self, Pairs, Table};
 use crate::data;
-use crate::simulate::{Builtin, Scenario, Stage, record};
+use crate::simulate::{Builtin, Excitation, Hidden, Scenario, Stage, record};
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,13 @@ A scenario file:
   seed = 1                            # of white excitation and sensor noise
   noise = { q = 0.01, qd = 0.01 }     # std
   initial = { q = 0.5, qd = 0.0 }
-  excitation = { kind = "sine" }      # or "none", or { kind = "white_noise", intensity = 3.0 }
+  excitation = { kind = "sine" }      # or "none", or { kind = "white_noise", intensity = 3.0 }, or
+                                      # { kind = "multisine", from = 1, to = 20, count = 20, rms = 2 } (rad/s), or
+                                      # { kind = "sweep", from = 1, to = 20, period = 30, rms = 2 }
+
+  [hidden]                            # effects besides the law's terms, in every stage
+  coulomb_friction = 0.3
+  dead_zone_stiffness = { coefficient = 2.0, gap = 0.1 }
 
   [[stage]]
   start = 0.0                         # s
@@ -62,7 +68,8 @@ struct Truth {
     scenario: String,
     seed: u64,
     noise: Pairs,
-    excitation: crate::simulate::Excitation,
+    excitation: Excitation,
+    hidden: Hidden,
     switch_times: Vec<f64>,
     stages: Vec<TrueStage>,
 }
@@ -145,6 +152,7 @@ fn truth(scenario: &Scenario) -> Truth {
         seed: scenario.seed,
         noise: Pairs(vec![("q".into(), scenario.noise.q), ("qd".into(), scenario.noise.qd)]),
         excitation: scenario.excitation,
+        hidden: scenario.hidden.clone(),
         switch_times: scenario.switch_times().into_iter().filter(|t| *t < scenario.duration).collect(),
         stages: stages.map(|(stage, end)| true_stage(scenario, stage, end.min(scenario.duration))).collect(),
     }

@@ -29,7 +29,7 @@ pub fn open_recording(data: &str, model: &Model) -> Result<Opened, DataError> {
     }
     let table = Table { data, file: &file, section: &section };
     let (layout, signals) = table.read(&text, model)?;
-    let unmet = model.terms.iter().find(|entry| entry.term.uses_excitation() && layout.excitation.is_none());
+    let unmet = model.terms.iter().find(|entry| model.uses_excitation(entry.term) && layout.excitation.is_none());
     if let Some(entry) = unmet {
         return Err(DataError::NeedsExcitation { file, term: entry.key.clone() });
     }

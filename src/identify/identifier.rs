@@ -4,7 +4,7 @@ use super::problem::Problem;
 use super::publication::Publication;
 use super::settings::{Method, Settings, SettingsError};
 use super::tracker::Tracker;
-use crate::law::{Compiled, Model, ModelError, Term};
+use crate::law::{Model, ModelError, Term};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -125,24 +125,6 @@ pub enum BuildError {
     /// The model is refused.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// A term that cannot run in a stream.
-    #[error(
-        "[terms]: \"{key}\" cannot be identified sample by sample: it needs the past of the motion, or there are more than 3 gaps or \
-         4 Stribeck speeds; take it out of this model (compare, diagnose, add, improve and simulate do take it)"
-    )]
-    Term {
-        /// The key.
-        key: String,
-    },
-}
-
-fn check_terms(model: &Model) -> Result<(), BuildError> {
-    let terms: Vec<Term> = model.terms.iter().map(|entry| entry.term).collect();
-    let refused = Compiled::refused(&terms).and_then(|term| model.position(term));
-    match refused {
-        Some(index) => Err(BuildError::Term { key: model.terms[index].key.clone() }),
-        None => Ok(()),
-    }
 }
 
 /// The procedure at work.
@@ -181,7 +163,7 @@ impl Identifier {
     pub fn new(model: &Model, settings: Settings) -> Result<Identifier, BuildError> {
         settings.check()?;
         model.check()?;
-        check_terms(model)?;
+        model.check_streaming()?;
         let coefficients =
             model.terms.iter().map(|entry| Coefficient { term: entry.term, value: 0.0, std: None }).collect();
         let problem = Problem::new(model, &settings);

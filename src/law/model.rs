@@ -1,8 +1,8 @@
 //! A model file: which terms a law may have, what is known of them, and which columns of a recording it reads.
 
-use super::{Hold, Term, TermError};
+use super::model_error::ModelError;
+use super::{Compiled, Effect, Expression, Hold, Monomial, Term};
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
 /// What the user knows of a coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,6 +24,16 @@ pub struct ModelTerm {
     pub given: Given,
     /// The name the user wrote: an effect id stays one when the model is written again.
     pub key: String,
+    /// Which inner parameters, in their order, are still to be fitted; the others are held at their values.
+    pub open: Vec<bool>,
+}
+
+impl ModelTerm {
+    /// A term under its canonical name, its inner parameters held as they are.
+    pub fn new(term: Term, given: Given) -> ModelTerm {
+        let inner = term.effect().map_or(0, |effect| effect.inner().len());
+        ModelTerm { term, given, key: term.name(), open: vec![false; inner] }
+    }
 }
 
 /// Which column of a measurement holds which quantity; `None` is the default name, which need not be there.
@@ -54,91 +64,9 @@ pub struct Model {
     /// Terms of U₀ that are total time derivatives, `q^n*qd`: their variation integrates to zero, so that no data can
     /// determine them. They are kept to be reported.
     pub potential: Vec<Term>,
-}
-
-/// Why a model is refused.
-#[derive(Clone, Debug, PartialEq, Error)]
-pub enum ModelError {
-    /// The text is no TOML, or a key has the wrong type.
-    #[error("{message}")]
-    Syntax {
-        /// What the TOML reader says, with line and column.
-        message: String,
-    },
-    /// A key of `[terms]` is no term.
-    #[error("[terms]: {source}")]
-    Term {
-        /// Which text, and why.
-        source: TermError,
-    },
-    /// Two keys name the same term.
-    #[error("[terms]: \"{first}\" and \"{second}\" are the same term: keep one")]
-    Twice {
-        /// The first key.
-        first: String,
-        /// The second key.
-        second: String,
-    },
-    /// The value of a term is none of the three things it may be.
-    #[error("[terms]: \"{key}\" = {value}: write \"fit\", \"maybe\" or a finite number")]
-    Given {
-        /// The key.
-        key: String,
-        /// Its value as written.
-        value: String,
-    },
-    /// No terms at all.
-    #[error("[terms] is empty: name at least one term, for example inertia = \"fit\"")]
-    NoTerms,
-    /// Without inertia there is no equation of motion to integrate.
-    #[error("[terms] has no inertia: add inertia = \"fit\" (or its known value)")]
-    NoInertia,
-    /// More terms than the estimator is built for.
-    #[error("[terms] has {count} terms; at most {max} are supported")]
-    TooMany {
-        /// How many there are.
-        count: usize,
-        /// How many there may be.
-        max: usize,
-    },
-    /// More than one coordinate.
-    #[error("coordinates = {names:?}: this version identifies one coordinate, named q")]
-    Coordinates {
-        /// The names given.
-        names: Vec<String>,
-    },
-    /// A term of U₀ that is no total time derivative.
-    #[error(
-        "[potential]: \"{key}\": only total time derivatives (qd, q*qd, q^2*qd …) may stand here; write other terms in [terms]"
-    )]
-    Potential {
-        /// The key.
-        key: String,
-    },
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    name: Option<String>,
-    coordinates: Option<Vec<String>>,
-    hold: Option<Hold>,
-    #[serde(default)]
-    columns: ColumnsFile,
-    #[serde(default)]
-    terms: toml::Table,
-    #[serde(default)]
-    potential: toml::Table,
-}
-
-#[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-struct ColumnsFile {
-    t: Option<String>,
-    q: Option<String>,
-    qd: Option<String>,
-    #[serde(rename = "F")]
-    excitation: Option<String>,
+    /// The user's own effects, each with the values of its inner parameters; [`Term::Expression`] counts them. One that no term
+    /// names is a candidate.
+    pub expressions: Vec<Expression>,
 }
 
 impl Model {
@@ -156,85 +84,99 @@ impl Model {
 
     /// A model of these terms, each under its canonical name.
     pub fn of(name: &str, terms: impl IntoIterator<Item = (Term, Given)>) -> Model {
-        let terms = terms.into_iter().map(|(term, given)| ModelTerm { term, given, key: term.name() }).collect();
-        Model { name: name.into(), hold: None, columns: Columns::default(), terms, potential: Vec::new() }
+        let terms = terms.into_iter().map(|(term, given)| ModelTerm::new(term, given)).collect();
+        let (columns, potential, expressions) = (Columns::default(), Vec::new(), Vec::new());
+        Model { name: name.into(), hold: None, columns, terms, potential, expressions }
     }
 
-    /// Reads a model file.
-    ///
-    /// # Errors
-    /// [`ModelError`] names the key at fault and what would mend it.
-    pub fn from_toml(text: &str) -> Result<Model, ModelError> {
-        let file: File = toml::from_str(text).map_err(|error| ModelError::Syntax { message: error.to_string() })?;
-        if let Some(names) = file.coordinates.filter(|names| names.as_slice() != ["q"]) {
-            return Err(ModelError::Coordinates { names });
-        }
-        let terms = file.terms.iter().map(|(key, value)| read_term(key, value)).collect::<Result<Vec<_>, _>>()?;
-        let potential = file.potential.keys().map(|key| read_potential(key)).collect::<Result<Vec<_>, _>>()?;
-        let model = Model {
-            name: file.name.unwrap_or_else(|| "unnamed".into()),
-            hold: file.hold,
-            columns: Columns {
-                t: file.columns.t,
-                q: file.columns.q,
-                qd: file.columns.qd,
-                excitation: file.columns.excitation,
-            },
-            terms,
-            potential,
-        };
-        model.check()?;
-        Ok(model)
-    }
-
-    /// Writes the model as a file that [`Model::from_toml`] reads back to the same model.
-    pub fn to_toml(&self) -> String {
-        let quote = |text: &str| toml::Value::from(text).to_string();
-        let mut text = format!("name = {}\ncoordinates = [\"q\"]\n", quote(&self.name));
-        if let Some(hold) = self.hold {
-            text += &format!("hold = \"{hold}\"\n");
-        }
-        let columns =
-            [("t", &self.columns.t), ("q", &self.columns.q), ("qd", &self.columns.qd), ("F", &self.columns.excitation)];
-        if columns.iter().any(|(_, column)| column.is_some()) {
-            text += "\n[columns]\n";
-        }
-        for (name, column) in columns.iter().filter_map(|(name, column)| Some((name, column.as_deref()?))) {
-            text += &format!("{name} = {}\n", quote(column));
-        }
-        text += "\n[terms]\n";
-        for term in &self.terms {
-            let value = match term.given {
-                Given::Fit => "\"fit\"".to_string(),
-                Given::Maybe => "\"maybe\"".to_string(),
-                Given::Known(value) => toml::Value::from(value).to_string(),
-            };
-            text += &format!("{} = {value}\n", quote(&term.key));
-        }
-        if !self.potential.is_empty() {
-            text += "\n[potential]\n";
-        }
-        for term in &self.potential {
-            text += &format!("{} = \"maybe\"\n", quote(&term.name()));
-        }
-        text
-    }
-
-    /// The model with only the named terms, each "fit", as the FMU parameter `terms` asks.
+    /// The model with only the named terms, each "fit", as the FMU parameter `terms` asks. A term that the model has keeps its
+    /// inner parameters.
     ///
     /// # Errors
     /// [`ModelError::Term`] for a text that is no term; what [`Model::check`] refuses.
     pub fn with_terms<'a>(&self, names: impl IntoIterator<Item = &'a str>) -> Result<Model, ModelError> {
-        let terms = names
-            .into_iter()
-            .map(|name| {
-                let term = Term::parse(name).map_err(|source| ModelError::Term { source })?;
-                Ok(ModelTerm { term, given: Given::Fit, key: name.into() })
-            })
-            .collect::<Result<Vec<_>, ModelError>>()?;
+        let fit = |name: &str| {
+            let known = self.terms.iter().find(|entry| entry.key == name);
+            let entry = known.cloned().map_or_else(|| self.named(name), Ok)?;
+            Ok(ModelTerm { given: Given::Fit, ..entry })
+        };
+        let terms = names.into_iter().map(fit).collect::<Result<Vec<_>, ModelError>>()?;
         let model = Model { terms, potential: Vec::new(), ..self.clone() };
         model.check()?;
         Ok(model)
+    }
+
+    /// The term of that name, "fit", its inner parameters open.
+    ///
+    /// # Errors
+    /// [`ModelError::Term`] where there is none.
+    pub fn named(&self, name: &str) -> Result<ModelTerm, ModelError> {
+        let own = self.expressions.iter().position(|expression| expression.name() == name);
+        let (term, inner) = match own {
+            Some(index) => (Term::Expression(index as u8), self.expressions[index].parameters().len()),
+            None => {
+                let term = Term::parse(name).map_err(|source| ModelError::Term { source })?;
+                (term, term.effect().map_or(0, |effect| effect.inner().len()))
+            }
+        };
+        Ok(ModelTerm { term, given: Given::Fit, key: name.into(), open: vec![true; inner] })
+    }
+
+    /// Whether a term of this model depends on the excitation.
+    pub fn uses_excitation(&self, term: Term) -> bool {
+        match term {
+            Term::Expression(index) => self.expressions.get(usize::from(index)).is_some_and(|own| own.uses("F")),
+            _ => term.uses_excitation(),
+        }
+    }
+
+    /// The canonical name of a term of this model; an expression has the user's.
+    pub fn name_of(&self, term: Term) -> String {
+        match term {
+            Term::Expression(index) => {
+                self.expressions.get(usize::from(index)).map_or_else(|| term.name(), |own| own.name().into())
+            }
+            _ => term.name(),
+        }
+    }
+
+    /// The first term that cannot be identified sample by sample.
+    ///
+    /// # Errors
+    /// [`ModelError::Open`] where it has an inner parameter that is to be fitted, [`ModelError::Memory`] where its force is no function of the
+    /// present state and excitation.
+    pub fn check_streaming(&self) -> Result<(), ModelError> {
+        for entry in &self.terms {
+            if let Some(inner) = entry.open.iter().position(|open| *open) {
+                let key = entry.key.clone();
+                return Err(ModelError::Open { key, inner: self.inner_names(entry.term).swap_remove(inner) });
+            }
+        }
+        let terms: Vec<Term> = self.terms.iter().map(|entry| entry.term).collect();
+        let refused = Compiled::refused(&terms).and_then(|term| self.position(term));
+        refused.map_or(Ok(()), |index| Err(ModelError::Memory { key: self.terms[index].key.clone() }))
+    }
+
+    /// Names of a term's inner parameters, in their order.
+    pub fn inner_names(&self, term: Term) -> Vec<String> {
+        match term {
+            Term::Effect(effect) => effect.inner().iter().map(|parameter| parameter.name.into()).collect(),
+            Term::Expression(index) => {
+                self.expressions.get(usize::from(index)).map_or_else(Vec::new, |own| own.parameters().to_vec())
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Values of a term's inner parameters, in their order.
+    pub fn inner_values(&self, term: Term) -> Vec<f64> {
+        match term {
+            Term::Effect(effect) => effect.inner_values(),
+            Term::Expression(index) => {
+                self.expressions.get(usize::from(index)).map_or_else(Vec::new, |own| own.values().to_vec())
+            }
+            _ => Vec::new(),
+        }
     }
 
     /// Where the term stands among [`Model::terms`].
@@ -254,7 +196,8 @@ impl Model {
             return Err(ModelError::TooMany { count: self.terms.len(), max: Model::MAX_TERMS });
         }
         for (index, entry) in self.terms.iter().enumerate() {
-            if let Some(first) = self.terms[..index].iter().find(|other| other.term == entry.term) {
+            if let Some(first) = self.terms[..index].iter().find(|other| canonical(other.term) == canonical(entry.term))
+            {
                 return Err(ModelError::Twice { first: first.key.clone(), second: entry.key.clone() });
             }
         }
@@ -262,21 +205,12 @@ impl Model {
     }
 }
 
-fn read_term(key: &str, value: &toml::Value) -> Result<ModelTerm, ModelError> {
-    let term = Term::parse(key).map_err(|source| ModelError::Term { source })?;
-    let number = value.as_float().or_else(|| value.as_integer().map(|n| n as f64));
-    let given = match (value.as_str(), number) {
-        (Some("fit"), _) => Given::Fit,
-        (Some("maybe"), _) => Given::Maybe,
-        (None, Some(number)) if number.is_finite() => Given::Known(number),
-        _ => return Err(ModelError::Given { key: key.into(), value: value.to_string() }),
-    };
-    Ok(ModelTerm { term, given, key: key.into() })
-}
-
-fn read_potential(key: &str) -> Result<Term, ModelError> {
-    match Term::parse(key) {
-        Ok(term @ Term::Monomial(powers)) if powers.qd == 1 && powers.excitation == 0 => Ok(term),
-        _ => Err(ModelError::Potential { key: key.into() }),
+/// One term for all that have the same feature.
+fn canonical(term: Term) -> Term {
+    match term {
+        Term::Effect(Effect::ExcitationGainNonlinearity { power }) => {
+            Term::Monomial(Monomial { excitation: power.value() as u8, ..Monomial::default() })
+        }
+        _ => term,
     }
 }

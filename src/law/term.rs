@@ -189,7 +189,7 @@ impl Term {
         }
     }
 
-    /// Whether the term depends on the excitation.
+    /// Whether the term depends on the excitation; false for an expression, see [`super::Model::uses_excitation`].
     pub fn uses_excitation(self) -> bool {
         match self {
             Term::Inertia => false,

@@ -5,8 +5,9 @@
 //! α between 0.3 and 1.2, a = 1 (limit cycle) or −0.5 (focus), V = 1.2 sin 1.1t. Every coefficient changes by at least a tenth
 //! at every switch, the sine's amplitude and frequency too.
 
+use super::excitation::ExcitationKind;
 use super::random;
-use super::scenario::{ExcitationKind, Scenario, Stage};
+use super::scenario::{Scenario, Stage};
 use crate::law::{State, Term};
 use thiserror::Error;
 

@@ -1,7 +1,8 @@
 //! What makes a scenario impossible, found before the plant moves.
 
+use super::excitation::Excitation;
 use super::scenario::{Scenario, Stage};
-use crate::law::Term;
+use crate::law::{Dynamics, DynamicsError, ModelError, Motion, Term};
 use thiserror::Error;
 
 /// Why a scenario is refused.
@@ -67,6 +68,23 @@ pub enum ScenarioError {
         /// Its value.
         value: f64,
     },
+    /// A hidden effect is refused.
+    #[error("hidden: {source}")]
+    Hidden {
+        /// Which, and why; it is written as in a model's `[terms]`.
+        source: Box<ModelError>,
+    },
+    /// A hidden effect lacks a number.
+    #[error("hidden: \"{key}\": {name} is not given: a plant needs a number for it")]
+    HiddenNumber {
+        /// The key.
+        key: String,
+        /// What has no number.
+        name: String,
+    },
+    /// The law with its hidden effects cannot be integrated.
+    #[error(transparent)]
+    Dynamics(#[from] DynamicsError),
     /// A number outside its range.
     #[error("{name} = {value} is out of range: it must be {range}")]
     OutOfRange {
@@ -87,6 +105,8 @@ impl Scenario {
     pub fn check(&self) -> Result<(), ScenarioError> {
         self.check_terms()?;
         self.check_numbers()?;
+        self.check_excitation()?;
+        self.check_hidden()?;
         self.check_stages()
     }
 
@@ -121,6 +141,26 @@ impl Scenario {
         }
         let ratio = self.excitation.sample_time / self.inner_step;
         within("inner_step", self.inner_step, ratio <= 1e6, "at least a millionth of excitation.sample_time")
+    }
+
+    fn check_excitation(&self) -> Result<(), ScenarioError> {
+        let Excitation { from, to, count, rms, period, .. } = self.excitation;
+        within("excitation.from", from, from >= 0.0, "0 or a positive number")?;
+        within("excitation.to", to, to >= from, "not below excitation.from")?;
+        within("excitation.rms", rms, rms >= 0.0, "0 or a positive number")?;
+        within("excitation.period", period, period > 0.0, "a positive number of seconds")?;
+        let allowed = (1..=Excitation::MAX_COUNT).contains(&count);
+        within("excitation.count", f64::from(count), allowed, "a whole number from 1 to 1000")
+    }
+
+    fn check_hidden(&self) -> Result<(), ScenarioError> {
+        let mut wrong = self.hidden.terms().zip(self.hidden.coefficients()).filter(|(_, value)| !value.is_finite());
+        if let Some((term, value)) = wrong.next() {
+            return Err(ScenarioError::StageNumber { stage: 1, name: format!("hidden {term}"), value });
+        }
+        let terms: Vec<Term> = self.terms.iter().copied().chain(self.hidden.terms()).collect();
+        Dynamics::new(Motion { terms: &terms, coefficients: &[] }, self.hidden.expressions())?;
+        Ok(())
     }
 
     fn check_stages(&self) -> Result<(), ScenarioError> {

@@ -7,6 +7,8 @@
 
 mod builtin;
 mod check;
+mod excitation;
+mod hidden;
 mod noise;
 mod parametric;
 mod plant;
@@ -15,6 +17,8 @@ mod scenario;
 
 pub use builtin::{Builtin, UnknownBuiltin};
 pub use check::ScenarioError;
+pub use excitation::{Excitation, ExcitationKind};
+pub use hidden::Hidden;
 pub use parametric::{LawParameter, ParametricLaw, ParametricLawError};
 pub use plant::{Plant, PlantError, Reading, SimulateError, Truth, record};
-pub use scenario::{Excitation, ExcitationKind, Scenario, SensorNoise, Stage};
+pub use scenario::{Scenario, SensorNoise, Stage};

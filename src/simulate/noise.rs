@@ -3,7 +3,7 @@
 //! Number k of a stream is a function of (seed, stream, k) alone: ChaCha is a counter cipher, so that any place of its
 //! key stream is reached directly. A plant therefore carries no generator, and its noise cannot depend on how often it is asked.
 
-use rand::SeedableRng;
+use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -16,6 +16,8 @@ pub(super) enum Stream {
     Displacement = 2,
     /// The velocity's sensor.
     Velocity = 3,
+    /// The phases of a multisine.
+    Phase = 4,
 }
 
 /// Words of key stream that one number may use: the ziggurat takes two, rarely a few more.
@@ -23,10 +25,19 @@ const WORDS: u128 = 64;
 
 /// Number `index` of the stream, standard normal.
 pub(super) fn standard_normal(seed: u64, stream: Stream, index: u64) -> f64 {
+    StandardNormal.sample(&mut generator(seed, stream, index))
+}
+
+/// Number `index` of the stream, uniform between 0 and 1.
+pub(super) fn uniform(seed: u64, stream: Stream, index: u64) -> f64 {
+    generator(seed, stream, index).random()
+}
+
+fn generator(seed: u64, stream: Stream, index: u64) -> ChaCha8Rng {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     generator.set_stream(stream as u64);
     generator.set_word_pos(u128::from(index) * WORDS);
-    StandardNormal.sample(&mut generator)
+    generator
 }
 
 #[cfg(test)]

@@ -5,9 +5,10 @@
 //! that is then thrown away, so that what a plant shows at t does not depend on the way there.
 
 use super::check::ScenarioError;
+use super::excitation::ExcitationKind;
 use super::noise::{Stream, standard_normal};
-use super::scenario::{ExcitationKind, Scenario};
-use crate::law::{Motion, State};
+use super::scenario::Scenario;
+use crate::law::{Dynamics, History, MAX_MEMORY, Motion, Phase, State, Term};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -67,13 +68,41 @@ const TIME_JITTER: f64 = 1e-3;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plant {
     scenario: Scenario,
-    /// Last point of the inner grid that was reached, and the state there.
+    law: Law,
+    /// Phases of the multisine, rad.
+    phases: Vec<f64>,
+    /// Last point of the inner grid that was reached, and the phase there.
     node: u64,
-    at_node: State,
-    /// The time asked for last, and the state there.
+    at_node: Phase,
+    /// The time asked for last, and the phase there.
     t: f64,
-    state: State,
+    phase: Phase,
 }
+
+/// The scenario's terms and the hidden ones, with the coefficients of each stage.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Law {
+    terms: Vec<Term>,
+    coefficients: Vec<Vec<f64>>,
+    /// Whether the state and the excitation alone determine the force.
+    pointwise: bool,
+}
+
+impl Law {
+    fn of(scenario: &Scenario) -> Law {
+        let Scenario { terms, hidden, stages, .. } = scenario;
+        let terms: Vec<Term> = terms.iter().copied().chain(hidden.terms()).collect();
+        let all = stages.iter().map(|stage| stage.coefficients.iter().copied().chain(hidden.coefficients()).collect());
+        Law { pointwise: terms.iter().all(|term| term.is_pointwise()), coefficients: all.collect(), terms }
+    }
+
+    fn motion(&self, stage: usize) -> Motion<'_> {
+        Motion { terms: &self.terms, coefficients: &self.coefficients[stage] }
+    }
+}
+
+/// Where the motion goes that a law has no numbers for.
+const NOWHERE: Phase = Phase { state: State { q: f64::NAN, qd: f64::NAN }, memory: [f64::NAN; MAX_MEMORY] };
 
 impl Plant {
     /// A plant at t = 0.
@@ -82,8 +111,10 @@ impl Plant {
     /// What [`Scenario::check`] refuses.
     pub fn new(scenario: Scenario) -> Result<Plant, ScenarioError> {
         scenario.check()?;
-        let initial = scenario.initial;
-        Ok(Plant { scenario, node: 0, at_node: initial, t: 0.0, state: initial })
+        let law = Law::of(&scenario);
+        let initial = Dynamics::new(law.motion(0), scenario.hidden.expressions())?.rest(scenario.initial);
+        let phases = scenario.excitation.phases(scenario.seed);
+        Ok(Plant { scenario, law, phases, node: 0, at_node: initial, t: 0.0, phase: initial })
     }
 
     /// Moves to time t, s.
@@ -102,11 +133,11 @@ impl Plant {
         for passed in self.node..node {
             at_node = self.integrate(at_node, passed, self.node_time(passed + 1));
         }
-        let state = if rest { self.integrate(at_node, node, t) } else { at_node };
-        if !(at_node.is_finite() && state.is_finite()) {
+        let phase = if rest { self.integrate(at_node, node, t) } else { at_node };
+        if !(at_node.is_finite() && phase.is_finite()) {
             return Err(PlantError::Diverged { t });
         }
-        (self.node, self.at_node, self.t, self.state) = (node, at_node, t, state);
+        (self.node, self.at_node, self.t, self.phase) = (node, at_node, t, phase);
         Ok(())
     }
 
@@ -119,8 +150,8 @@ impl Plant {
         };
         Reading {
             t: self.t,
-            q: self.state.q + noise(self.scenario.noise.q, Stream::Displacement),
-            qd: self.state.qd + noise(self.scenario.noise.qd, Stream::Velocity),
+            q: self.phase.state.q + noise(self.scenario.noise.q, Stream::Displacement),
+            qd: self.phase.state.qd + noise(self.scenario.noise.qd, Stream::Velocity),
             excitation: self.held(index),
         }
     }
@@ -128,7 +159,7 @@ impl Plant {
     /// What is the case now.
     pub fn truth(&self) -> Truth<'_> {
         let stage = self.scenario.stage_at(self.t + self.resolution(self.t));
-        Truth { stage, coefficients: &self.scenario.stages[stage].coefficients, state: self.state }
+        Truth { stage, coefficients: &self.scenario.stages[stage].coefficients, state: self.phase.state }
     }
 
     /// The scenario it was built from.
@@ -177,26 +208,59 @@ impl Plant {
                 let std = (excitation.intensity / excitation.sample_time).sqrt();
                 std * standard_normal(self.scenario.seed, Stream::Excitation, interval)
             }
+            ExcitationKind::Multisine => excitation.multisine(&self.phases, t),
+            ExcitationKind::Sweep => excitation.sweep(t),
         }
     }
 
     /// From inner point `node` to time `end`, at most one inner step later, cut where the law switches.
-    fn integrate(&self, mut state: State, node: u64, end: f64) -> State {
+    fn integrate(&self, mut phase: Phase, node: u64, end: f64) -> Phase {
         let excitation = self.held(node / self.scenario.substeps());
         let mut t = self.node_time(node);
         let mut stage = self.scenario.stage_at(t + self.resolution(t));
         while let Some(next) =
             self.scenario.stages.get(stage + 1).filter(|next| next.start < end - self.resolution(end))
         {
-            state = self.motion(stage).step_held(state, next.start - t, excitation);
+            phase = self.step(stage, &phase, t, next.start, excitation);
             t = next.start;
             stage += 1;
         }
-        self.motion(stage).step_held(state, end - t, excitation)
+        self.step(stage, &phase, t, end, excitation)
     }
 
-    fn motion(&self, stage: usize) -> Motion<'_> {
-        Motion { terms: &self.scenario.terms, coefficients: &self.scenario.stages[stage].coefficients }
+    /// From one time to another, within which neither law nor excitation changes.
+    fn step(&self, stage: usize, phase: &Phase, from: f64, to: f64, excitation: f64) -> Phase {
+        let motion = self.law.motion(stage);
+        if self.law.pointwise {
+            return Phase { state: motion.step_held(phase.state, to - from, excitation), ..*phase };
+        }
+        let held = HeldFrom { plant: self, from, excitation };
+        let dynamics = Dynamics::new(motion, self.scenario.hidden.expressions());
+        dynamics.map_or(NOWHERE, |dynamics| dynamics.step(phase, from, to - from, &held))
+    }
+}
+
+/// A plant's excitation: one value from a time on, before that what was held then, and before 0 what was held at 0.
+struct HeldFrom<'a> {
+    plant: &'a Plant,
+    from: f64,
+    excitation: f64,
+}
+
+impl History for HeldFrom<'_> {
+    fn over(&self, from: f64, to: f64) -> [f64; 3] {
+        if from >= self.from {
+            return [self.excitation; 3];
+        }
+        let sample_time = self.plant.scenario.excitation.sample_time;
+        let (mut start, mut sum) = (from, 0.0);
+        let mut interval = self.plant.interval(from);
+        while start < to {
+            let next = ((interval + 1) as f64 * sample_time).min(to).max(start);
+            sum += self.plant.held(interval) * (next - start);
+            (start, interval) = (next, interval + 1);
+        }
+        [sum / (to - from); 3]
     }
 }
 

@@ -1,6 +1,8 @@
 //! What a plant is: its terms, its stages, its excitation, its sensors.
 
 use super::check::ScenarioError;
+use super::excitation::Excitation;
+use super::hidden::Hidden;
 use crate::law::{State, Term, TermError};
 use serde::{Deserialize, Serialize};
 
@@ -18,37 +20,6 @@ pub struct Stage {
     /// ω of the sine excitation, rad/s.
     #[serde(default)]
     pub omega: f64,
-}
-
-/// Which excitation acts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum ExcitationKind {
-    /// None: free motion.
-    None,
-    /// P sin ωt with the amplitude and the angular frequency of the stage; the phase is that of the global time.
-    #[default]
-    Sine,
-    /// Gaussian white noise of a given intensity.
-    WhiteNoise,
-}
-
-/// The excitation and the grid on which it is evaluated and held.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct Excitation {
-    /// Which one.
-    pub kind: ExcitationKind,
-    /// Intensity 2D of the white noise, N² s: its variance on the grid is 2D ÷ `sample_time`.
-    pub intensity: f64,
-    /// Time between two points of the grid, s.
-    pub sample_time: f64,
-}
-
-impl Default for Excitation {
-    fn default() -> Excitation {
-        Excitation { kind: ExcitationKind::Sine, intensity: 3.0, sample_time: 1e-3 }
-    }
 }
 
 /// Std of the Gaussian noise that the sensors add.
@@ -88,6 +59,9 @@ pub struct Scenario {
     /// The state at t = 0.
     #[serde(default)]
     pub initial: State,
+    /// Effects that the law has in every stage besides its terms.
+    #[serde(default)]
+    pub hidden: Hidden,
     /// The stages, in the order of time; the first begins at 0.
     #[serde(rename = "stage")]
     pub stages: Vec<Stage>,
@@ -113,6 +87,7 @@ impl Scenario {
             excitation: Excitation::default(),
             noise: SensorNoise::default(),
             initial: State::default(),
+            hidden: Hidden::default(),
             stages,
         }
     }

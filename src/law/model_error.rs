@@ -1,0 +1,137 @@
+//! Why a model is refused.
+
+use super::{FormulaError, InnerError, TermError};
+use thiserror::Error;
+
+/// Why a model is refused.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum ModelError {
+    /// The text is no TOML, or a key has the wrong type.
+    #[error("{message}")]
+    Syntax {
+        /// What the TOML reader says, with line and column.
+        message: String,
+    },
+    /// A key of `[terms]` is no term.
+    #[error("[terms]: {source}")]
+    Term {
+        /// Which text, and why.
+        source: TermError,
+    },
+    /// Two keys name the same term.
+    #[error("[terms]: \"{first}\" and \"{second}\" are the same term: keep one")]
+    Twice {
+        /// The first key.
+        first: String,
+        /// The second key.
+        second: String,
+    },
+    /// The value of a term is none of the three things it may be.
+    #[error("[terms]: \"{key}\" = {value}: write \"fit\", \"maybe\" or a finite number")]
+    Given {
+        /// The key.
+        key: String,
+        /// Its value as written.
+        value: String,
+    },
+    /// No terms at all.
+    #[error("[terms] is empty: name at least one term, for example inertia = \"fit\"")]
+    NoTerms,
+    /// Without inertia there is no equation of motion to integrate.
+    #[error("[terms] has no inertia: add inertia = \"fit\" (or its known value)")]
+    NoInertia,
+    /// More terms than the estimator is built for.
+    #[error("[terms] has {count} terms; at most {max} are supported")]
+    TooMany {
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        max: usize,
+    },
+    /// More effects of the user's own than are supported.
+    #[error("[effects] has {count} effects; at most {max} are supported")]
+    TooManyEffects {
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        max: usize,
+    },
+    /// More than one coordinate.
+    #[error("coordinates = {names:?}: this version identifies one coordinate, named q")]
+    Coordinates {
+        /// The names given.
+        names: Vec<String>,
+    },
+    /// A term of U₀ that is no total time derivative.
+    #[error(
+        "[potential]: \"{key}\": only total time derivatives (qd, q*qd, q^2*qd …) may stand here; write other terms in [terms]"
+    )]
+    Potential {
+        /// The key.
+        key: String,
+    },
+    /// An inner parameter is refused.
+    #[error("[{table}] {source}")]
+    Inner {
+        /// The table it stands in.
+        table: &'static str,
+        /// Which one, and why.
+        source: Box<InnerError>,
+    },
+    /// The value of an inner parameter is neither a number nor to be fitted.
+    #[error("[terms]: \"{key}\": {inner} = {value}: write a finite number to hold it, or \"fit\"")]
+    InnerValue {
+        /// The key of the term.
+        key: String,
+        /// The inner parameter.
+        inner: String,
+        /// Its value as written.
+        value: String,
+    },
+    /// A user's effect has no formula.
+    #[error(
+        "[effects.{name}]: write expression = \"a formula in q, qd, F, t\", and start values of its inner parameters if need be"
+    )]
+    NoExpression {
+        /// The effect's name.
+        name: String,
+    },
+    /// A formula is refused.
+    #[error("[effects.{name}] expression = \"{text}\": {source}")]
+    Expression {
+        /// The effect's name.
+        name: String,
+        /// The formula.
+        text: String,
+        /// Where, and why.
+        source: Box<FormulaError>,
+    },
+    /// A user's effect has the name of another term, or none that can be one.
+    #[error(
+        "[effects.{name}]: choose another name: letters, digits and underscores, a letter first, that is no term or effect already"
+    )]
+    ExpressionName {
+        /// The name.
+        name: String,
+    },
+    /// An inner parameter that the streaming identifier would have to fit.
+    #[error(
+        "[terms]: \"{key}\": {inner} is not given: sample by sample only coefficients are estimated; write {key} = {{ coefficient = \"fit\", \
+         {inner} = a number }} (diagnose, add and improve find that number)"
+    )]
+    Open {
+        /// The key of the term.
+        key: String,
+        /// The inner parameter.
+        inner: String,
+    },
+    /// A term that the streaming identifier cannot have.
+    #[error(
+        "[terms]: \"{key}\" cannot be identified sample by sample: it is a user's expression, needs the past, or is the fourth effect \
+         with a gap or the fifth with a Stribeck speed; leave it out here (compare, diagnose, add, improve and simulate take it)"
+    )]
+    Memory {
+        /// The key of the term.
+        key: String,
+    },
+}
