@@ -105,6 +105,9 @@ fn the_scenario_in_the_help_can_be_simulated() {
     let report = bench.json(&["simulate", "plant.toml", "-o", "record.csv", "--json"]);
     assert_eq!(report["samples"], 30_001);
     assert_eq!(report["truth"], "record.truth.json");
+    let truth = std::fs::read_to_string(bench.0.join("record.truth.json")).unwrap();
+    let truth: Value = serde_json::from_str(&truth).unwrap();
+    assert_eq!(truth["hidden"]["dead_zone_stiffness"]["gap"], 0.1);
 }
 
 #[test]
