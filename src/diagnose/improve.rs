@@ -105,6 +105,6 @@ pub fn improved_model(model: &Model, fit: &Fit) -> Model {
         own.unwrap_or_else(|| effect_name(term))
     };
     let pairs = fit.form.terms.iter().zip(&fit.coefficients);
-    let terms = pairs.map(|(term, value)| ModelTerm { term: *term, given: Given::Known(*value), key: key(*term) });
+    let terms = pairs.map(|(term, value)| ModelTerm { key: key(*term), ..ModelTerm::new(*term, Given::Known(*value)) });
     Model { terms: terms.collect(), ..model.clone() }
 }
