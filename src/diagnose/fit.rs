@@ -341,9 +341,13 @@ pub(super) struct Solved {
     pub(super) covariance: DMatrix<f64>,
 }
 
-/// Solves information · step = score, columns scaled to unit diagonal, by pseudo-inverse.
+/// Solves information · step = score, columns scaled to unit diagonal, by pseudo-inverse. None where a run left no numbers: the singular
+/// value decomposition of those would not end.
 pub(super) fn solve(information: &DMatrix<f64>, score: &DVector<f64>) -> Option<Solved> {
     let n = score.len();
+    if !information.iter().chain(score.iter()).all(|value| value.is_finite()) {
+        return None;
+    }
     if n == 0 {
         return Some(Solved { step: DVector::zeros(0), covariance: DMatrix::zeros(0, 0) });
     }

@@ -3,7 +3,8 @@
 use super::problem::{Problem, Setting};
 use super::secret::{Secret, id};
 use rustix::time::{ClockId, clock_gettime};
-use switchid::diagnose::{Diagnosis, Evidence, Finding, Fit, Form, best_of_form, diagnose, error, fit, improve};
+use switchid::diagnose::{Diagnosis, Evidence, Finding, Fit, Form, best_of_form, diagnose, error, improve, refit};
+use switchid::evidence::Noise;
 use switchid::law::{Given, Model, Term};
 
 /// Log-likelihood, nats, that the hidden effect must be worth on the record for it to be seen at all.
@@ -115,18 +116,25 @@ fn best_gain(found: &Diagnosis) -> f64 {
     found.candidates.iter().map(|candidate| candidate.gain).fold(0.0, f64::max)
 }
 
-/// The true form, fitted.
+/// The true form, fitted from the truth.
 fn oracle(base: &Fit, evidence: &Evidence, problem: &Problem) -> Option<Fit> {
-    if let Some(relieved) = &problem.relieved {
-        return fit(&base.form, &Evidence::new(&[(relieved, problem.hold)]).pieces);
+    match &problem.relieved {
+        Some(relieved) => {
+            let relieved = Evidence::new(&[(relieved, problem.hold)]);
+            refit(&base.form, &relieved.pieces, &problem.coefficients, base.noise)
+        }
+        None => complete(problem, &|_| true, base.noise, evidence),
     }
-    complete(&problem.model, &problem.lacking, evidence)
 }
 
-fn complete(model: &[Term], lacking: &[Term], evidence: &Evidence) -> Option<Fit> {
-    let terms: Vec<Term> = model.iter().chain(lacking).copied().collect();
+/// The model with those of the lacking terms, by position, fitted from the truth.
+fn complete(problem: &Problem, wanted: &dyn Fn(usize) -> bool, noise: Noise, evidence: &Evidence) -> Option<Fit> {
+    let own = problem.model.len();
+    let all = problem.model.iter().chain(&problem.lacking).zip(&problem.coefficients).enumerate();
+    let chosen = all.filter(|(index, _)| *index < own || wanted(index - own));
+    let (terms, coefficients): (Vec<Term>, Vec<f64>) = chosen.map(|(_, (term, value))| (*term, *value)).unzip();
     let form = Form { held: vec![None; terms.len()], terms, expressions: Vec::new() };
-    fit(&form, &evidence.pieces)
+    refit(&form, &evidence.pieces, &coefficients, noise)
 }
 
 /// Several hidden effects are found when the staircase ends with just these.
@@ -146,10 +154,10 @@ fn judge_several(model: &Model, evidence: &Evidence, problem: &Problem, start: f
         Finding::Adequate if added.iter().all(|id| truth.contains(id)) => Answer::Adequate,
         _ => Answer::Wrong,
     };
-    let oracle = complete(&problem.model, &problem.lacking, evidence);
+    let noise = found.steps[0].fit.noise;
+    let oracle = complete(problem, &|_| true, noise, evidence);
     let without = |index: usize| {
-        let others = problem.lacking.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, term)| *term);
-        complete(&problem.model, &others.collect::<Vec<_>>(), evidence).map_or(f64::INFINITY, |fit| fit.log_likelihood)
+        complete(problem, &|other| other != index, noise, evidence).map_or(f64::INFINITY, |fit| fit.log_likelihood)
     };
     let gains = oracle.as_ref().map_or(Vec::new(), |oracle| {
         (0..problem.lacking.len()).map(|index| oracle.log_likelihood - without(index)).collect()
