@@ -167,7 +167,8 @@ fn judge_several(model: &Model, evidence: &Evidence, problem: &Problem, start: f
         oracle.filter(|_| answer == Answer::Right).map(|oracle| error(law, evidence) / error(&oracle, evidence));
     let steps: Vec<String> =
         found.steps.iter().skip(1).map(|step| format!("{:?} -{:?}", step.effect, step.removed)).collect();
-    let words = format!("steps {}, then {:?}; each worth {gains:.1?} nats", steps.join(", "), found.last.finding);
+    let last = words(&found.last, gains.iter().copied().fold(f64::INFINITY, f64::min));
+    let words = format!("steps {}, then {last}; each worth {gains:.1?} nats", steps.join(", "));
     Outcome { answer, visible, tie: false, ratio, seconds, words }
 }
 
