@@ -187,14 +187,16 @@ fn words(found: &Diagnosis, gain: f64) -> String {
             if candidate.plausible { "" } else { " implausible" },
         )
     };
+    let coefficients: Vec<String> = found.base.coefficients.iter().map(|value| format!("{value:.3e}")).collect();
     let candidates: Vec<String> = found.candidates.iter().take(3).map(candidate).collect();
     format!(
-        "{:?} {} beside {:?} ties {:?} explained {:.3} lack {:.1} excess {:.4} truth worth {gain:.1} nats | {}",
+        "{:?} {} beside {:?} ties {:?} explained {:.3} base {} lack {:.1} excess {:.4} truth worth {gain:.1} nats | {}",
         found.finding,
         found.effect.as_deref().unwrap_or("-"),
         found.beside,
         found.indistinguishable,
         found.explained,
+        coefficients.join(", "),
         found.base.lack(),
         switchid::diagnose::excess(&found.base),
         candidates.join("; "),
