@@ -23,7 +23,7 @@ const ENOUGH: f64 = 0.75;
 const CANCELLING: f64 = 4.0;
 
 /// Share that a first effect must explain for a second to be sought.
-const PROMISING: f64 = 0.15;
+const PROMISING: f64 = 0.05;
 
 /// Part by which error energy may exceed the sensors' noise in a law that is adequate.
 const TOLERATED: f64 = 0.02;

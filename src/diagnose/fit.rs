@@ -32,6 +32,9 @@ const HOPELESS: f64 = 5.0;
 /// Passes in which the sensors alone take all error.
 const QUIET_PASSES: usize = 8;
 
+/// Factor by which a step may change the inertia.
+const LARGEST_RATIO: f64 = 2.5;
+
 /// A form of law: which terms it has, and what is known of each coefficient.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Form {
@@ -302,13 +305,16 @@ impl Descent<'_> {
         }
     }
 
-    /// Takes the Gauss–Newton step; the inertia loses at most six tenths of itself.
+    /// Takes the Gauss–Newton step; the inertia becomes at most [`LARGEST_RATIO`] times larger or smaller: as it grows without bounds, the law
+    /// forgets its excitation.
     fn take(&mut self, step: &DVector<f64>) {
         let inertia =
             self.form.inertia().and_then(|inertia| self.parts.unknowns.iter().position(|index| *index == inertia));
         let fraction = inertia.map_or(1.0, |row| {
             let (old, change) = (self.coefficients[self.parts.unknowns[row]], step[row]);
-            if change * old < 0.0 && change.abs() > 0.6 * old.abs() { 0.6 * old.abs() / change.abs() } else { 1.0 }
+            let relative = change / old;
+            let bounded = relative.clamp(LARGEST_RATIO.recip() - 1.0, LARGEST_RATIO - 1.0);
+            if relative == bounded { 1.0 } else { bounded / relative }
         });
         for (index, change) in self.parts.unknowns.iter().zip(step.iter()) {
             self.coefficients[*index] += fraction * change;
@@ -357,9 +363,13 @@ pub(super) struct Solved {
     pub(super) covariance: DMatrix<f64>,
 }
 
-/// Solves information · step = score, columns scaled to unit diagonal, by pseudo-inverse.
+/// Solves information · step = score, columns scaled to unit diagonal, by pseudo-inverse. None where a run left no numbers: the singular
+/// value decomposition of those would not end.
 pub(super) fn solve(information: &DMatrix<f64>, score: &DVector<f64>) -> Option<Solved> {
     let n = score.len();
+    if !information.iter().chain(score.iter()).all(|value| value.is_finite()) {
+        return None;
+    }
     if n == 0 {
         return Some(Solved { step: DVector::zeros(0), covariance: DMatrix::zeros(0, 0) });
     }

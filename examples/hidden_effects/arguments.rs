@@ -1,0 +1,114 @@
+//! The command line of the benchmark, and the settings that it asks for.
+
+use super::benchmark::{Outside, Secret, Setting, pair};
+use clap::Parser;
+use switchid::law::Catalogue;
+
+/// Hidden effects: which are found, and what is said of those that are not.
+#[derive(Clone, Debug, Parser)]
+pub struct Arguments {
+    /// Seed of all draws
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Draws of every effect at every strength and noise
+    #[arg(long, default_value_t = 4)]
+    pub draws: u64,
+    /// Only the draw of this number
+    #[arg(long)]
+    pub only: Option<u64>,
+    /// Std of the noise ÷ std of each channel
+    #[arg(long, value_delimiter = ',', default_values_t = [0.001, 0.005, 0.01, 0.02, 0.05, 0.1])]
+    pub noise: Vec<f64>,
+    /// RMS of the hidden force ÷ RMS of the excitation
+    #[arg(long, value_delimiter = ',', default_values_t = [0.05, 0.1, 0.2])]
+    pub strength: Vec<f64>,
+    /// Only problems with this in their name: an effect id, "a+b", "nothing", "outside", "pairs", "single"
+    #[arg(long, default_value = "")]
+    pub effect: String,
+    /// Samples of a record
+    #[arg(long, default_value_t = 5000)]
+    pub samples: usize,
+    /// One draw, one strength, three noises, short records
+    #[arg(long)]
+    pub quick: bool,
+    /// Problems at a time
+    #[arg(long, default_value_t = 2)]
+    pub threads: usize,
+    /// Print every visible problem that was not answered right
+    #[arg(long)]
+    pub misses: bool,
+    /// Print every problem
+    #[arg(long)]
+    pub all: bool,
+}
+
+/// Effects that a complete model may have besides its linear or cubic law.
+const COMPLETE: [&str; 8] = [
+    "coulomb_friction",
+    "quadratic_damping",
+    "stribeck_friction",
+    "dead_zone_stiffness",
+    "one_sided_stop",
+    "hysteresis",
+    "hidden_resonator",
+    "excitation_delay",
+];
+
+/// What a problem is of, for choosing among them.
+const GROUPS: [&str; 4] = ["single", "pairs", "nothing", "outside"];
+
+impl Arguments {
+    /// Every setting that is asked for.
+    pub fn settings(&self) -> Vec<Setting> {
+        let mut settings = Vec::new();
+        for &strength in &self.strengths() {
+            for &noise in &self.noises() {
+                for draw in self.numbers() {
+                    let secrets = self.secrets(draw).into_iter();
+                    settings.extend(secrets.map(|secret| Setting {
+                        secret,
+                        strength,
+                        noise,
+                        samples: if self.quick { 2500 } else { self.samples },
+                        seed: self.seed,
+                        draw,
+                    }));
+                }
+            }
+        }
+        settings
+    }
+
+    fn strengths(&self) -> Vec<f64> {
+        if self.quick { vec![0.1] } else { self.strength.clone() }
+    }
+
+    fn noises(&self) -> Vec<f64> {
+        if self.quick { vec![0.001, 0.01, 0.05] } else { self.noise.clone() }
+    }
+
+    fn numbers(&self) -> Vec<u64> {
+        let draws = if self.quick { 1 } else { self.draws };
+        self.only.map_or_else(|| (0..draws).collect(), |only| vec![only])
+    }
+
+    /// Every problem that is asked for, as many pairs as single effects.
+    fn secrets(&self, draw: u64) -> Vec<Secret> {
+        let ids = || Catalogue::ENTRIES.iter().map(|entry| entry.id);
+        let single: Vec<Secret> = ids().map(|id| Secret::Missing(vec![id.into()])).collect();
+        let pairs = (0..ids().count() as u64).map(|number| pair(self.seed, draw, number)).collect();
+        let complete = COMPLETE.iter().map(|id| Secret::Complete(Some((*id).into())));
+        let complete = [Secret::Complete(None)].into_iter().chain(complete).collect();
+        let outside = Outside::ALL.map(Secret::Outside).to_vec();
+        let groups: [Vec<Secret>; 4] = [single, pairs, complete, outside];
+        if let Some((one, other)) = self.effect.split_once('+') {
+            return vec![Secret::Missing(vec![one.trim().into(), other.trim().into()])];
+        }
+        let all = GROUPS.into_iter().zip(groups);
+        let chosen = |group: &str, secret: &Secret| {
+            self.effect == group || (group != "pairs" && secret.name().contains(&self.effect)) || self.effect.is_empty()
+        };
+        let wanted = all.flat_map(|(group, secrets)| secrets.into_iter().filter(move |secret| chosen(group, secret)));
+        wanted.collect()
+    }
+}

@@ -1,0 +1,132 @@
+//! The plant in motion: directly, or as a scenario.
+
+use super::drive::Drive;
+use super::generator::Generator;
+use super::outside::Agent;
+use switchid::law::{Dynamics, Hold, Motion, Samples, State, Term, Trajectory, term_series};
+use switchid::simulate::{Hidden, Scenario, Stage, record};
+
+/// A motion without noise.
+#[derive(Clone, Debug, Default)]
+pub struct Track {
+    pub t: Vec<f64>,
+    pub q: Vec<f64>,
+    pub qd: Vec<f64>,
+    pub excitation: Vec<f64>,
+    /// Force of an effect that the catalogue does not have.
+    pub outside: Vec<f64>,
+}
+
+/// The whole law of a plant: what the model knows, then what it does not.
+#[derive(Clone, Debug)]
+pub struct Law {
+    pub terms: Vec<Term>,
+    pub coefficients: Vec<f64>,
+    /// How many of them the model may know.
+    pub known: usize,
+}
+
+/// What drives a plant, and how it is sampled.
+#[derive(Clone, Debug)]
+pub struct Rig {
+    pub drive: Drive,
+    /// Whether the plant is a scenario; its excitation is then held between samples, else it runs straight.
+    pub scenario: bool,
+    pub omega: f64,
+    pub sample_time: f64,
+    pub count: usize,
+    /// RMS of the excitation, N.
+    pub amplitude: f64,
+    pub seed: u64,
+}
+
+impl Rig {
+    /// What the excitation does between samples.
+    pub fn hold(&self) -> Hold {
+        if self.scenario { Hold::Zero } else { Hold::Linear }
+    }
+
+    /// The motion from rest, a sample cut into `parts` steps; none where it has no bounds.
+    pub fn run(&self, law: &Law, parts: usize, agent: Option<(Agent, f64)>) -> Option<Track> {
+        let track = match self.scenario {
+            true => self.run_scenario(law, parts)?,
+            false => self.run_direct(law, parts, agent)?,
+        };
+        track.q.iter().all(|q| q.is_finite()).then_some(track)
+    }
+
+    fn run_scenario(&self, law: &Law, parts: usize) -> Option<Track> {
+        let mut excitation = self.drive.of_scenario(self.omega, self.sample_time, self.count);
+        excitation.rms = self.amplitude;
+        excitation.intensity *= self.amplitude * self.amplitude;
+        let (terms, coefficients) = (law.terms[..law.known].to_vec(), law.coefficients[..law.known].to_vec());
+        let stage = Stage { start: 0.0, coefficients, amplitude: 0.0, omega: 0.0 };
+        let duration = self.sample_time * (self.count as f64 - 0.5);
+        let mut scenario = Scenario::new("hidden effect", terms, vec![stage], duration).with_seed(self.seed);
+        scenario.excitation = excitation;
+        scenario.inner_step = self.sample_time / parts as f64;
+        let mut hidden = Hidden::default();
+        let pairs = law.terms.iter().zip(&law.coefficients).skip(law.known);
+        pairs.for_each(|(term, coefficient)| hidden.push(*term, *coefficient));
+        scenario.hidden = hidden;
+        let mut track = Track::default();
+        for reading in record(&scenario).ok()? {
+            track.push(reading.t, State { q: reading.q, qd: reading.qd }, reading.excitation, 0.0);
+        }
+        Some(track)
+    }
+
+    fn run_direct(&self, law: &Law, parts: usize, mut agent: Option<(Agent, f64)>) -> Option<Track> {
+        let mut generator = Generator::new(self.seed);
+        let values = self.drive.values(&mut generator, self.omega, self.sample_time, self.count);
+        let excitation: Vec<f64> = values.iter().map(|value| value * self.amplitude).collect();
+        let t: Vec<f64> = (0..self.count).map(|index| index as f64 * self.sample_time).collect();
+        let samples = Samples { t: &t, excitation: &excitation, hold: Hold::Linear };
+        let dynamics = Dynamics::new(Motion { terms: &law.terms, coefficients: &law.coefficients }, &[]).ok()?;
+        let mut phase = dynamics.rest(State::default());
+        let width = self.sample_time / parts as f64;
+        let mut track = Track::default();
+        for (k, now) in t.iter().enumerate() {
+            for part in 0..parts {
+                let from = now + width * part as f64;
+                let (force, strength) = match &mut agent {
+                    Some((agent, strength)) => (agent.force(from, width, phase.state, samples.at(from)), *strength),
+                    None => (0.0, 0.0),
+                };
+                if part == 0 {
+                    track.push(*now, phase.state, excitation[k], force);
+                }
+                phase = dynamics.step(&phase, from, width, &|t: f64| samples.at(t) - strength * force);
+            }
+        }
+        Some(track)
+    }
+}
+
+impl Track {
+    fn push(&mut self, t: f64, state: State, excitation: f64, outside: f64) {
+        self.t.push(t);
+        self.q.push(state.q);
+        self.qd.push(state.qd);
+        self.excitation.push(excitation);
+        self.outside.push(outside);
+    }
+
+    /// The samples from an index on.
+    pub fn from(mut self, first: usize) -> Track {
+        for signal in [&mut self.t, &mut self.q, &mut self.qd, &mut self.excitation, &mut self.outside] {
+            signal.drain(..first);
+        }
+        self
+    }
+
+    /// The force of a term along the motion, per unit of its coefficient, with the part that multiplies q̈.
+    pub fn force(&self, term: Term, hold: Hold) -> Vec<f64> {
+        let Track { t, q, qd, excitation, .. } = self;
+        let mut series = term_series(term, &[], &Trajectory { t, q, qd, excitation, hold });
+        for k in 1..t.len() - 1 {
+            series[k] += term.mass(q[k]) * (qd[k + 1] - qd[k - 1]) / (t[k + 1] - t[k - 1]);
+        }
+        series
+    }
+}

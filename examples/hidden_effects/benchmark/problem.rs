@@ -1,0 +1,218 @@
+//! One problem: a noisy record, the model's terms, and the truth that only the judge sees.
+
+use super::base::{self, Base};
+use super::drive::{Drive, rms, std};
+use super::generator::Generator;
+use super::outside::Agent;
+use super::plant::{Law, Rig, Track};
+use super::secret::{self, Secret, with_delay};
+use std::hash::{DefaultHasher, Hash, Hasher};
+use switchid::identify::Recording;
+use switchid::law::{Catalogue, Hold, State, Term};
+
+/// What is drawn, but for chance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// What is hidden.
+    pub secret: Secret,
+    /// RMS of its force ÷ RMS of F.
+    pub strength: f64,
+    /// Std of the sensors' noise ÷ std of each channel.
+    pub noise: f64,
+    /// Samples of the record.
+    pub samples: usize,
+    /// Seed of the whole benchmark.
+    pub seed: u64,
+    /// Which draw.
+    pub draw: u64,
+}
+
+/// A problem and its truth.
+#[derive(Debug)]
+pub struct Problem {
+    /// What the sensors show.
+    pub recording: Recording,
+    /// What the excitation did between samples.
+    pub hold: Hold,
+    /// The model's terms.
+    pub model: Vec<Term>,
+    /// The terms that it lacks, inner parameters as they are.
+    pub lacking: Vec<Term>,
+    /// Coefficients of the model's terms, then of the lacking ones.
+    pub coefficients: Vec<f64>,
+    /// The record less the force that no term gives, where there is one.
+    pub relieved: Option<Recording>,
+    /// Excitation, channels and scales in words.
+    pub words: String,
+}
+
+/// Attempts at a bounded motion.
+const ATTEMPTS: u64 = 60;
+
+/// Steps per sample while strengths are sought, and in the end.
+const PARTS: [usize; 2] = [4, 16];
+
+/// Iterations of coefficient and excitation towards their strengths.
+const ITERATIONS: usize = 6;
+
+impl Setting {
+    /// A seed of its own for every setting, whatever else is run.
+    fn own_seed(&self, attempt: u64) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        (self.seed, self.draw, attempt, self.secret.name()).hash(&mut hasher);
+        (self.strength.to_bits(), self.noise.to_bits(), self.samples).hash(&mut hasher);
+        hasher.finish()
+    }
+}
+
+/// Draws a problem; none where no attempt has a bounded motion.
+pub fn draw(setting: &Setting) -> Option<Problem> {
+    (0..ATTEMPTS).find_map(|attempt| attempted(setting, &mut Generator::new(setting.own_seed(attempt))))
+}
+
+fn attempted(setting: &Setting, generator: &mut Generator) -> Option<Problem> {
+    let base = base::draw(generator, &setting.secret);
+    let lead = if generator.chance(0.5) { setting.samples / 10 } else { 0 };
+    let mut rig = Rig {
+        drive: generator.choose(&Drive::ALL),
+        scenario: generator.chance(0.4) && !matches!(setting.secret, Secret::Outside(_)),
+        omega: base.omega,
+        sample_time: std::f64::consts::TAU / base.omega / generator.uniform(35.0..80.0),
+        count: setting.samples + lead,
+        amplitude: base.stiffness * base.size,
+        seed: generator.seed(),
+    };
+    let alone = scaled(&mut rig, &base)?;
+    let (track, law) = with_secret(setting, generator, &rig, &base, &alone)?;
+    Some(measured(setting, generator, &rig, track.from(lead), &law))
+}
+
+/// Scales the excitation to the size of the motion that the base law is to have.
+fn scaled(rig: &mut Rig, base: &Base) -> Option<Track> {
+    let law = Law { terms: base.terms.clone(), coefficients: base.coefficients.clone(), known: base.terms.len() };
+    let mut track = rig.run(&law, PARTS[0], None)?;
+    for _ in 0..3 {
+        rig.amplitude *= (base.size / std(&track.q)).clamp(0.1, 10.0);
+        track = rig.run(&law, PARTS[0], None)?;
+    }
+    Some(track)
+}
+
+/// The motion with what is hidden, at its strength.
+fn with_secret(
+    setting: &Setting,
+    generator: &mut Generator,
+    rig: &Rig,
+    base: &Base,
+    alone: &Track,
+) -> Option<(Track, Law)> {
+    let scale = State { q: std(&alone.q), qd: std(&alone.qd) };
+    if let Secret::Outside(effect) = setting.secret {
+        let agent = Agent::draw(generator, effect, scale, base.omega, rig.sample_time, rig.count);
+        let law = Law { terms: base.terms.clone(), coefficients: base.coefficients.clone(), known: base.terms.len() };
+        return Some((with_agent(setting, rig, &law, alone, agent)?, law));
+    }
+    let mut known = base.clone();
+    let (mut terms, mut signs, mut first) = (Vec::new(), Vec::new(), Vec::new());
+    for id in setting.secret.ids() {
+        let prototype = Catalogue::find(id)?.term;
+        known = known.without(prototype);
+        let term = secret::with_inner(generator, prototype, scale, base.omega);
+        signs.push(secret::sign(generator, term));
+        let present = base.coefficient(term);
+        let strength = setting.strength * rms(&alone.excitation) / rms(&alone.force(term, rig.hold()));
+        first.push(if present > 0.0 { present } else { signs[signs.len() - 1] * strength });
+        terms.push(term);
+    }
+    let mut law = Law {
+        terms: known.terms.iter().chain(&terms).copied().collect(),
+        coefficients: known.coefficients.iter().chain(&first).copied().collect(),
+        known: known.terms.len(),
+    };
+    // a scenario's own terms must have the inertia
+    let mut rig = rig.clone();
+    rig.scenario &= known.terms.contains(&Term::Inertia);
+    for _ in 0..ITERATIONS {
+        let track = rig.run(&law, PARTS[0], None)?;
+        strengthen(setting, &rig, &mut law, &track);
+    }
+    let track = rig.run(&law, PARTS[1], None)?;
+    bounded(&track, alone).then_some((track, law))
+}
+
+/// Moves coefficients, of a delay the delay itself, towards the strength.
+fn strengthen(setting: &Setting, rig: &Rig, law: &mut Law, track: &Track) {
+    for index in law.known..law.terms.len() {
+        let force = law.coefficients[index].abs() * rms(&track.force(law.terms[index], rig.hold()));
+        let factor = (setting.strength * rms(&track.excitation) / force).clamp(0.2, 5.0);
+        if secret::id(law.terms[index]) == "excitation_delay" {
+            law.coefficients[index] = 1.0;
+            law.terms[index] = with_delay(law.terms[index], factor);
+        } else {
+            law.coefficients[index] *= factor;
+        }
+    }
+}
+
+fn with_agent(setting: &Setting, rig: &Rig, law: &Law, alone: &Track, agent: Agent) -> Option<Track> {
+    let mut strength = 0.0;
+    for round in 0..=ITERATIONS {
+        let parts = PARTS[usize::from(round == ITERATIONS)];
+        let track = rig.run(law, parts, Some((agent.clone(), strength)))?;
+        if round == ITERATIONS {
+            let outside = track.outside.iter().map(|force| strength * force).collect();
+            return bounded(&track, alone).then_some(Track { outside, ..track });
+        }
+        let next = setting.strength * rms(&track.excitation) / rms(&track.outside);
+        strength = if strength > 0.0 { next.clamp(0.2 * strength, 5.0 * strength) } else { 0.5 * next };
+    }
+    None
+}
+
+/// Whether the hidden effect left the motion the size that it had.
+fn bounded(track: &Track, alone: &Track) -> bool {
+    let largest = |values: &[f64]| values.iter().map(|value| value.abs()).fold(0.0, f64::max);
+    let ratio = std(&track.q) / std(&alone.q);
+    (0.1..5.0).contains(&ratio) && largest(&track.q) < 10.0 * largest(&alone.q)
+}
+
+fn measured(setting: &Setting, generator: &mut Generator, rig: &Rig, track: Track, law: &Law) -> Problem {
+    let mut noisy = |signal: &[f64]| -> Vec<f64> {
+        let deviation = setting.noise * std(signal);
+        signal.iter().map(|value| value + deviation * generator.normal()).collect()
+    };
+    let (q, qd) = (noisy(&track.q), noisy(&track.qd));
+    let velocity = generator.chance(0.5);
+    let qd = velocity.then_some(qd);
+    let record =
+        |excitation: Vec<f64>| Recording::new("draw", track.t.clone(), Some(q.clone()), qd.clone(), Some(excitation));
+    let relieved = track.excitation.iter().zip(&track.outside).map(|(force, outside)| force - outside).collect();
+    let complete = matches!(setting.secret, Secret::Complete(_));
+    let split = if complete { law.terms.len() } else { law.known };
+    Problem {
+        recording: record(track.excitation.clone()).expect("a drawn record is one"),
+        hold: rig.hold(),
+        model: law.terms[..split].to_vec(),
+        lacking: law.terms[split..].to_vec(),
+        coefficients: law.coefficients.clone(),
+        relieved: matches!(setting.secret, Secret::Outside(_)).then(|| record(relieved)).and_then(Result::ok),
+        words: words(rig, law, velocity),
+    }
+}
+
+fn words(rig: &Rig, law: &Law, velocity: bool) -> String {
+    let pairs = law.terms.iter().zip(&law.coefficients);
+    let law: Vec<String> = pairs
+        .map(|(term, coefficient)| {
+            let inner = term.effect().map_or(Vec::new(), |effect| effect.inner_values());
+            format!(
+                "{coefficient:.3e} {}{}",
+                term.name(),
+                if inner.is_empty() { String::new() } else { format!("{inner:.3?}") }
+            )
+        })
+        .collect();
+    let channels = if velocity { "q, qd" } else { "q" };
+    let path = if rig.scenario { "scenario" } else { "direct" };
+    format!("{:?} {path}, {channels}, omega {:.2}: {}", rig.drive, rig.omega, law.join(", "))
+}

@@ -1,0 +1,85 @@
+//! Effects hidden in plants, and what a diagnosis says of their records: a small part of `examples/hidden_effects`, under another seed.
+
+#[path = "../examples/hidden_effects/benchmark/mod.rs"]
+mod benchmark;
+
+use benchmark::{Answer, Outcome, Outside, Secret, Setting, draw, judge, pair};
+use rayon::prelude::*;
+use std::time::{SystemTime, UNIX_EPOCH};
+use switchid::law::Catalogue;
+
+const SEED: u64 = 20_417;
+const SAMPLES: usize = 2000;
+
+fn setting(secret: Secret, strength: f64, noise: f64, draw: u64) -> Setting {
+    Setting { secret, strength, noise, samples: SAMPLES, seed: SEED, draw }
+}
+
+/// The outcomes of problems that their records can show.
+fn visible(settings: Vec<Setting>) -> Vec<(Setting, Outcome)> {
+    let outcome = |setting: Setting| {
+        let problem = draw(&setting).unwrap_or_else(|| panic!("no bounded motion: {setting:?}"));
+        let outcome = judge(&setting, &problem);
+        let words = format!("{} | {} s of CPU | {}", problem.words, outcome.seconds, outcome.words);
+        (setting, Outcome { words, ..outcome })
+    };
+    settings.into_par_iter().map(outcome).filter(|(_, outcome)| outcome.visible).collect()
+}
+
+/// At least that share of outcomes passes, of at least `fewest`.
+fn assert_share(outcomes: &[(Setting, Outcome)], fewest: usize, share: f64, passes: impl Fn(&Outcome) -> bool) {
+    let missed = || outcomes.iter().filter(|(_, outcome)| !passes(outcome));
+    let list: Vec<String> = missed()
+        .map(|(setting, outcome)| format!("{setting:?}: {:?}, tie {}: {}", outcome.answer, outcome.tie, outcome.words))
+        .collect();
+    assert!(outcomes.len() >= fewest, "only {} records show their effect", outcomes.len());
+    let rate = 1.0 - list.len() as f64 / outcomes.len().max(1) as f64;
+    assert!(rate >= share, "{} of {} missed:\n{}", list.len(), outcomes.len(), list.join("\n"));
+}
+
+/// Effects that a model can lack: without its inertia it is no law.
+fn ids() -> Vec<String> {
+    Catalogue::ENTRIES.iter().map(|entry| entry.id.to_string()).filter(|id| id != "inertia").collect()
+}
+
+#[test]
+fn the_hidden_effect_comes_first() {
+    let each = ids().into_iter().flat_map(|id| [0, 1].map(|draw| (id.clone(), draw)));
+    let outcomes = visible(each.map(|(id, draw)| setting(Secret::Missing(vec![id]), 0.1, 0.01, draw)).collect());
+    assert_share(&outcomes, 36, 0.95, |outcome| matches!(outcome.answer, Answer::Right | Answer::Tied));
+    assert_share(&outcomes, 36, 0.85, Outcome::is_right);
+    let mut ratios: Vec<f64> = outcomes.iter().filter_map(|(_, outcome)| outcome.ratio).collect();
+    ratios.sort_by(f64::total_cmp);
+    let median = ratios[ratios.len() / 2];
+    assert!(median < 1.1, "error with the effect found ÷ error of the true form: {median}");
+}
+
+#[test]
+fn a_complete_model_is_adequate() {
+    let beside = ["coulomb_friction", "one_sided_stop", "hysteresis", "hidden_resonator", "excitation_delay"];
+    let secrets = [None].into_iter().chain(beside.map(Some)).map(|id| Secret::Complete(id.map(String::from)));
+    let settings = secrets.flat_map(|secret| [0.002, 0.03].map(|noise| setting(secret.clone(), 0.1, noise, 0)));
+    assert_share(&visible(settings.collect()), 12, 0.9, Outcome::is_right);
+}
+
+#[test]
+fn what_the_catalogue_does_not_have_is_not_forced_into_it() {
+    let settings = Outside::ALL.map(|outside| setting(Secret::Outside(outside), 0.1, 0.005, 0));
+    assert_share(&visible(settings.to_vec()), 9, 0.9, |outcome| outcome.answer != Answer::Wrong);
+}
+
+#[test]
+fn two_hidden_effects_are_found() {
+    let settings = (0..6).map(|number| setting(pair(SEED, 0, number), 0.1, 0.005, number));
+    assert_share(&visible(settings.collect()), 4, 0.6, Outcome::is_right);
+}
+
+/// Effect and numbers are drawn when the test runs, so that nothing can be made to fit them.
+#[test]
+fn an_effect_that_nobody_knows_before_is_found() {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_nanos() as u64;
+    let ids = ids();
+    let id = ids[(now / 1000) as usize % ids.len()].clone();
+    let drawn = Setting { seed: now, ..setting(Secret::Missing(vec![id]), 0.2, 0.005, 0) };
+    assert_share(&visible(vec![drawn]), 0, 1.0, |outcome| matches!(outcome.answer, Answer::Right | Answer::Tied));
+}
