@@ -199,4 +199,3 @@ fn recordings(found: &Comparison) -> String {
 fn ratio(ratio: f64) -> String {
     if ratio < 100.0 { format!("{ratio:.2}") } else { format!("{ratio:.0}") }
 }
-

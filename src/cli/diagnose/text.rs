@@ -100,7 +100,8 @@ fn sure(answer: &Answer) -> String {
         Finding::Unexplained => {
             let explained = percent(diagnosis.explained);
             let beyond = "the error is beyond the sensors' noise";
-            let by = answer.dependence.as_ref().map(|found| format!(", the dependence by chance {}", chance(found.p_value)));
+            let by =
+                answer.dependence.as_ref().map(|found| format!(", the dependence by chance {}", chance(found.p_value)));
             format!("how sure: {beyond}; the catalogue explains {explained} of it at best{}", by.unwrap_or_default())
         }
     }
@@ -112,7 +113,9 @@ fn behind(diagnosis: &Diagnosis) -> String {
     let is_tied = |candidate: &&Candidate| tied.is_some_and(|group| group.contains(&candidate.effect));
     let gain = diagnosis.candidates.first().map_or(0.0, |best| best.gain);
     match diagnosis.candidates.iter().skip(1).find(|candidate| !is_tied(candidate)) {
-        Some(next) if gain > next.gain => format!("; {}, the next best, is {:.0} nats behind", next.effect, gain - next.gain),
+        Some(next) if gain > next.gain => {
+            format!("; {}, the next best, is {:.0} nats behind", next.effect, gain - next.gain)
+        }
         _ => String::new(),
     }
 }
@@ -216,7 +219,7 @@ fn over_stages(found: &Found) -> String {
     }
 }
 
-fn lacking<'a>((index, stage): (usize, &'a StageAnswer)) -> Option<(usize, &'a str)> {
+fn lacking((index, stage): (usize, &StageAnswer)) -> Option<(usize, &str)> {
     Some((index, stage.answer.as_ref()?.diagnosis.effect.as_deref()?))
 }
 
