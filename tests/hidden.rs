@@ -67,19 +67,12 @@ fn every_effect_of_the_catalogue_can_be_hidden_and_is_felt() {
 fn a_pure_delay_shifts_the_motion() {
     let delayed = scenario("excitation_delay = { coefficient = 1.0, delay = 0.25 }", ExcitationKind::Multisine);
     let plain = scenario("", ExcitationKind::Multisine);
-    let single = |mut scenario: Scenario| {
-        scenario.stages.truncate(1);
-        scenario.excitation.from = 1.0;
-        scenario.excitation.to = 1.0;
-        scenario.excitation.count = 1;
-        end(&scenario, [60.0]).truth().state
-    };
-    let later = |mut scenario: Scenario| {
+    let state_at = |mut scenario: Scenario, t: f64| {
         scenario.stages.truncate(1);
         (scenario.excitation.from, scenario.excitation.to, scenario.excitation.count) = (1.0, 1.0, 1);
-        end(&scenario, [59.75]).truth().state
+        end(&scenario, [t]).truth().state
     };
-    let (late, early) = (single(delayed), later(plain));
+    let (late, early) = (state_at(delayed, 60.0), state_at(plain, 59.75));
     assert!((late.q - early.q).abs() < 2e-3 && (late.qd - early.qd).abs() < 2e-3, "{late:?} {early:?}");
 }
 

@@ -1,8 +1,9 @@
 //! What commands on recordings and a model have in common: opening them, and what the excitation did between samples.
 
 use super::error::CommandError;
+use super::output;
 use crate::data;
-use crate::identify::{self, Recording, Settings};
+use crate::identify::{self, Gap, Recording, Settings};
 use crate::law::{Hold, Model};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -37,13 +38,14 @@ impl Input {
     pub(super) fn open(data: &[String], arguments: &ModelArguments) -> Result<Input, CommandError> {
         let model = data::open_model(&arguments.model)?;
         let open = |data: &String| data::open_recording(data, &model).map(|opened| opened.recording);
-        let recordings = data.iter().map(open).collect::<Result<Vec<_>, _>>()?;
+        let recordings: Vec<Recording> = data.iter().map(open).collect::<Result<_, _>>()?;
         let asked = arguments.hold.as_deref().and_then(Hold::from_id);
         let hold = |recording: &Recording| {
             let settings = || identify::settings_for(recording, Settings::default());
             asked.or(model.hold).unwrap_or_else(|| identify::choose_hold(&model, recording, &settings()))
         };
         let holds = recordings.iter().map(hold).collect();
+        recordings.iter().flat_map(warnings).for_each(|text| output::complain("warning", &text));
         Ok(Input { file: arguments.model.display().to_string(), model, recordings, holds })
     }
 
@@ -61,4 +63,16 @@ impl Input {
     pub(super) fn undetermined(&self) -> CommandError {
         CommandError::Undetermined { data: self.named(), model: self.file.clone() }
     }
+}
+
+/// What was taken otherwise than the file says.
+fn warnings(recording: &Recording) -> Vec<String> {
+    let source = recording.source();
+    let gap =
+        |gap: Gap| format!("{source}: no samples from {} s to {} s: nothing is carried over it", gap.start, gap.end);
+    let mut warnings: Vec<String> = recording.gaps().into_iter().map(gap).collect();
+    if !recording.channels().excitation {
+        warnings.push(format!("{source}: there is no excitation: taken as free motion"));
+    }
+    warnings
 }

@@ -5,6 +5,7 @@
 
 mod add;
 mod compare;
+mod compare_report;
 mod diagnose;
 mod error;
 mod identify;

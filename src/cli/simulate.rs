@@ -17,15 +17,17 @@ record.csv has the columns t,q,qd,F; record.truth.json the stages that were simu
 Built-in: duffing-sine, duffing-white, van-der-pol-sine, van-der-pol-white (five stages each),
 duffing-noise, van-der-pol-noise (one stage, the publication's noise cases).
 
+Excitations besides that of the example (angular frequencies in rad/s, sweep time in s):
+  { kind = "multisine", from = 1.0, to = 20.0, count = 20, rms = 2.0 }
+  { kind = "sweep", from = 1.0, to = 20.0, period = 30.0, rms = 2.0 }
+
 A scenario file:
   terms = ["qdd", "qd", "q", "q^3"]
   duration = 30.0                     # s
   seed = 1                            # of white excitation and sensor noise
   noise = { q = 0.01, qd = 0.01 }     # std
   initial = { q = 0.5, qd = 0.0 }
-  excitation = { kind = "sine" }      # or "none", or { kind = "white_noise", intensity = 3.0 }, or
-                                      # { kind = "multisine", from = 1, to = 20, count = 20, rms = 2 } (rad/s), or
-                                      # { kind = "sweep", from = 1, to = 20, period = 30, rms = 2 }
+  excitation = { kind = "sine" }      # or "none", or { kind = "white_noise", intensity = 3.0 }
 
   [hidden]                            # effects besides the law's terms, in every stage
   coulomb_friction = 0.3

@@ -18,6 +18,10 @@ const SCALES: [f64; 8] = [1.5, 2.0, 0.5, 3.0, 0.33, 5.0, 0.2, 10.0];
 /// Log-likelihood, nats, that tells two candidates apart.
 const APART: f64 = 10.0;
 
+/// Where that much has not told them apart, what else the law leaves over hides it: so many times as much is asked for, which doubles
+/// the distance in standard errors.
+const HIDDEN: f64 = 4.0;
+
 /// The recording that would tell two candidates apart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decision {
@@ -27,6 +31,8 @@ pub struct Decision {
     pub other: String,
     /// How far apart they are on this record, nats.
     pub apart: f64,
+    /// How far apart they must be, nats.
+    pub needed: f64,
     /// How often as long a record of the same motion would have to be; infinite where no length would do.
     pub longer: f64,
     /// A motion of another size that would do.
@@ -55,12 +61,14 @@ pub fn decide(diagnosis: &Diagnosis, evidence: &Evidence) -> Option<Decision> {
     let apart = 0.5 / (std * std);
     let here = left(law, &force, evidence, 1.0)?;
     let nats = |scale: f64| left(law, &force, evidence, scale).map(|left| apart * left / here);
-    let reached = SCALES.into_iter().find(|scale| nats(*scale).is_some_and(|nats| nats >= APART));
+    let needed = if apart < APART { APART } else { HIDDEN * apart };
+    let reached = SCALES.into_iter().find(|scale| nats(*scale).is_some_and(|nats| nats >= needed));
     Some(Decision {
         one: group[0].clone(),
         other: group[1].clone(),
         apart,
-        longer: if apart > 0.0 { (APART / apart).max(1.0) } else { f64::INFINITY },
+        needed,
+        longer: if apart > 0.0 { needed / apart } else { f64::INFINITY },
         motion: reached.map(|scale| reach(law, scale)),
     })
 }

@@ -5,9 +5,9 @@
 //! Terms that no state gives (memory, delay, expressions of time) are series along the smoothed motion, renewed with it.
 
 use super::diagnosis::effect_name;
+use super::means::{self, is_series};
 use super::piece::Piece;
 use super::run::{self, Law, Outcome, Sums};
-use super::series::{self, is_series};
 use super::smooth::smooth;
 use super::start;
 use crate::evidence::{Noise, Pass, RIVALS};
@@ -279,10 +279,10 @@ impl Descent<'_> {
     fn take_series(&mut self, states: &[Vec<State>]) {
         let terms: Vec<Term> = self.parts.series.iter().map(|index| self.form.terms[*index]).collect();
         let columns = |piece: &Piece, states: &[State]| -> Vec<Vec<f64>> {
-            terms.iter().map(|term| series::means(*term, &self.form.expressions, piece, states)).collect()
+            terms.iter().map(|term| means::means(*term, &self.form.expressions, piece, states)).collect()
         };
         let pairs = self.pieces.iter().zip(states);
-        self.series = pairs.map(|(piece, states)| series::rows(&columns(piece, states))).collect();
+        self.series = pairs.map(|(piece, states)| means::rows(&columns(piece, states))).collect();
     }
 
     fn smoothed(&self, outcomes: &[Outcome]) -> Vec<Vec<State>> {

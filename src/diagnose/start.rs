@@ -1,8 +1,8 @@
 //! A first guess of coefficients and noise, from weak rows.
 
 use super::fit::{Form, Parts};
+use super::means::is_series;
 use super::piece::Piece;
-use super::series::is_series;
 use crate::evidence::Noise;
 use crate::law::Term;
 use crate::weak::{Fit, Regression, Row, Section, Variation};

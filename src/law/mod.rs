@@ -15,6 +15,7 @@ mod formula;
 mod history;
 mod hold;
 mod inner;
+mod inner_parameters;
 mod linearized;
 mod memory;
 mod model;

@@ -90,7 +90,7 @@ fn sections_are_read_and_bad_ones_refused() {
 #[test]
 fn every_command_shows_an_example() {
     let bench = Bench::new("help");
-    for command in ["identify", "simulate"] {
+    for command in ["compare", "identify", "simulate"] {
         let help = String::from_utf8(bench.run(&[command, "--help"]).stdout).unwrap();
         assert!(help.contains(&format!("\n  switchid {command} ")), "{help}");
     }
@@ -105,6 +105,9 @@ fn the_scenario_in_the_help_can_be_simulated() {
     let report = bench.json(&["simulate", "plant.toml", "-o", "record.csv", "--json"]);
     assert_eq!(report["samples"], 30_001);
     assert_eq!(report["truth"], "record.truth.json");
+    let truth = std::fs::read_to_string(bench.0.join("record.truth.json")).unwrap();
+    let truth: Value = serde_json::from_str(&truth).unwrap();
+    assert_eq!(truth["hidden"]["dead_zone_stiffness"]["gap"], 0.1);
 }
 
 #[test]

@@ -3,7 +3,8 @@
 use crate::archive::{Fmu, PackageError};
 use crate::documentation;
 use crate::variables::{at_least, choice, output, real, units, variable};
-use switchid::simulate::ParametricLaw;
+use switchid::law::{Catalogue, Entry, InnerParameter, InnerRange, InnerUnit};
+use switchid::simulate::{Excitation, ParametricLaw};
 use switchid_fmu_slave::{Description, Enumeration, Kind, Variability, Variable};
 
 /// The law file of the Duffing oscillator, eq. (5).
@@ -28,7 +29,8 @@ pub fn plant(law_file: &str) -> Result<Fmu, PackageError> {
     let text = "<p>Outputs <code>q</code>, <code>qd</code> carry sensor noise, <code>F</code> is the excitation that is \
                 held from this instant on; <code>true.*</code> is what no estimator may see. A stage begins at \
                 <code>stage[i].time</code>, counted from the start of the simulation; 1e30 = it does not occur. The inner \
-                integration does not depend on the communication step.</p>";
+                integration does not depend on the communication step. <code>hidden.*</code> are effects \
+                besides the law's terms, for a model to lack.</p>";
     let page = documentation::page(&description, text);
     Fmu::new(description, vec![("plant.toml".into(), law_file.as_bytes().to_vec())], page)
 }
@@ -36,7 +38,9 @@ pub fn plant(law_file: &str) -> Result<Fmu, PackageError> {
 /// The variables of a plant: parameters, outputs, truth.
 pub fn plant_description(law: &ParametricLaw) -> Description {
     let stages = (1..=STAGES).flat_map(|number| stage(law, number));
-    let variables: Vec<Variable> = general().into_iter().chain(stages).chain(measured()).chain(truth(law)).collect();
+    let hidden = Catalogue::ENTRIES.iter().flat_map(hidden);
+    let variables = general().into_iter().chain(drive()).chain(stages).chain(hidden);
+    let variables: Vec<Variable> = variables.chain(measured()).chain(truth(law)).collect();
     Description {
         name: law.name.clone(),
         description: law.description.clone(),
@@ -54,6 +58,8 @@ fn excitations() -> Enumeration {
         ("none", "Free motion"),
         ("sine", "P sin(omega t) with the numbers of the stage"),
         ("white", "Gaussian white noise of intensity excitation.intensity"),
+        ("multisine", "excitation.count sines with phases drawn from the seed"),
+        ("sweep", "A sine whose frequency runs from excitation.from to excitation.to and back"),
     ];
     let items = items.map(|(name, text)| (name.to_string(), text.to_string()));
     Enumeration { name: "Excitation".into(), items: items.into() }
@@ -70,11 +76,54 @@ fn general() -> Vec<Variable> {
         variable(
             "seed",
             Kind::Integer { start: 1, min: Some(0), max: None },
-            "Seed of the white excitation and of the sensor noise",
+            "Seed of the white excitation, of the multisine's phases and of the sensor noise",
         ),
         real("q0", 0.5, None, "Displacement at the start"),
         real("qd0", 0.0, None, "Velocity at the start"),
     ]
+}
+
+/// What multisine and sweep are made of.
+fn drive() -> [Variable; 5] {
+    let Excitation { from, to, count, rms, period, .. } = Excitation::default();
+    let range = |name, start, text| at_least(real(name, start, Some("rad/s"), text), 0.0);
+    let count = Kind::Integer { start: count as i32, min: Some(1), max: Some(Excitation::MAX_COUNT as i32) };
+    [
+        range("excitation.from", from, "Lowest angular frequency of multisine and sweep"),
+        range("excitation.to", to, "Highest angular frequency of multisine and sweep"),
+        variable("excitation.count", count, "How many sines the multisine has"),
+        at_least(real("excitation.rms", rms, None, "RMS of multisine and sweep"), 0.0),
+        at_least(
+            real("excitation.period", period, Some("s"), "How long the sweep takes from one end to the other"),
+            1e-6,
+        ),
+    ]
+}
+
+/// An effect besides the law's terms: its coefficient, 0 where the plant does not have it, and its inner parameters.
+fn hidden(entry: &'static Entry) -> impl Iterator<Item = Variable> {
+    let name = format!("hidden.{}", entry.id);
+    let text =
+        format!("Hidden effect in every stage: coefficient of {} on the left-hand side; 0 = absent", entry.equation);
+    let inner = entry.inner().iter().map({
+        let name = name.clone();
+        move |parameter| inner(&name, parameter)
+    });
+    std::iter::once(real(name, 0.0, None, text)).chain(inner)
+}
+
+fn inner(effect: &str, parameter: &InnerParameter) -> Variable {
+    let unit = match parameter.unit {
+        InnerUnit::Time => Some("s"),
+        InnerUnit::AngularFrequency => Some("rad/s"),
+        _ => None,
+    };
+    let variable = real(format!("{effect}.{}", parameter.name), parameter.default, unit, parameter.description);
+    match parameter.range {
+        InnerRange::Positive | InnerRange::NotNegative => at_least(variable, 0.0),
+        InnerRange::AtLeast(least) => at_least(variable, least),
+        InnerRange::Either(one, other) => at_least(variable, one.min(other)),
+    }
 }
 
 fn stage(law: &ParametricLaw, number: usize) -> Vec<Variable> {
@@ -94,8 +143,19 @@ fn stage(law: &ParametricLaw, number: usize) -> Vec<Variable> {
 }
 
 fn measured() -> [Variable; 3] {
-    let drive =
-        ["excitation.kind", "excitation.intensity", "excitation.sample_time", "seed", "stage[1].P", "stage[1].omega"];
+    let drive = [
+        "excitation.kind",
+        "excitation.intensity",
+        "excitation.sample_time",
+        "excitation.from",
+        "excitation.to",
+        "excitation.count",
+        "excitation.rms",
+        "excitation.period",
+        "seed",
+        "stage[1].P",
+        "stage[1].omega",
+    ];
     [
         continuous(output(real("q", 0.0, None, "Displacement with its sensor noise"), &["noise.q", "seed", "q0"])),
         continuous(output(real("qd", 0.0, None, "Velocity with its sensor noise"), &["noise.qd", "seed", "qd0"])),

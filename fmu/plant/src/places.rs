@@ -1,22 +1,28 @@
 //! Where a plant's variables stand, and the scenario that its parameters describe.
 
 use serde::{Deserialize, Serialize};
-use switchid::law::State;
-use switchid::simulate::{Excitation, ExcitationKind, ParametricLaw, Scenario, SensorNoise, Stage};
+use switchid::law::{Catalogue, InnerError, InnerParameter, State, Term};
+use switchid::simulate::{Excitation, ExcitationKind, Hidden, ParametricLaw, Scenario, SensorNoise, Stage};
 use switchid_fmu_slave::{Description, ValueError, Values};
 use thiserror::Error;
 
 /// A start from which on a stage does not occur, s.
 const NEVER: f64 = 1e29;
 
-/// A stage is left out before one that occurs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("stage[{set}].time is set but stage[{missing}].time is not: number the stages without a gap")]
-pub struct Gap {
-    /// Number of the stage that is left out.
-    missing: usize,
-    /// Number of one that occurs after it.
-    set: usize,
+/// Why parameters describe no plant.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum PlaceError {
+    /// A stage is left out before one that occurs.
+    #[error("stage[{set}].time is set but stage[{missing}].time is not: number the stages without a gap")]
+    Gap {
+        /// Number of the stage that is left out.
+        missing: usize,
+        /// Number of one that occurs after it.
+        set: usize,
+    },
+    /// An inner parameter of a hidden effect is refused.
+    #[error("hidden.{0}")]
+    Inner(#[from] InnerError),
 }
 
 /// Value references of all variables.
@@ -25,16 +31,29 @@ pub struct Places {
     kind: usize,
     intensity: usize,
     sample_time: usize,
+    drive: DrivePlaces,
     noise: [usize; 2],
     seed: usize,
     initial: [usize; 2],
     stages: Vec<StagePlaces>,
+    /// Coefficient and inner parameters of each effect of the catalogue.
+    hidden: Vec<(usize, Vec<usize>)>,
     /// `q`, `qd`, `F`, `true.q`, `true.qd`.
     pub motion: [usize; 5],
     /// `true.stage`.
     pub stage: usize,
     /// `true.coef.*`, in the order of the law's terms.
     pub coefficients: Vec<usize>,
+}
+
+/// What multisine and sweep are made of.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct DrivePlaces {
+    from: usize,
+    to: usize,
+    count: usize,
+    rms: usize,
+    period: usize,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -58,10 +77,12 @@ impl Places {
             kind: find("excitation.kind")?,
             intensity: find("excitation.intensity")?,
             sample_time: find("excitation.sample_time")?,
+            drive: find_drive(description)?,
             noise: [find("noise.q")?, find("noise.qd")?],
             seed: find("seed")?,
             initial: [find("q0")?, find("qd0")?],
             stages: (1..=count).map(|number| find_stage(description, law, number)).collect::<Result<_, _>>()?,
+            hidden: find_hidden(description)?,
             motion: [find("q")?, find("qd")?, find("F")?, find("true.q")?, find("true.qd")?],
             stage: find("true.stage")?,
             coefficients: coefficients.collect::<Result<_, _>>()?,
@@ -71,8 +92,8 @@ impl Places {
     /// The scenario that the parameters describe; not checked yet.
     ///
     /// # Errors
-    /// [`Gap`] where the schedule has one.
-    pub fn scenario(&self, law: &ParametricLaw, values: &Values) -> Result<Scenario, Gap> {
+    /// [`PlaceError`] for a gap in the schedule or an impossible inner parameter of a hidden effect.
+    pub fn scenario(&self, law: &ParametricLaw, values: &Values) -> Result<Scenario, PlaceError> {
         let [q, qd] = self.initial.map(|reference| values.real(reference));
         let [noise_q, noise_qd] = self.noise.map(|reference| values.real(reference));
         // A plant has no end: the duration is only there to be positive.
@@ -80,24 +101,55 @@ impl Places {
         scenario.seed = values.integer(self.seed).max(0) as u64;
         scenario.initial = State { q, qd };
         scenario.noise = SensorNoise { q: noise_q, qd: noise_qd };
-        scenario.excitation = Excitation {
-            kind: match values.integer(self.kind) {
-                1 => ExcitationKind::None,
-                2 => ExcitationKind::Sine,
-                _ => ExcitationKind::WhiteNoise,
-            },
-            intensity: values.real(self.intensity),
-            sample_time: values.real(self.sample_time),
-        };
+        scenario.excitation = self.excitation(values);
+        scenario.hidden = self.hidden_effects(values)?;
         Ok(scenario)
     }
 
+    fn excitation(&self, values: &Values) -> Excitation {
+        let drive = &self.drive;
+        Excitation {
+            kind: match values.integer(self.kind) {
+                1 => ExcitationKind::None,
+                2 => ExcitationKind::Sine,
+                3 => ExcitationKind::WhiteNoise,
+                4 => ExcitationKind::Multisine,
+                _ => ExcitationKind::Sweep,
+            },
+            intensity: values.real(self.intensity),
+            sample_time: values.real(self.sample_time),
+            from: values.real(drive.from),
+            to: values.real(drive.to),
+            count: values.integer(drive.count).max(0) as u32,
+            rms: values.real(drive.rms),
+            period: values.real(drive.period),
+        }
+    }
+
+    /// The effects whose coefficient is not 0.
+    fn hidden_effects(&self, values: &Values) -> Result<Hidden, InnerError> {
+        let mut hidden = Hidden::default();
+        for (entry, (coefficient, inner)) in Catalogue::ENTRIES.iter().zip(&self.hidden) {
+            let coefficient = values.real(*coefficient);
+            if coefficient == 0.0 {
+                continue;
+            }
+            let inner: Vec<f64> = inner.iter().map(|reference| values.real(*reference)).collect();
+            let term = match entry.term {
+                Term::Effect(effect) => Term::Effect(effect.with_inner(&inner)?),
+                term => term,
+            };
+            hidden.push(term, coefficient);
+        }
+        Ok(hidden)
+    }
+
     /// All stages that occur.
-    fn schedule(&self, law: &ParametricLaw, values: &Values) -> Result<Vec<Stage>, Gap> {
+    fn schedule(&self, law: &ParametricLaw, values: &Values) -> Result<Vec<Stage>, PlaceError> {
         let occurs = |places: &StagePlaces| values.real(places.time) < NEVER;
         let count = self.stages.iter().take_while(|places| occurs(places)).count();
         if let Some(next) = self.stages[count..].iter().position(occurs) {
-            return Err(Gap { missing: count + 1, set: count + 1 + next });
+            return Err(PlaceError::Gap { missing: count + 1, set: count + 1 + next });
         }
         Ok(self.stages[..count].iter().map(|places| places.stage(law, values)).collect())
     }
@@ -113,6 +165,21 @@ impl StagePlaces {
             omega: values.real(self.omega),
         }
     }
+}
+
+fn find_drive(description: &Description) -> Result<DrivePlaces, ValueError> {
+    let find = |field: &str| position(description, &format!("excitation.{field}"));
+    let (from, to, count) = (find("from")?, find("to")?, find("count")?);
+    Ok(DrivePlaces { from, to, count, rms: find("rms")?, period: find("period")? })
+}
+
+fn find_hidden(description: &Description) -> Result<Vec<(usize, Vec<usize>)>, ValueError> {
+    let places = |id: &str, inner: &[InnerParameter]| {
+        let name = format!("hidden.{id}");
+        let inner = inner.iter().map(|inner| position(description, &format!("{name}.{}", inner.name)));
+        Ok((position(description, &name)?, inner.collect::<Result<_, _>>()?))
+    };
+    Catalogue::ENTRIES.iter().map(|entry| places(entry.id, entry.inner())).collect()
 }
 
 fn find_stage(description: &Description, law: &ParametricLaw, number: usize) -> Result<StagePlaces, ValueError> {

@@ -4,7 +4,8 @@
 mod contract;
 
 use contract::{Drive, OK, Subject};
-use switchid::simulate::{Builtin, ExcitationKind, Plant, Scenario};
+use switchid::law::{Catalogue, Term};
+use switchid::simulate::{Builtin, Excitation, ExcitationKind, Plant, Scenario};
 use switchid_fmu_package::{DUFFING, VAN_DER_POL, plant};
 use switchid_fmu_plant::functions;
 use switchid_fmu_slave::host::Instance;
@@ -99,6 +100,52 @@ fn a_schedule_gives_the_library_s_motion() {
     let as_they_are = |c: &[f64]| [c[0], c[1], c[2], c[3]];
     agrees(DUFFING, Builtin::DuffingSine, ["m", "c", "k1", "k3"], as_they_are);
     agrees(DUFFING, Builtin::DuffingWhite, ["m", "c", "k1", "k3"], as_they_are);
+}
+
+/// Every effect of the catalogue hidden at once, with inner parameters off their defaults.
+#[test]
+fn hidden_effects_give_the_library_s_motion() {
+    let subject = subject(DUFFING);
+    let instance = subject.instance();
+    let mut scenario = Builtin::DuffingNoise.scenario().with_seed(7).with_noise(0.0);
+    scenario.excitation =
+        Excitation { kind: ExcitationKind::Multisine, from: 2.0, to: 9.0, count: 5, rms: 2.5, ..Excitation::default() };
+    for (number, entry) in (1..).zip(Catalogue::ENTRIES) {
+        let coefficient = 0.02 + 0.01 * f64::from(number);
+        set(&subject, &instance, &[(&format!("hidden.{}", entry.id), coefficient)]);
+        let Term::Effect(effect) = entry.term else {
+            scenario.hidden.push(entry.term, coefficient);
+            continue;
+        };
+        let inner: Vec<f64> =
+            effect.inner_values().into_iter().map(|value| if value == 3.0 { 2.0 } else { 1.5 * value }).collect();
+        for (parameter, value) in entry.inner().iter().zip(&inner) {
+            set(&subject, &instance, &[(&format!("hidden.{}.{}", entry.id, parameter.name), *value)]);
+        }
+        scenario.hidden.push(Term::Effect(effect.with_inner(&inner).unwrap()), coefficient);
+    }
+    set(&subject, &instance, &[("excitation.from", 2.0), ("excitation.to", 9.0), ("excitation.rms", 2.5), ("q0", 0.5)]);
+    for (name, value) in [("excitation.kind", 4), ("excitation.count", 5), ("seed", 7)] {
+        assert_eq!(instance.set_integer(subject.reference(name), value), OK, "{name}");
+    }
+    assert_eq!(instance.initialize(0.0), OK, "{:?}", instance.messages());
+    let mut plant = Plant::new(scenario).unwrap();
+    for k in 0..20 {
+        let t = f64::from(k) * 0.1;
+        assert_eq!(instance.step(t, 0.1), OK);
+        plant.advance_to(t + 0.1).unwrap();
+        assert_eq!(real(&subject, &instance, "q").to_bits(), plant.reading().q.to_bits(), "t = {t}");
+        assert_eq!(real(&subject, &instance, "F"), plant.reading().excitation);
+    }
+}
+
+#[test]
+fn an_impossible_inner_parameter_is_named() {
+    let subject = subject(DUFFING);
+    let instance = subject.instance();
+    set(&subject, &instance, &[("hidden.stribeck_friction", 0.1), ("hidden.stribeck_friction.speed", 0.0)]);
+    assert_ne!(instance.initialize(0.0), OK);
+    assert!(instance.messages()[0].2.contains("hidden.stribeck_friction: speed = 0"), "{:?}", instance.messages());
 }
 
 #[test]

@@ -44,6 +44,7 @@ pub(in crate::cli) struct CandidateReport {
 struct DecisionReport {
     between: [String; 2],
     apart: f64,
+    needed: f64,
     scale: Option<f64>,
     displacement: Option<f64>,
     velocity: Option<f64>,
@@ -88,6 +89,7 @@ impl Report {
         let decides = decision.as_ref().map(|decision| DecisionReport {
             between: [decision.one.clone(), decision.other.clone()],
             apart: decision.apart,
+            needed: decision.needed,
             scale: decision.motion.map(|motion| motion.scale),
             displacement: decision.motion.map(|motion| motion.displacement),
             velocity: decision.motion.map(|motion| motion.velocity),

@@ -133,7 +133,7 @@ fn decides(answer: &Answer) -> String {
 }
 
 fn decision_words(decision: &Decision) -> String {
-    let Decision { one, other, apart, longer, motion } = decision;
+    let Decision { one, other, apart, needed, longer, motion } = decision;
     let asked = match motion {
         Some(reach) => format!(
             "a recording with |q| up to {:.3} and |q̇| up to {:.3} ({} times this one)",
@@ -142,7 +142,7 @@ fn decision_words(decision: &Decision) -> String {
         None if *longer < 1e4 => format!("a recording {longer:.0} times as long as this one"),
         None => "none of this kind of motion; excite it at other frequencies".into(),
     };
-    format!("{asked}, between {one} and {other} ({apart:.1} nats apart here, 10 decide)")
+    format!("{asked}, between {one} and {other} ({apart:.1} nats apart here, {needed:.0} decide)")
 }
 
 fn further(dependence: Option<&Dependence>) -> &'static str {
