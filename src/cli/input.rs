@@ -2,9 +2,9 @@
 
 use super::error::CommandError;
 use super::output;
-use crate::data;
+use crate::data::{self, Opened};
 use crate::identify::{self, Gap, Recording, Settings};
-use crate::law::{Hold, Model};
+use crate::law::{Hold, Model, Term, Units};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
@@ -26,6 +26,8 @@ pub(super) struct Input {
     pub(super) model: Model,
     /// Its file.
     pub(super) file: String,
+    /// What is known of the units of coefficients.
+    pub(super) units: Units,
     recordings: Vec<Recording>,
     holds: Vec<Hold>,
 }
@@ -37,8 +39,10 @@ impl Input {
     /// The first file that is at fault.
     pub(super) fn open(data: &[String], arguments: &ModelArguments) -> Result<Input, CommandError> {
         let model = data::open_model(&arguments.model)?;
-        let open = |data: &String| data::open_recording(data, &model).map(|opened| opened.recording);
-        let recordings: Vec<Recording> = data.iter().map(open).collect::<Result<_, _>>()?;
+        let open = |data: &String| data::open_recording(data, &model);
+        let opened: Vec<Opened> = data.iter().map(open).collect::<Result<_, _>>()?;
+        let units = opened.iter().map(|opened| opened.units).reduce(Units::common).unwrap_or_default();
+        let recordings: Vec<Recording> = opened.into_iter().map(|opened| opened.recording).collect();
         let asked = arguments.hold.as_deref().and_then(Hold::from_id);
         let hold = |recording: &Recording| {
             let settings = || identify::settings_for(recording, Settings::default());
@@ -46,7 +50,7 @@ impl Input {
         };
         let holds = recordings.iter().map(hold).collect();
         recordings.iter().flat_map(warnings).for_each(|text| output::complain("warning", &text));
-        Ok(Input { file: arguments.model.display().to_string(), model, recordings, holds })
+        Ok(Input { file: arguments.model.display().to_string(), model, units, recordings, holds })
     }
 
     /// The recordings with their holds.
@@ -57,6 +61,12 @@ impl Input {
     /// The arguments by which the recordings were named, as for another command.
     pub(super) fn named(&self) -> String {
         self.recordings.iter().map(Recording::source).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The unit of a term's coefficient behind its value; empty where it is not known or none.
+    pub(super) fn unit(&self, term: Term) -> String {
+        let unit = self.units.coefficient(term).filter(|unit| unit.symbol != "1");
+        unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol))
     }
 
     /// Why there is no law.

@@ -8,6 +8,7 @@ mod compare;
 mod compare_report;
 mod diagnose;
 mod error;
+mod fmu;
 mod identify;
 mod improve;
 mod input;
@@ -36,6 +37,7 @@ enum Command {
     Diagnose(diagnose::Arguments),
     Add(add::Arguments),
     Improve(improve::Arguments),
+    Fmu(fmu::Arguments),
     Identify(identify::Arguments),
     Simulate(simulate::Arguments),
 }
@@ -47,6 +49,7 @@ impl Command {
             Command::Diagnose(arguments) => diagnose::run(&arguments),
             Command::Add(arguments) => add::run(&arguments),
             Command::Improve(arguments) => improve::run(&arguments),
+            Command::Fmu(arguments) => fmu::run(&arguments),
             Command::Identify(arguments) => identify::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
         }

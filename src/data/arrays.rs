@@ -31,7 +31,7 @@ struct Stored<'a> {
 
 /// The signals that the model names.
 pub(super) fn read(source: &Source, arrays: &impl Arrays, model: &Model) -> Result<(Layout, Signals), DataError> {
-    let layout = Layout::find(source.kind, &source.file, &arrays.names(), &model.columns)?;
+    let layout = Layout::find(source.kind, &source.file, &arrays.names(), model)?;
     let load = |column| load(source, arrays, column);
     let measured = [&layout.q, &layout.qd, &layout.excitation].into_iter().flatten();
     let mut stored = measured.map(load).collect::<Result<Vec<_>, _>>()?;

@@ -16,7 +16,7 @@ pub(super) fn read(source: &Source, text: &str, model: &Model) -> Result<(Layout
     let mut reader = ReaderBuilder::new().trim(Trim::All).delimiter(delimiter(start)).from_reader(start.as_bytes());
     let headers = reader.headers().map_err(|error| table(source, error, offset))?;
     let headers: Vec<String> = headers.iter().map(String::from).collect();
-    let layout = Layout::find(source.kind, &source.file, &headers, &model.columns)?;
+    let layout = Layout::find(source.kind, &source.file, &headers, model)?;
     let mut rows = Rows::new(source, &layout);
     let mut record = StringRecord::new();
     while reader.read_record(&mut record).map_err(|error| table(source, error, offset))? {

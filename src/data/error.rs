@@ -192,6 +192,22 @@ pub enum DataError {
         /// What it is.
         expected: &'static str,
     },
+    /// The model names another unit than the header.
+    #[error(
+        "{file}: \"{column}\" is in {unit}, but the model says [units] {channel} = \"{declared}\": take one of them out, or correct it"
+    )]
+    UnitContradicts {
+        /// The file.
+        file: String,
+        /// The header.
+        column: String,
+        /// The header's unit.
+        unit: &'static str,
+        /// The quantity.
+        channel: &'static str,
+        /// The model's unit.
+        declared: Box<str>,
+    },
     /// Displacement and velocity of different kinds.
     #[error(
         "{file}: {}{1} \"{velocity}\" ({velocity_quantity}) is not the rate of {1} \"{displacement}\" ({displacement_quantity}): correct the units",

@@ -2,8 +2,7 @@
 
 use super::DataError;
 use super::kind::FileKind;
-use super::unit::{self, Channel, Unit};
-use crate::law::Columns;
+use crate::law::{Channel, ColumnUnits, Model, Unit, Units};
 
 /// A column that is read.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,8 +54,9 @@ enum Written<'a> {
 
 impl Layout {
     /// Finds the columns in the headers of a file.
-    pub(super) fn find(kind: FileKind, file: &str, headers: &[String], columns: &Columns) -> Result<Layout, DataError> {
-        let finder = Finder { kind, file, headers };
+    pub(super) fn find(kind: FileKind, file: &str, headers: &[String], model: &Model) -> Result<Layout, DataError> {
+        let finder = Finder { kind, file, headers, units: &model.units };
+        let columns = &model.columns;
         let optional = |channel, name: &Option<String>| match name {
             Some(name) => finder.required(channel, name).map(Some),
             None => finder.column(channel, channel.name()),
@@ -78,6 +78,18 @@ impl Layout {
         let columns = [Some(&self.t), self.q.as_ref(), self.qd.as_ref(), self.excitation.as_ref()];
         let named = Channel::ALL.into_iter().zip(columns);
         named.filter_map(|(channel, column)| column.map(|column| column.describe(self.kind, channel))).collect()
+    }
+
+    /// What the columns say of the units of coefficients. In free motion these are relative to the inertia, unless the model
+    /// holds it at a number.
+    pub(super) fn units(&self, inertia_held: bool) -> Units {
+        let quantity =
+            |column: &Option<Column>| column.as_ref().and_then(|column| column.unit).map(|unit| unit.quantity);
+        let (q, qd) = (quantity(&self.q), quantity(&self.qd));
+        match &self.excitation {
+            None if !inertia_held => Units::free(q, qd),
+            excitation => Units::forced(q, qd, quantity(excitation)),
+        }
     }
 
     fn check_rate(&self, file: &str) -> Result<(), DataError> {
@@ -108,6 +120,7 @@ struct Finder<'a> {
     kind: FileKind,
     file: &'a str,
     headers: &'a [String],
+    units: &'a ColumnUnits,
 }
 
 impl Finder<'_> {
@@ -119,7 +132,8 @@ impl Finder<'_> {
         }
         if self.kind.is_mat() && name.is_none() {
             for (name, base) in TIME_BASES {
-                if let Some(column) = self.column(Channel::Time, name)? {
+                let plain = Finder { units: &ColumnUnits::default(), ..*self };
+                if let Some(column) = plain.column(Channel::Time, name)? {
                     return Ok((column, base));
                 }
             }
@@ -163,8 +177,15 @@ impl Finder<'_> {
     fn read(&self, channel: Channel, index: usize) -> Result<Column, DataError> {
         let header = self.headers[index].clone();
         let (file, kind, column) = (self.file.to_string(), self.kind, header.clone());
+        let declared = self.units.unit(channel);
         match heading(&self.headers[index]).unit {
-            Written::Nothing => Ok(Column { index, header, factor: 1.0, unit: None }),
+            Written::Nothing => {
+                Ok(Column { index, header, factor: declared.map_or(1.0, |unit| unit.factor), unit: declared })
+            }
+            Written::Known(_, unit) if declared.is_some_and(|declared| declared.is_not(unit)) => {
+                let declared = self.units.written(channel).unwrap_or_default().into();
+                Err(DataError::UnitContradicts { file, column, unit: unit.name, channel: channel.name(), declared })
+            }
             Written::Known(_, unit) if channel.accepts(unit.quantity) => {
                 Ok(Column { index, header, factor: unit.factor, unit: Some(unit) })
             }
@@ -194,7 +215,7 @@ fn heading(header: &str) -> Heading<'_> {
     for (open, close) in [('[', ']'), ('(', ')')] {
         let inside = header.strip_suffix(close).and_then(|rest| rest.rsplit_once(open));
         if let Some((name, text)) = inside {
-            let unit = unit::parse(text).map_or(Written::Unknown(text), |unit| Written::Known(text, unit));
+            let unit = Unit::parse(text).map_or(Written::Unknown(text), |unit| Written::Known(text, unit));
             return Heading { name: name.trim(), unit };
         }
     }
@@ -210,10 +231,10 @@ fn endings(header: &str) -> impl Iterator<Item = (&str, &str)> {
 
 /// The unit of an ending: as it stands, or `mm_s` for mm/s and `N_m` for N m.
 fn written_unit(ending: &str) -> Option<Unit> {
-    let worded = || ending.strip_suffix("_s").and_then(|length| unit::parse(&format!("{length}/s")));
-    let product = || if ending == "N_m" { unit::parse("Nm") } else { None };
+    let worded = || ending.strip_suffix("_s").and_then(|length| Unit::parse(&format!("{length}/s")));
+    let product = || if ending == "N_m" { Unit::parse("Nm") } else { None };
     // A bare digit or dash is a numbering, no unit.
-    unit::parse(ending).filter(|unit| unit.name.chars().any(char::is_alphabetic)).or_else(worded).or_else(product)
+    Unit::parse(ending).filter(|unit| unit.name.chars().any(char::is_alphabetic)).or_else(worded).or_else(product)
 }
 
 fn quoted(headers: &[String]) -> String {

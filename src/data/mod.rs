@@ -19,7 +19,6 @@ mod open;
 mod parquet;
 mod rows;
 mod section;
-mod unit;
 
 pub use error::DataError;
 pub use files::{open_model, open_scenario};

@@ -6,7 +6,7 @@ use super::kind::FileKind;
 use super::rows::{Signals, Source};
 use super::{DataError, csv, files, hdf5, mat5, parquet};
 use crate::identify::{Recording, RecordingError};
-use crate::law::Model;
+use crate::law::{Given, Model, Term, Units};
 
 /// A recording, and how its file was understood.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,6 +15,8 @@ pub struct Opened {
     pub recording: Recording,
     /// Which column was taken for which quantity in which unit, one line each: `q = column "position_mm" in mm`.
     pub columns: Vec<String>,
+    /// What is known of the units of coefficients.
+    pub units: Units,
 }
 
 /// Opens `DATA` or `DATA@t0:t1` and takes from it the columns that the model names. The content tells what kind of file it
@@ -34,7 +36,8 @@ pub fn open_recording(data: &str, model: &Model) -> Result<Opened, DataError> {
     let of = |column: &Option<Column>, values| column.as_ref().map(|_| values);
     let recording = Recording::new(data, t, of(&layout.q, q), of(&layout.qd, qd), of(&layout.excitation, excitation))
         .map_err(|error| locate(error, &source, &layout))?;
-    Ok(Opened { recording, columns: layout.describe() })
+    let held = model.position(Term::Inertia).is_some_and(|place| matches!(model.terms[place].given, Given::Known(_)));
+    Ok(Opened { recording, columns: layout.describe(), units: layout.units(held) })
 }
 
 fn read(source: &Source, bytes: Vec<u8>, model: &Model) -> Result<(Layout, Signals), DataError> {

@@ -25,6 +25,8 @@ mod motion;
 mod series;
 mod term;
 mod text;
+mod unit;
+mod units;
 
 pub use catalogue::{Catalogue, Entry, Sign};
 pub use compiled::Compiled;
@@ -44,3 +46,5 @@ pub use motion::{Motion, State};
 pub use series::{Trajectory, term_series};
 pub use term::{Monomial, Term, TermError};
 pub use text::equation;
+pub use unit::{Channel, Quantity, Unit};
+pub use units::{ColumnUnits, SiUnit, Units, unit_of};

@@ -3,4 +3,6 @@
 mod bad_input;
 mod bench;
 mod compare;
+mod fmu;
 mod good_input;
+mod units;
