@@ -127,7 +127,13 @@ fn text(arguments: &Arguments, found: &Addition, input: &Input) -> String {
         fit.log_likelihood - found.before.log_likelihood
     );
     for (index, (term, value)) in fit.form.terms.iter().zip(&fit.coefficients).enumerate() {
-        let _ = writeln!(text, "  {:<28} {:>26}{}", fit.form.effect_name(*term), number(*value, fit.std(index)), input.unit(*term));
+        let _ = writeln!(
+            text,
+            "  {:<28} {:>26}{}",
+            fit.form.effect_name(*term),
+            number(*value, fit.std(index)),
+            input.unit(*term)
+        );
     }
     for (name, value) in inner(fit) {
         let _ = writeln!(text, "    {name:<26} {value:>26.6}");

@@ -104,7 +104,9 @@ pub(super) enum CommandError {
         key: String,
     },
     /// An effect whose coefficient no fit with it determines.
-    #[error("{data}: this record does not determine \"{effect}\": its force vanishes there or is that of the other terms")]
+    #[error(
+        "{data}: this record does not determine \"{effect}\": its force vanishes there or is that of the other terms"
+    )]
     NotDetermined {
         /// The recordings.
         data: String,

@@ -29,8 +29,7 @@ pub(super) struct Stair {
 /// [`CommandError::Draw`] says what the drawing failed on.
 pub(super) fn staircase(stairs: &[Stair], floor: f64) -> Result<String, CommandError> {
     let mut text = String::new();
-    draw(&mut text, stairs, floor)
-        .map_err(|reason| CommandError::Draw { file: "the staircase".into(), reason })?;
+    draw(&mut text, stairs, floor).map_err(|reason| CommandError::Draw { file: "the staircase".into(), reason })?;
     Ok(text)
 }
 

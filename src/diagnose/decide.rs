@@ -18,9 +18,9 @@ const SCALES: [f64; 8] = [1.5, 2.0, 0.5, 3.0, 0.33, 5.0, 0.2, 10.0];
 /// Log-likelihood, nats, that tells two candidates apart.
 const APART: f64 = 10.0;
 
-/// Where that much has not told them apart, what else the law leaves over hides it: so many times as much is asked for, which doubles
+/// Where that much has not told them apart, the difference scatters along the record: so many times as much is asked for, which doubles
 /// the distance in standard errors.
-const HIDDEN: f64 = 4.0;
+const SCATTERED: f64 = 4.0;
 
 /// The recording that would tell two candidates apart.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,10 +58,10 @@ pub fn decide(diagnosis: &Diagnosis, evidence: &Evidence) -> Option<Decision> {
     let force = Force { term: rival.term, coefficient: rival.coefficient, expressions: &law.form.expressions };
     let column = |piece: &Piece, states: &[State]| vec![force.along(piece, states)];
     let std = screen::screen_columns(law, &evidence.pieces, &column).first()?.std;
-    let apart = 0.5 / (std * std);
+    let best = diagnosis.candidates.iter().find(|candidate| candidate.effect == group[0])?;
+    let (apart, needed) = distance(0.5 / (std * std), best.gain - rival.gain);
     let here = left(law, &force, evidence, 1.0)?;
     let nats = |scale: f64| left(law, &force, evidence, scale).map(|left| apart * left / here);
-    let needed = if apart < APART { APART } else { HIDDEN * apart };
     let reached = SCALES.into_iter().find(|scale| nats(*scale).is_some_and(|nats| nats >= needed));
     Some(Decision {
         one: group[0].clone(),
@@ -71,6 +71,16 @@ pub fn decide(diagnosis: &Diagnosis, evidence: &Evidence) -> Option<Decision> {
         longer: if apart > 0.0 { needed / apart } else { f64::INFINITY },
         motion: reached.map(|scale| reach(law, scale)),
     })
+}
+
+/// How far apart two candidates are and must be, nats. Where they ought to be far apart and are not, noise that the law allows for absorbs
+/// what sets them apart: then the difference of their gains says how far.
+fn distance(ideal: f64, observed: f64) -> (f64, f64) {
+    match (ideal < APART, observed < APART) {
+        (true, _) => (ideal, APART),
+        (false, true) => (observed.max(1.0), APART),
+        (false, false) => (observed, SCATTERED * observed),
+    }
 }
 
 fn reach(law: &Fit, scale: f64) -> Reach {

@@ -83,12 +83,7 @@ pub fn depends_on(diagnosis: &Diagnosis, evidence: &Evidence) -> Option<Dependen
 }
 
 /// Takes the gains of the source's columns: one, or the two phases of a frequency.
-fn judge<'a>(
-    law: &Fit,
-    source: Source,
-    gains: &mut impl Iterator<Item = &'a Gain>,
-    looked_at: usize,
-) -> Dependence {
+fn judge<'a>(law: &Fit, source: Source, gains: &mut impl Iterator<Item = &'a Gain>, looked_at: usize) -> Dependence {
     let own: Vec<&Gain> = gains.by_ref().take(source.width()).collect();
     let gain = own.iter().map(|gain| gain.gain).sum::<f64>();
     let chance = if own.len() == 2 { (-gain).exp() } else { chance(2.0 * gain) };

@@ -159,7 +159,11 @@ impl StageReport {
             end: stage.end,
             verdict: found.map(|found| text::verdict(found.finding)),
             effect: found.and_then(|found| found.effect.clone()),
-            candidates: found.iter().flat_map(|found| &found.candidates).map(|candidate| CandidateReport::of(candidate, input)).collect(),
+            candidates: found
+                .iter()
+                .flat_map(|found| &found.candidates)
+                .map(|candidate| CandidateReport::of(candidate, input))
+                .collect(),
             indistinguishable: found.map_or_else(Vec::new, |found| found.indistinguishable.clone()),
             coefficients: found.map_or_else(Pairs::none, |found| Pairs::coefficients(&found.base)),
             std: found.map_or_else(Pairs::none, |found| Pairs::std(&found.base)),

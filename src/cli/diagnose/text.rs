@@ -109,7 +109,8 @@ fn sure(answer: &Answer) -> String {
         Finding::Unexplained => {
             let explained = percent(diagnosis.explained);
             let beyond = "the error is beyond the sensors' noise";
-            let by = answer.dependence.as_ref().map(|found| format!(", the dependence by chance {}", chance(found.p_value)));
+            let by =
+                answer.dependence.as_ref().map(|found| format!(", the dependence by chance {}", chance(found.p_value)));
             format!("how sure: {beyond}; the catalogue explains {explained} of it at best{}", by.unwrap_or_default())
         }
     }
@@ -121,7 +122,9 @@ fn behind(diagnosis: &Diagnosis) -> String {
     let is_tied = |candidate: &&Candidate| tied.is_some_and(|group| group.contains(&candidate.effect));
     let gain = diagnosis.candidates.first().map_or(0.0, |best| best.gain);
     match diagnosis.candidates.iter().skip(1).find(|candidate| !is_tied(candidate)) {
-        Some(next) if gain > next.gain => format!("; {}, the next best, is {:.0} nats behind", next.effect, gain - next.gain),
+        Some(next) if gain > next.gain => {
+            format!("; {}, the next best, is {:.0} nats behind", next.effect, gain - next.gain)
+        }
         _ => String::new(),
     }
 }
