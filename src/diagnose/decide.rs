@@ -143,9 +143,9 @@ pub struct Visible {
     pub share: f64,
 }
 
-/// What the record could have shown of the candidate that gains most.
+/// What the record could have shown of the best candidate.
 pub fn visible(diagnosis: &Diagnosis, evidence: &Evidence) -> Option<Visible> {
-    let tempting = diagnosis.candidates.iter().max_by(|a, b| a.gain.total_cmp(&b.gain))?;
+    let tempting = diagnosis.candidates.first()?;
     let law = &diagnosis.base;
     let inertia = law.form.terms.iter().position(|term| *term == Term::Inertia)?;
     let terms = [tempting.term, Term::Inertia];

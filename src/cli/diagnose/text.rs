@@ -228,7 +228,7 @@ fn over_stages(found: &Found) -> String {
     }
 }
 
-fn lacking<'a>((index, stage): (usize, &'a StageAnswer)) -> Option<(usize, &'a str)> {
+fn lacking((index, stage): (usize, &StageAnswer)) -> Option<(usize, &str)> {
     Some((index, stage.answer.as_ref()?.diagnosis.effect.as_deref()?))
 }
 
@@ -273,6 +273,10 @@ pub(in crate::cli) fn candidates(diagnosis: &Diagnosis, input: &Input) -> String
     let worth = |index: &usize| *index < 2 || diagnosis.candidates[*index].p_value < LISTED;
     for index in (0..diagnosis.candidates.len()).filter(worth) {
         let candidate = &diagnosis.candidates[index];
+        let share = match diagnosis.finding {
+            Finding::Adequate => "–".into(),
+            _ => percent(candidate.share),
+        };
         let errors = format!("{} → {}", percent(candidate.error_before), percent(candidate.error_after));
         let sign = if candidate.physical { "physical" } else { "unphysical" };
         let others = if candidate.plausible { "plausible" } else { "implausible" };
@@ -283,7 +287,7 @@ pub(in crate::cli) fn candidates(diagnosis: &Diagnosis, input: &Input) -> String
             with_unit(candidate, input),
             errors,
             chance(candidate.p_value),
-            percent(candidate.share)
+            share
         );
         let inner: Vec<String> = candidate.inner.iter().map(|(name, value)| format!("{name} {value:.4}")).collect();
         if !inner.is_empty() {
