@@ -135,3 +135,52 @@ fn silverbox_fails_at_large_amplitude_until_its_cubic_stiffness_is_in_the_model(
     let cubic = compare(&arrow, "inertia = 5.35e-6\nqd = 2.23e-4\nq = 0.990\n\"q^3\" = 3.93\n");
     near(&cubic, "/error/free_run_nrmse", 0.041, 0.07);
 }
+
+/// Runs the binary in a folder and reads its JSON.
+fn json(folder: &Path, arguments: &[&str]) -> Value {
+    let command =
+        Command::new(env!("CARGO_BIN_EXE_switchid")).args(arguments).arg("--json").current_dir(folder).output();
+    let output = command.unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn emps_lacks_coulomb_friction_and_with_it_predicts_the_test_run() {
+    let Some(train) = recording("emps/emps_train_tidy.csv") else { return };
+    let Some(test) = recording("emps/emps_test_pulses_tidy.csv") else { return };
+    let (train, test) = (train.canonicalize().unwrap(), test.canonicalize().unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let terms = "inertia = \"fit\"\nlinear_damping = \"fit\"\nconstant_force = \"fit\"\n";
+    std::fs::write(folder.join("model.toml"), format!("{EMPS}{terms}")).unwrap();
+    let found = json(folder, &["diagnose", train.to_str().unwrap(), "--model", "model.toml"]);
+    assert_eq!((&found["verdict"], &found["effect"]), (&"missing".into(), &"coulomb_friction".into()), "{found:#}");
+    assert_eq!(found["candidates"][0]["unit"], "N");
+    let improved = json(folder, &["improve", train.to_str().unwrap(), "--model", "model.toml", "-o", "better.toml"]);
+    assert_eq!(improved["steps"][1]["effect"], "coulomb_friction", "{improved:#}");
+    let compare = ["compare", test.to_str().unwrap(), "--model", "better.toml", "--window", "0.301", "--horizon", "1"];
+    let error = &json(folder, &compare)["error"];
+    let figure = |key: &str| error[key].as_f64().unwrap();
+    assert!(figure("force_residual") <= 0.045 && figure("window_rmse") <= 2.2e-3, "{error}");
+}
+
+#[test]
+fn silverbox_lacks_cubic_stiffness_and_no_friction_and_with_it_runs_free() {
+    let Some(data) = recording("silverbox/silverbox_tidy.csv") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let section = |name: &str, samples| std::fs::write(folder.join(name), without_offsets(&data, samples)).unwrap();
+    section("training.csv", 40_700..58_000);
+    section("arrow.csv", 100..40_575);
+    let terms = "inertia = \"fit\"\nlinear_damping = \"fit\"\nlinear_stiffness = \"fit\"\n";
+    std::fs::write(folder.join("model.toml"), format!("hold = \"band_limited\"\n[terms]\n{terms}")).unwrap();
+    let found = json(folder, &["diagnose", "training.csv", "--model", "model.toml"]);
+    assert_eq!((&found["verdict"], &found["effect"]), (&"missing".into(), &"cubic_stiffness".into()), "{found:#}");
+    assert!(!found["indistinguishable"].to_string().contains("friction"), "{found:#}");
+    let added = ["add", "cubic_stiffness", "--data", "training.csv", "--model", "model.toml", "-o", "cubic.toml"];
+    let added = json(folder, &added);
+    assert!(added["error_after"].as_f64().unwrap() < 0.6 * added["error_before"].as_f64().unwrap(), "{added}");
+    let error = &json(folder, &["compare", "arrow.csv", "--model", "cubic.toml"])["error"];
+    assert!(error["free_run_nrmse"].as_f64().unwrap() <= 0.05, "{error}");
+}

@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     if arguments.json {
         output::print_json(&report(arguments, &found))
     } else {
-        output::print(&text(arguments, &found))
+        output::print(&text(arguments, &found, &input))
     }
 }
 
@@ -117,7 +117,7 @@ fn inner(fit: &Fit) -> Vec<(String, f64)> {
     })
 }
 
-fn text(arguments: &Arguments, found: &Addition) -> String {
+fn text(arguments: &Arguments, found: &Addition, input: &Input) -> String {
     let fit = &found.after;
     let mut text = format!(
         "{}: error on held-out data {} → {}, {:.1} nats gained\n",
@@ -127,7 +127,13 @@ fn text(arguments: &Arguments, found: &Addition) -> String {
         fit.log_likelihood - found.before.log_likelihood
     );
     for (index, (term, value)) in fit.form.terms.iter().zip(&fit.coefficients).enumerate() {
-        let _ = writeln!(text, "  {:<28} {:>26}", fit.form.effect_name(*term), number(*value, fit.std(index)));
+        let _ = writeln!(
+            text,
+            "  {:<28} {:>26}{}",
+            fit.form.effect_name(*term),
+            number(*value, fit.std(index)),
+            input.unit(*term)
+        );
     }
     for (name, value) in inner(fit) {
         let _ = writeln!(text, "    {name:<26} {value:>26.6}");

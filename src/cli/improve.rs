@@ -87,9 +87,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
         picture.write(&staircase(&stairs(&found), found.floor)?)?;
     }
     if arguments.json {
-        output::print_json(&report(arguments, &found))
+        output::print_json(&report(arguments, &found, &input))
     } else {
-        output::print(&text(arguments, &found))
+        output::print(&text(arguments, &found, &input))
     }
 }
 
@@ -102,7 +102,7 @@ fn find(input: &Input, recordings: &[(&Recording, Hold)]) -> Option<Found> {
     Some(Found { steps, answer, floor: floor.given.error.noise_floor, window })
 }
 
-fn report(arguments: &Arguments, found: &Found) -> Report {
+fn report(arguments: &Arguments, found: &Found, input: &Input) -> Report {
     let step = |step: &Step| StepReport {
         effect: step.effect.clone(),
         removed: step.removed.clone(),
@@ -116,14 +116,14 @@ fn report(arguments: &Arguments, found: &Found) -> Report {
         verdict: diagnose::verdict(diagnosis.finding),
         noise_floor: found.floor,
         window: found.window,
-        candidates: diagnosis.candidates.iter().map(CandidateReport::of).collect(),
-        answer: diagnose::answer(&found.answer),
+        candidates: diagnosis.candidates.iter().map(|candidate| CandidateReport::of(candidate, input)).collect(),
+        answer: diagnose::answer(&found.answer, input),
         model: arguments.output.display().to_string(),
     }
 }
 
-fn text(arguments: &Arguments, found: &Found) -> String {
-    let mut text = diagnose::answer(&found.answer).join("\n");
+fn text(arguments: &Arguments, found: &Found, input: &Input) -> String {
+    let mut text = diagnose::answer(&found.answer, input).join("\n");
     text += &format!("\n\nerror on held-out data, windows of {:.3} s\n", found.window);
     for (index, step) in found.steps.iter().enumerate() {
         let _ = writeln!(text, "{index:>3}  {:<40} {:>10}", title(step), percent(step.error));
@@ -133,11 +133,11 @@ fn text(arguments: &Arguments, found: &Found) -> String {
         text += "\nthe law now:\n";
         for (index, (term, value)) in last.fit.form.terms.iter().zip(&last.fit.coefficients).enumerate() {
             let name = last.fit.form.effect_name(*term);
-            let _ = writeln!(text, "  {name:<28} {:>26}", number(*value, last.fit.std(index)));
+            let _ = writeln!(text, "  {name:<28} {:>26}{}", number(*value, last.fit.std(index)), input.unit(*term));
         }
     }
     text += "\n";
-    text += &diagnose::candidates(&found.answer.diagnosis);
+    text += &diagnose::candidates(&found.answer.diagnosis, input);
     text + &format!("\nwritten: {}\n", arguments.output.display())
 }
 

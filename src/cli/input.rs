@@ -1,9 +1,10 @@
 //! What commands on recordings and a model have in common: opening them, and what the excitation did between samples.
 
 use super::error::CommandError;
-use crate::data;
-use crate::identify::{self, Recording, Settings};
-use crate::law::{Hold, Model};
+use super::output;
+use crate::data::{self, Opened};
+use crate::identify::{self, Gap, Recording, Settings};
+use crate::law::{Hold, Model, Term, Units};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
@@ -25,6 +26,8 @@ pub(super) struct Input {
     pub(super) model: Model,
     /// Its file.
     pub(super) file: String,
+    /// What is known of the units of coefficients.
+    pub(super) units: Units,
     recordings: Vec<Recording>,
     holds: Vec<Hold>,
 }
@@ -36,15 +39,18 @@ impl Input {
     /// The first file that is at fault.
     pub(super) fn open(data: &[String], arguments: &ModelArguments) -> Result<Input, CommandError> {
         let model = data::open_model(&arguments.model)?;
-        let open = |data: &String| data::open_recording(data, &model).map(|opened| opened.recording);
-        let recordings = data.iter().map(open).collect::<Result<Vec<_>, _>>()?;
+        let open = |data: &String| data::open_recording(data, &model);
+        let opened: Vec<Opened> = data.iter().map(open).collect::<Result<_, _>>()?;
+        let units = opened.iter().map(|opened| opened.units).reduce(Units::common).unwrap_or_default();
+        let recordings: Vec<Recording> = opened.into_iter().map(|opened| opened.recording).collect();
         let asked = arguments.hold.as_deref().and_then(Hold::from_id);
         let hold = |recording: &Recording| {
             let settings = || identify::settings_for(recording, Settings::default());
             asked.or(model.hold).unwrap_or_else(|| identify::choose_hold(&model, recording, &settings()))
         };
         let holds = recordings.iter().map(hold).collect();
-        Ok(Input { file: arguments.model.display().to_string(), model, recordings, holds })
+        recordings.iter().flat_map(warnings).for_each(|text| output::complain("warning", &text));
+        Ok(Input { file: arguments.model.display().to_string(), model, units, recordings, holds })
     }
 
     /// The recordings with their holds.
@@ -57,8 +63,26 @@ impl Input {
         self.recordings.iter().map(Recording::source).collect::<Vec<_>>().join(" ")
     }
 
+    /// The unit of a term's coefficient behind its value; empty where it is not known or none.
+    pub(super) fn unit(&self, term: Term) -> String {
+        let unit = self.units.coefficient(term).filter(|unit| unit.symbol != "1");
+        unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol))
+    }
+
     /// Why there is no law.
     pub(super) fn undetermined(&self) -> CommandError {
         CommandError::Undetermined { data: self.named(), model: self.file.clone() }
     }
+}
+
+/// What was taken otherwise than the file says.
+fn warnings(recording: &Recording) -> Vec<String> {
+    let source = recording.source();
+    let gap =
+        |gap: Gap| format!("{source}: no samples from {} s to {} s: nothing is carried over it", gap.start, gap.end);
+    let mut warnings: Vec<String> = recording.gaps().into_iter().map(gap).collect();
+    if !recording.channels().excitation {
+        warnings.push(format!("{source}: there is no excitation: taken as free motion"));
+    }
+    warnings
 }

@@ -34,10 +34,10 @@ struct CommandLine {
 #[derive(Subcommand)]
 enum Command {
     Compare(compare::Arguments),
-    Fmu(fmu::Arguments),
     Diagnose(diagnose::Arguments),
     Add(add::Arguments),
     Improve(improve::Arguments),
+    Fmu(fmu::Arguments),
     Identify(identify::Arguments),
     Simulate(simulate::Arguments),
 }
@@ -46,10 +46,10 @@ impl Command {
     fn run(self) -> Result<(), CommandError> {
         match self {
             Command::Compare(arguments) => compare::run(&arguments),
-            Command::Fmu(arguments) => fmu::run(&arguments),
             Command::Diagnose(arguments) => diagnose::run(&arguments),
             Command::Add(arguments) => add::run(&arguments),
             Command::Improve(arguments) => improve::run(&arguments),
+            Command::Fmu(arguments) => fmu::run(&arguments),
             Command::Identify(arguments) => identify::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
         }

@@ -9,6 +9,9 @@ const WIDTH: u32 = 760;
 const STEP: u32 = 44;
 const AROUND: u32 = 70;
 
+/// Ratio between the ends of the axis at most: a floor far below is named at the left end.
+const DECADES: f64 = 1e3;
+
 const BAR: RGBColor = RGBColor(46, 100, 158);
 const FLOOR: RGBColor = RGBColor(190, 60, 40);
 
@@ -36,7 +39,8 @@ fn draw(text: &mut String, stairs: &[Stair], floor: f64) -> Result<(), String> {
     let area = SVGBackend::with_string(text, (WIDTH, height)).into_drawing_area();
     area.fill(&WHITE).map_err(|error| said(&error))?;
     let errors = || stairs.iter().map(|stair| 100.0 * stair.error).chain([100.0 * floor]).filter(|error| *error > 0.0);
-    let range = 0.5 * errors().fold(f64::INFINITY, f64::min)..2.0 * errors().fold(0.0, f64::max);
+    let highest = 2.0 * errors().fold(0.0, f64::max);
+    let range = (0.5 * errors().fold(f64::INFINITY, f64::min)).max(highest / DECADES)..highest;
     let count = stairs.len() as f64;
     let mut chart = ChartBuilder::on(&area)
         .margin(12)
@@ -59,8 +63,12 @@ fn draw(text: &mut String, stairs: &[Stair], floor: f64) -> Result<(), String> {
         Rectangle::new([(left, top - 0.2), (100.0 * stair.error, top - 0.8)], BAR.filled())
     });
     chart.draw_series(bars).map_err(|error| said(&error))?;
+    let (line, name) = match 100.0 * floor {
+        floor if floor >= left => (floor, format!("noise floor {floor:.3} %")),
+        floor => (left, format!("← noise floor {floor:.1e} %")),
+    };
     chart
-        .draw_series([PathElement::new(vec![(100.0 * floor, 0.0), (100.0 * floor, count)], FLOOR.stroke_width(2))])
+        .draw_series([PathElement::new(vec![(line, 0.0), (line, count)], FLOOR.stroke_width(2))])
         .map_err(|error| said(&error))?;
     let labels = stairs.iter().enumerate().flat_map(|(index, stair)| {
         let middle = count - index as f64 - 0.5;
@@ -73,7 +81,7 @@ fn draw(text: &mut String, stairs: &[Stair], floor: f64) -> Result<(), String> {
     });
     chart.draw_series(labels).map_err(|error| said(&error))?;
     let style = ("sans-serif", 12).into_font().color(&FLOOR);
-    let floor_label = EmptyElement::at((100.0 * floor, count)) + Text::new("noise floor", (4, -12), style);
+    let floor_label = EmptyElement::at((line, count)) + Text::new(name, (4, -6), style);
     chart.draw_series([floor_label]).map_err(|error| said(&error))?;
     area.present().map_err(|error| said(&error))
 }

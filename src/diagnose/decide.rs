@@ -18,6 +18,10 @@ const SCALES: [f64; 8] = [1.5, 2.0, 0.5, 3.0, 0.33, 5.0, 0.2, 10.0];
 /// Log-likelihood, nats, that tells two candidates apart.
 const APART: f64 = 10.0;
 
+/// Where that much has not told them apart, the difference scatters along the record: so many times as much is asked for, which doubles
+/// the distance in standard errors.
+const SCATTERED: f64 = 4.0;
+
 /// The recording that would tell two candidates apart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decision {
@@ -27,6 +31,8 @@ pub struct Decision {
     pub other: String,
     /// How far apart they are on this record, nats.
     pub apart: f64,
+    /// How far apart they must be, nats.
+    pub needed: f64,
     /// How often as long a record of the same motion would have to be; infinite where no length would do.
     pub longer: f64,
     /// A motion of another size that would do.
@@ -52,17 +58,29 @@ pub fn decide(diagnosis: &Diagnosis, evidence: &Evidence) -> Option<Decision> {
     let force = Force { term: rival.term, coefficient: rival.coefficient, expressions: &law.form.expressions };
     let column = |piece: &Piece, states: &[State]| vec![force.along(piece, states)];
     let std = screen::screen_columns(law, &evidence.pieces, &column).first()?.std;
-    let apart = 0.5 / (std * std);
+    let best = diagnosis.candidates.iter().find(|candidate| candidate.effect == group[0])?;
+    let (apart, needed) = distance(0.5 / (std * std), best.gain - rival.gain);
     let here = left(law, &force, evidence, 1.0)?;
     let nats = |scale: f64| left(law, &force, evidence, scale).map(|left| apart * left / here);
-    let reached = SCALES.into_iter().find(|scale| nats(*scale).is_some_and(|nats| nats >= APART));
+    let reached = SCALES.into_iter().find(|scale| nats(*scale).is_some_and(|nats| nats >= needed));
     Some(Decision {
         one: group[0].clone(),
         other: group[1].clone(),
         apart,
-        longer: if apart > 0.0 { (APART / apart).max(1.0) } else { f64::INFINITY },
+        needed,
+        longer: if apart > 0.0 { needed / apart } else { f64::INFINITY },
         motion: reached.map(|scale| reach(law, scale)),
     })
+}
+
+/// How far apart two candidates are and must be, nats. Where they ought to be far apart and are not, noise that the law allows for absorbs
+/// what sets them apart: then the difference of their gains says how far.
+fn distance(ideal: f64, observed: f64) -> (f64, f64) {
+    match (ideal < APART, observed < APART) {
+        (true, _) => (ideal, APART),
+        (false, true) => (observed.max(1.0), APART),
+        (false, false) => (observed, SCATTERED * observed),
+    }
 }
 
 fn reach(law: &Fit, scale: f64) -> Reach {
@@ -125,9 +143,9 @@ pub struct Visible {
     pub share: f64,
 }
 
-/// What the record could have shown of the candidate that gains most.
+/// What the record could have shown of the best candidate.
 pub fn visible(diagnosis: &Diagnosis, evidence: &Evidence) -> Option<Visible> {
-    let tempting = diagnosis.candidates.iter().max_by(|a, b| a.gain.total_cmp(&b.gain))?;
+    let tempting = diagnosis.candidates.first()?;
     let law = &diagnosis.base;
     let inertia = law.form.terms.iter().position(|term| *term == Term::Inertia)?;
     let terms = [tempting.term, Term::Inertia];

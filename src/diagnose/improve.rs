@@ -104,10 +104,12 @@ pub fn improved_model(model: &Model, fit: &Fit) -> Model {
         let own = model.terms.iter().find(|entry| entry.term == term).map(|entry| entry.key.clone());
         own.unwrap_or_else(|| fit.form.effect_name(term))
     };
-    let known = |(term, value): (&Term, &f64)| {
+    let pairs = fit.form.terms.iter().zip(&fit.coefficients);
+    let terms = pairs.map(|(term, value)| {
+        let key = key(*term);
         let open = vec![false; model.inner_names(*term).len()];
-        ModelTerm { term: *term, given: Given::Known(*value), key: key(*term), open }
-    };
-    let terms = fit.form.terms.iter().zip(&fit.coefficients).map(known).collect();
-    Model { terms, expressions: fit.form.expressions.clone(), ..model.clone() }
+        ModelTerm { key, open, ..ModelTerm::new(*term, Given::Known(*value)) }
+    });
+    let expressions = fit.form.expressions.clone();
+    Model { terms: terms.collect(), expressions, ..model.clone() }
 }

@@ -3,6 +3,7 @@
 mod bad_input;
 mod bench;
 mod compare;
+mod diagnose;
 mod fmu;
 mod good_input;
 mod units;

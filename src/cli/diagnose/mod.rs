@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let input = Input::open(&arguments.data, &arguments.model)?;
     let found = Waiting::on("diagnosing", || find(&input))?;
     if arguments.json {
-        output::print_json(&report::Report::of(&found))
+        output::print_json(&report::Report::of(&found, &input))
     } else {
         output::print(&text::text(&found, &input))
     }

@@ -1,5 +1,6 @@
 //! A diagnosis as JSON.
 
+use super::super::input::Input;
 use super::super::output::Pairs;
 use super::text;
 use super::{Answer, Found, StageAnswer};
@@ -29,6 +30,7 @@ pub(in crate::cli) struct CandidateReport {
     effect: String,
     coefficient: f64,
     std: f64,
+    unit: Option<String>,
     inner: Pairs,
     error_before: f64,
     error_after: f64,
@@ -44,6 +46,7 @@ pub(in crate::cli) struct CandidateReport {
 struct DecisionReport {
     between: [String; 2],
     apart: f64,
+    needed: f64,
     scale: Option<f64>,
     displacement: Option<f64>,
     velocity: Option<f64>,
@@ -83,11 +86,12 @@ struct StageReport {
 }
 
 impl Report {
-    pub(super) fn of(found: &Found) -> Report {
+    pub(super) fn of(found: &Found, input: &Input) -> Report {
         let Answer { diagnosis, decision, visible, dependence } = &found.principal;
         let decides = decision.as_ref().map(|decision| DecisionReport {
             between: [decision.one.clone(), decision.other.clone()],
             apart: decision.apart,
+            needed: decision.needed,
             scale: decision.motion.map(|motion| motion.scale),
             displacement: decision.motion.map(|motion| motion.displacement),
             velocity: decision.motion.map(|motion| motion.velocity),
@@ -96,27 +100,28 @@ impl Report {
         Report {
             verdict: text::verdict(found.finding),
             effect: diagnosis.effect.clone(),
-            candidates: diagnosis.candidates.iter().map(CandidateReport::of).collect(),
+            candidates: diagnosis.candidates.iter().map(|candidate| CandidateReport::of(candidate, input)).collect(),
             indistinguishable: diagnosis.indistinguishable.clone(),
             beside: diagnosis.beside.clone(),
-            answer: text::lines(found),
+            answer: text::lines(found, input),
             decides,
             visible: visible.as_ref().map(|seen| VisibleReport { effect: seen.effect.clone(), share: seen.share }),
             depends_on: dependence.as_ref().map(DependenceReport::of),
             tried: diagnosis.tried,
             explained: diagnosis.explained,
             window: diagnosis.window,
-            stages: found.stages.iter().map(StageReport::of).collect(),
+            stages: found.stages.iter().map(|stage| StageReport::of(stage, input)).collect(),
         }
     }
 }
 
 impl CandidateReport {
-    pub(in crate::cli) fn of(candidate: &Candidate) -> CandidateReport {
+    pub(in crate::cli) fn of(candidate: &Candidate, input: &Input) -> CandidateReport {
         CandidateReport {
             effect: candidate.effect.clone(),
             coefficient: candidate.coefficient,
             std: candidate.std,
+            unit: input.units.coefficient(candidate.term).map(|unit| unit.symbol),
             inner: Pairs(candidate.inner.clone()),
             error_before: candidate.error_before,
             error_after: candidate.error_after,
@@ -146,7 +151,7 @@ impl DependenceReport {
 }
 
 impl StageReport {
-    fn of(stage: &StageAnswer) -> StageReport {
+    fn of(stage: &StageAnswer, input: &Input) -> StageReport {
         let found = stage.answer.as_ref().map(|answer| &answer.diagnosis);
         StageReport {
             data: stage.data.clone(),
@@ -154,7 +159,11 @@ impl StageReport {
             end: stage.end,
             verdict: found.map(|found| text::verdict(found.finding)),
             effect: found.and_then(|found| found.effect.clone()),
-            candidates: found.iter().flat_map(|found| &found.candidates).map(CandidateReport::of).collect(),
+            candidates: found
+                .iter()
+                .flat_map(|found| &found.candidates)
+                .map(|candidate| CandidateReport::of(candidate, input))
+                .collect(),
             indistinguishable: found.map_or_else(Vec::new, |found| found.indistinguishable.clone()),
             coefficients: found.map_or_else(Pairs::none, |found| Pairs::coefficients(&found.base)),
             std: found.map_or_else(Pairs::none, |found| Pairs::std(&found.base)),

@@ -19,7 +19,7 @@ pub(in crate::cli) fn verdict(finding: Finding) -> &'static str {
 }
 
 pub(super) fn text(found: &Found, input: &Input) -> String {
-    let mut text = lines(found).join("\n") + "\n\n";
+    let mut text = lines(found, input).join("\n") + "\n\n";
     if found.stages.is_empty() {
         text += &body(&found.principal, input);
     }
@@ -38,8 +38,8 @@ pub(super) fn text(found: &Found, input: &Input) -> String {
 }
 
 /// What is missing, how sure, and which further recording would decide.
-pub(super) fn lines(found: &Found) -> [String; 3] {
-    let mut lines = answer(&found.principal);
+pub(super) fn lines(found: &Found, input: &Input) -> [String; 3] {
+    let mut lines = answer(&found.principal, input);
     if !found.stages.is_empty() {
         lines[0] = over_stages(found);
     }
@@ -47,15 +47,15 @@ pub(super) fn lines(found: &Found) -> [String; 3] {
 }
 
 /// The three lines of one diagnosis.
-pub(in crate::cli) fn answer(answer: &Answer) -> [String; 3] {
-    [what(answer), sure(answer), decides(answer)]
+pub(in crate::cli) fn answer(answer: &Answer, input: &Input) -> [String; 3] {
+    [what(answer, input), sure(answer), decides(answer)]
 }
 
-fn what(answer: &Answer) -> String {
+fn what(answer: &Answer, input: &Input) -> String {
     let diagnosis = &answer.diagnosis;
     match (diagnosis.finding, diagnosis.candidates.first()) {
         (Finding::Missing, Some(best)) => {
-            let mut line = format!("missing: {}, {}", best.effect, force(best, diagnosis));
+            let mut line = format!("missing: {}, {}", best.effect, force(best, diagnosis, input));
             for other in &diagnosis.beside {
                 let _ = write!(line, "; and beside it {other}");
             }
@@ -72,10 +72,19 @@ fn what(answer: &Answer) -> String {
     }
 }
 
-/// `20.35 ± 0.05 sign(q̇), speed 0.02`.
-fn force(candidate: &Candidate, diagnosis: &Diagnosis) -> String {
+/// `20.35 ± 0.05 N`, in brackets where a unit follows both.
+fn with_unit(candidate: &Candidate, input: &Input) -> String {
+    let number = number(candidate.coefficient, candidate.std);
+    match input.unit(candidate.term).as_str() {
+        "" => number,
+        unit => format!("({number}){unit}"),
+    }
+}
+
+/// `(20.35 ± 0.05) N · sign(q̇), speed 0.02`.
+fn force(candidate: &Candidate, diagnosis: &Diagnosis, input: &Input) -> String {
     let symbol = effect_of(candidate.term, &diagnosis.base.form);
-    let mut force = format!("{} · {symbol}", number(candidate.coefficient, candidate.std));
+    let mut force = format!("{} · {symbol}", with_unit(candidate, input));
     for (name, value) in &candidate.inner {
         let _ = write!(force, ", {} {value:.4}", name.replace('_', " "));
     }
@@ -136,7 +145,7 @@ fn decides(answer: &Answer) -> String {
 }
 
 fn decision_words(decision: &Decision) -> String {
-    let Decision { one, other, apart, longer, motion } = decision;
+    let Decision { one, other, apart, needed, longer, motion } = decision;
     let asked = match motion {
         Some(reach) => format!(
             "a recording with |q| up to {:.3} and |q̇| up to {:.3} ({} times this one)",
@@ -145,7 +154,7 @@ fn decision_words(decision: &Decision) -> String {
         None if *longer < 1e4 => format!("a recording {longer:.0} times as long as this one"),
         None => "none of this kind of motion; excite it at other frequencies".into(),
     };
-    format!("{asked}, between {one} and {other} ({apart:.1} nats apart here, 10 decide)")
+    format!("{asked}, between {one} and {other} ({apart:.1} nats apart here, {needed:.0} decide)")
 }
 
 fn further(dependence: Option<&Dependence>) -> &'static str {
@@ -227,14 +236,14 @@ fn stage_text(index: usize, stage: &StageAnswer, input: &Input) -> String {
     let head = format!("stage {}, {:.3} s to {:.3} s of {}: ", index + 1, stage.start, stage.end, stage.data);
     match &stage.answer {
         None => head + "too short to determine a law\n",
-        Some(answer) => head + &what(answer) + "\n" + &body(answer, input),
+        Some(answer) => head + &what(answer, input) + "\n" + &body(answer, input),
     }
 }
 
 fn body(answer: &Answer, input: &Input) -> String {
     let diagnosis = &answer.diagnosis;
     let mut text = law(diagnosis, input);
-    text += &candidates(diagnosis);
+    text += &candidates(diagnosis, input);
     if diagnosis.finding == Finding::Missing {
         text += &reasons(diagnosis);
     }
@@ -251,9 +260,9 @@ fn law(diagnosis: &Diagnosis, input: &Input) -> String {
 }
 
 /// The candidates that were tried in the law, as a table; errors are those of windows of one length.
-pub(in crate::cli) fn candidates(diagnosis: &Diagnosis) -> String {
+pub(in crate::cli) fn candidates(diagnosis: &Diagnosis, input: &Input) -> String {
     let mut text = format!(
-        "{:<30} {:>22} {:>18} {:>10} {:>9}  {}\n",
+        "{:<30} {:>28} {:>18} {:>10} {:>9}  {}\n",
         "candidate",
         "coefficient",
         format!("error ({:.3} s)", diagnosis.window),
@@ -264,17 +273,21 @@ pub(in crate::cli) fn candidates(diagnosis: &Diagnosis) -> String {
     let worth = |index: &usize| *index < 2 || diagnosis.candidates[*index].p_value < LISTED;
     for index in (0..diagnosis.candidates.len()).filter(worth) {
         let candidate = &diagnosis.candidates[index];
+        let share = match diagnosis.finding {
+            Finding::Adequate => "–".into(),
+            _ => percent(candidate.share),
+        };
         let errors = format!("{} → {}", percent(candidate.error_before), percent(candidate.error_after));
         let sign = if candidate.physical { "physical" } else { "unphysical" };
         let others = if candidate.plausible { "plausible" } else { "implausible" };
         let _ = writeln!(
             text,
-            "{:<30} {:>22} {:>18} {:>10} {:>9}  {sign}, {others}",
+            "{:<30} {:>28} {:>18} {:>10} {:>9}  {sign}, {others}",
             candidate.effect,
-            number(candidate.coefficient, candidate.std),
+            with_unit(candidate, input),
             errors,
             chance(candidate.p_value),
-            percent(candidate.share)
+            share
         );
         let inner: Vec<String> = candidate.inner.iter().map(|(name, value)| format!("{name} {value:.4}")).collect();
         if !inner.is_empty() {

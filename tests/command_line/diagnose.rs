@@ -1,0 +1,162 @@
+//! `diagnose`, `add` and `improve` on plants whose hidden effect is known here and nowhere else.
+
+use super::bench::Bench;
+use serde_json::Value;
+
+const LINEAR: &str =
+    "hold = \"zero\"\n[terms]\ninertia = \"fit\"\nlinear_damping = \"fit\"\nlinear_stiffness = \"fit\"\n";
+
+/// A record of a linear oscillator under a multisine with this hidden in it, as `NAME.csv`.
+fn simulate(bench: &Bench, name: &str, seed: u64, noise: f64, hidden: &str, stages: &str) {
+    let scenario = format!(
+        "terms = [\"qdd\", \"qd\", \"q\", \"coulomb_friction\"]\nduration = 30.0\nseed = {seed}\n\
+         excitation = {{ kind = \"multisine\", from = 1.0, to = 12.0, count = 30, rms = 5.0, sample_time = 5e-3 }}\n\
+         [hidden]\n{hidden}\n[[stage]]\nstart = 0.0\ncoefficients = [1.0, 0.6, 40.0, 0.0]\n{stages}"
+    );
+    bench.write("plant.toml", &scenario);
+    let (data, noise) = (format!("{name}.csv"), noise.to_string());
+    bench.json(&["simulate", "plant.toml", "--noise", &noise, "-o", &data, "--json"]);
+}
+
+fn diagnose(bench: &Bench, data: &[&str]) -> Value {
+    bench.write("model.toml", LINEAR);
+    bench.json(&[&["diagnose"], data, &["--model", "model.toml", "--json"]].concat())
+}
+
+fn three_lines(bench: &Bench, data: &str) -> Vec<String> {
+    let output = bench.run(&["diagnose", data, "--model", "model.toml"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    text.lines().take(3).map(String::from).collect()
+}
+
+#[test]
+fn a_missing_effect_is_named_in_three_lines_and_in_json() {
+    let bench = Bench::new("missing");
+    simulate(&bench, "a", 11, 2e-3, "coulomb_friction = 0.8", "");
+    simulate(&bench, "b", 12, 2e-3, "coulomb_friction = 0.8", "");
+    let found = diagnose(&bench, &["a.csv", "b.csv@5:25"]);
+    assert_eq!((&found["verdict"], &found["effect"]), (&"missing".into(), &"coulomb_friction".into()), "{found:#}");
+    let best = &found["candidates"][0];
+    let number = |key: &str| best[key].as_f64().unwrap();
+    assert!((number("coefficient") - 0.8).abs() < 5.0 * number("std"), "{best}");
+    assert!(number("error_after") < 0.5 * number("error_before") && number("p_value") < 1e-10, "{best}");
+    assert!(best["physical"] == true && best["plausible"] == true && number("share") > 0.9, "{best}");
+    let lines = three_lines(&bench, "a.csv");
+    assert!(lines[0].starts_with("missing: coulomb_friction, 0."), "{lines:#?}");
+    assert!(lines[1].starts_with("how sure: by chance ") && lines[1].contains(" → "), "{lines:#?}");
+    assert!(lines[2].starts_with("decides: "), "{lines:#?}");
+}
+
+#[test]
+fn a_complete_model_is_adequate_and_says_what_it_could_have_shown() {
+    let bench = Bench::new("adequate");
+    simulate(&bench, "a", 21, 2e-3, "", "");
+    let found = diagnose(&bench, &["a.csv"]);
+    assert_eq!((&found["verdict"], &found["effect"]), (&"adequate".into(), &Value::Null), "{found:#}");
+    let share = found["visible"]["share"].as_f64().unwrap();
+    assert!((1e-5..0.05).contains(&share), "{share}");
+    let lines = three_lines(&bench, "a.csv");
+    assert!(lines[0].starts_with("nothing is missing") && lines[2].contains("of the force"), "{lines:#?}");
+}
+
+#[test]
+fn an_unmeasured_force_is_no_effect_of_the_catalogue_and_its_frequency_is_named() {
+    let bench = Bench::new("unexplained");
+    simulate(&bench, "a", 31, 2e-3, "hum = { coefficient = 1.5, expression = \"sin(9.31*t)\" }", "");
+    let found = diagnose(&bench, &["a.csv"]);
+    assert_eq!((&found["verdict"], &found["effect"]), (&"unexplained".into(), &Value::Null), "{found:#}");
+    let on = &found["depends_on"];
+    assert_eq!(on["on"], "frequency", "{on}");
+    assert!((on["omega"].as_f64().unwrap() - 9.31).abs() < 0.11 && on["p_value"].as_f64().unwrap() < 1e-10, "{on}");
+    assert!(three_lines(&bench, "a.csv")[0].contains("rad/s"));
+}
+
+#[test]
+fn a_drifting_stiffness_depends_on_time() {
+    let bench = Bench::new("drift");
+    simulate(&bench, "a", 41, 2e-3, "drift = { coefficient = 0.2, expression = \"q*t\" }", "");
+    let found = diagnose(&bench, &["a.csv"]);
+    assert_eq!(found["verdict"], "unexplained", "{found:#}");
+    let on = &found["depends_on"];
+    assert_eq!(on["on"], "time", "{on}");
+    assert!(on["sentence"].as_str().unwrap().contains("stiffness grows by"), "{on}");
+}
+
+#[test]
+fn what_cannot_be_told_apart_is_a_tie_with_the_recording_that_would() {
+    let bench = Bench::new("tie");
+    simulate(&bench, "a", 51, 0.05, "cubic_stiffness = 7.0", "");
+    let found = diagnose(&bench, &["a.csv"]);
+    assert_eq!(found["verdict"], "missing", "{found:#}");
+    let group = found["indistinguishable"][0].as_array().unwrap();
+    assert!(group.len() > 1 && group.contains(&"cubic_stiffness".into()), "{group:?}");
+    let decides = &found["decides"];
+    assert!(decides["apart"].as_f64().unwrap() < decides["needed"].as_f64().unwrap(), "{decides}");
+    let line = &three_lines(&bench, "a.csv")[2];
+    assert!(line.contains("a recording ") && line.contains("nats apart here"), "{line}");
+}
+
+#[test]
+fn an_effect_of_one_stage_only_is_missing_there() {
+    let bench = Bench::new("stages");
+    let second = "[[stage]]\nstart = 15.0\ncoefficients = [1.0, 0.6, 55.0, 1.0]\n";
+    simulate(&bench, "a", 61, 2e-3, "", second);
+    let found = diagnose(&bench, &["a.csv"]);
+    let stages = found["stages"].as_array().unwrap();
+    assert_eq!(stages.len(), 2, "{found:#}");
+    assert!((stages[1]["start"].as_f64().unwrap() - 15.0).abs() < 0.5, "{found:#}");
+    assert_eq!((&stages[0]["verdict"], &stages[1]["verdict"]), (&"adequate".into(), &"missing".into()), "{found:#}");
+    assert_eq!((&found["verdict"], &found["effect"]), (&"missing".into(), &"coulomb_friction".into()), "{found:#}");
+    let lines = three_lines(&bench, "a.csv");
+    assert_eq!(lines[0], "missing in stage 2 of 2 only: coulomb_friction");
+}
+
+#[test]
+fn add_and_improve_write_models_that_are_at_the_noise() {
+    let bench = Bench::new("add");
+    simulate(&bench, "a", 71, 2e-3, "coulomb_friction = 0.8", "");
+    simulate(&bench, "b", 72, 2e-3, "coulomb_friction = 0.8", "");
+    bench.write("model.toml", LINEAR);
+    let add = ["add", "coulomb_friction", "--model", "model.toml", "--data", "a.csv", "-o", "added.toml", "--json"];
+    let added = bench.json(&add);
+    let error = |key: &str| added[key].as_f64().unwrap();
+    assert!(error("error_after") < 0.5 * error("error_before"), "{added}");
+    let friction = added["coefficients"]["coulomb_friction"].as_f64().unwrap();
+    assert!((friction - 0.8).abs() < 5.0 * added["std"]["coulomb_friction"].as_f64().unwrap(), "{added}");
+    let improve =
+        ["improve", "a.csv", "--model", "model.toml", "-o", "better.toml", "--picture", "stairs.svg", "--json"];
+    let improved = bench.json(&improve);
+    assert_eq!((&improved["verdict"], &improved["steps"][0]["effect"]), (&"adequate".into(), &Value::Null));
+    assert_eq!(improved["steps"][1]["effect"], "coulomb_friction", "{improved:#}");
+    let picture = std::fs::read_to_string(bench.0.join("stairs.svg")).unwrap();
+    assert!(picture.contains("<svg") && picture.contains("+ coulomb_friction") && picture.contains("noise floor"));
+    for model in ["added.toml", "better.toml"] {
+        let compared = bench.json(&["compare", "b.csv", "--model", model, "--json"]);
+        assert_eq!(compared["verdict"], "at_noise", "{model}: {compared:#}");
+    }
+}
+
+#[test]
+fn nothing_is_overwritten_unasked() {
+    let bench = Bench::new("overwrite");
+    simulate(&bench, "a", 81, 2e-3, "coulomb_friction = 0.8", "");
+    bench.write("model.toml", LINEAR);
+    let add = ["add", "coulomb_friction", "--model", "model.toml", "--data", "a.csv", "-o", "model.toml"];
+    bench.refused(&add, &["model.toml", "exists already", "--force"]);
+    bench.refused(&["improve", "a.csv", "--model", "model.toml", "-o", "model.toml"], &["exists already"]);
+    assert_eq!(std::fs::read_to_string(bench.0.join("model.toml")).unwrap(), LINEAR);
+    assert!(bench.run(&[add.as_slice(), &["--force"]].concat()).status.success());
+    assert!(std::fs::read_to_string(bench.0.join("model.toml")).unwrap().contains("coulomb_friction"));
+}
+
+#[test]
+fn effects_that_are_unknown_or_there_already_are_refused() {
+    let bench = Bench::new("effects");
+    simulate(&bench, "a", 91, 2e-3, "", "");
+    bench.write("model.toml", LINEAR);
+    let add = |effect| ["add", effect, "--model", "model.toml", "--data", "a.csv", "-o", "new.toml"];
+    bench.refused(&add("colomb_friction"), &["colomb_friction", "did you mean coulomb_friction", "hysteresis"]);
+    bench.refused(&add("qd"), &["model.toml has the effect \"qd\" already", "linear_damping"]);
+    bench.refused(&["add", "q^3", "--model", "model.toml", "-o", "new.toml"], &["--data"]);
+    assert!(!bench.0.join("new.toml").exists());
+}
