@@ -14,6 +14,8 @@ pub mod cli;
 pub mod data;
 pub mod diagnose;
 pub mod evidence;
+#[cfg(feature = "fmu")]
+pub mod fmu;
 pub mod identify;
 pub mod law;
 pub mod simulate;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 /// From the top down; a module imports only from rows below its own, and from itself.
 const LAYERS: [&[&str]; 8] = [
     &["cli", "workbench", "report"],
-    &["data"],
+    &["data", "fmu"],
     &["diagnose"],
     &["identify"],
     &["evidence"],

@@ -1,4 +1,5 @@
-//! Real recordings, from position alone with default settings: one stage, no alarm, the coefficients of their sources.
+//! Real recordings, from position alone with default settings: one stage, no alarm, the coefficients of their sources; and how wrong models
+//! of them are, as their sources measured it.
 //!
 //! The folder is named by `SWITCHID_DATA`; without it the tests say that they skip, and in CI that is a failure.
 
@@ -17,11 +18,15 @@ fn recording(name: &str) -> Option<PathBuf> {
 }
 
 fn identify(data: &Path, model: &str) -> Value {
+    run(&["identify"], data, model)
+}
+
+fn run(arguments: &[&str], data: &Path, model: &str) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("model.toml");
     std::fs::write(&file, model).unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_switchid"))
-        .arg("identify")
+        .args(arguments)
         .arg(data)
         .arg("--model")
         .arg(&file)
@@ -76,4 +81,57 @@ fn without_offsets(data: &Path, section: std::ops::Range<usize>) -> String {
         writeln!(text, "{t},{},{}", y - output, u - input).unwrap();
         text
     })
+}
+
+/// A figure of a comparison within its share of the source's.
+fn near(found: &Value, pointer: &str, source: f64, share: f64) {
+    let value = found.pointer(pointer).and_then(Value::as_f64).unwrap_or_else(|| panic!("no {pointer} in {found:#}"));
+    assert!((value / source - 1.0).abs() < share, "{pointer} = {value}, source {source}");
+}
+
+const EMPS: &str = "hold = \"linear\"\n[columns]\nt = \"time_s\"\nq = \"position_m\"\nF = \"force_N\"\n[terms]\n";
+
+#[test]
+fn emps_fails_around_velocity_reversals_until_its_coulomb_friction_is_in_the_model() {
+    let Some(train) = recording("emps/emps_train_tidy.csv") else { return };
+    let Some(test) = recording("emps/emps_test_pulses_tidy.csv") else { return };
+    let compare = |data: &Path, terms: &str| run(&["compare", "--window", "0.301"], data, &format!("{EMPS}{terms}"));
+    let fitted = "inertia = \"fit\"\nlinear_damping = \"fit\"\nconstant_force = \"fit\"\n";
+    let viscous = compare(&train, fitted);
+    near(&viscous, "/error/force_residual", 0.189, 0.05);
+    let sentence = viscous["fails"][0]["sentence"].as_str().unwrap();
+    assert!(sentence.contains("around velocity reversals"), "{sentence}");
+    let coulomb = compare(&train, &format!("{fitted}coulomb_friction = \"fit\"\n"));
+    near(&coulomb, "/error/force_residual", 0.034, 0.1);
+    let viscous = compare(&test, "inertia = 94.1\nlinear_damping = 414\nconstant_force = -3.12\n");
+    near(&viscous, "/error/force_residual", 0.191, 0.05);
+    near(&viscous, "/error/window_rmse", 6.03e-3, 0.06);
+    let train = "inertia = 94.40\nlinear_damping = 192.0\nconstant_force = -3.19\ncoulomb_friction = 21.61\n";
+    let coulomb = compare(&test, train);
+    near(&coulomb, "/error/force_residual", 0.042, 0.05);
+    near(&coulomb, "/error/window_rmse", 2.12e-3, 0.1);
+}
+
+#[test]
+fn silverbox_fails_at_large_amplitude_until_its_cubic_stiffness_is_in_the_model() {
+    let Some(data) = recording("silverbox/silverbox_tidy.csv") else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let section = |name: &str, samples| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, without_offsets(&data, samples)).unwrap();
+        path
+    };
+    let (training, arrow) = (section("training.csv", 40_700..127_400), section("arrow.csv", 100..40_575));
+    let compare =
+        |data: &Path, terms: &str| run(&["compare"], data, &format!("hold = \"band_limited\"\n[terms]\n{terms}"));
+    let linear = compare(&training, "inertia = \"fit\"\nqd = \"fit\"\nq = \"fit\"\n");
+    near(&linear, "/error/force_residual", 0.0384, 0.02);
+    let cubic = compare(&training, "inertia = \"fit\"\nqd = \"fit\"\nq = \"fit\"\n\"q^3\" = \"fit\"\n");
+    near(&cubic, "/error/force_residual", 0.0150, 0.1);
+    let linear = compare(&arrow, "inertia = 5.463e-6\nqd = 2.201e-4\nq = 1.0249\n");
+    near(&linear, "/error/free_run_nrmse", 0.330, 0.07);
+    let sentence = linear["fails"][0]["sentence"].as_str().unwrap();
+    assert!(sentence.contains("while the vibration is large"), "{sentence}");
+    let cubic = compare(&arrow, "inertia = 5.35e-6\nqd = 2.23e-4\nq = 0.990\n\"q^3\" = 3.93\n");
+    near(&cubic, "/error/free_run_nrmse", 0.041, 0.07);
 }

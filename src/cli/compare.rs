@@ -1,14 +1,14 @@
 //! `switchid compare`: a model against measurements.
 
+use super::compare_report::Report;
 use super::error::CommandError;
-use super::output::{self, Pairs};
+use super::output;
 use crate::data;
-use crate::diagnose::{Bounds, Comparison, Error, Fail, NOISE_RATIO, Options, Over, Side, Verdict, compare};
-use crate::identify::{self, Recording, Settings};
+use crate::diagnose::{Comparison, Estimate, NOISE_RATIO, Options, Side, Verdict, compare};
+use crate::identify::{self, Gap, Recording, Settings};
 use crate::law::{Hold, Model, equation};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use serde::Serialize;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -52,6 +52,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let recordings: Vec<(&Recording, Hold)> =
         opened.iter().map(|opened| (&opened.recording, hold(arguments, &model, &opened.recording))).collect();
     let found = compare(&model, &recordings, &options);
+    opened.iter().flat_map(|opened| warnings(&opened.recording)).for_each(|text| output::complain("warning", &text));
     let holds: Vec<Hold> = recordings.iter().map(|(_, hold)| *hold).collect();
     if arguments.json {
         output::print_json(&Report::of(&found, &holds))
@@ -69,174 +70,22 @@ fn options(arguments: &Arguments) -> Result<Options, CommandError> {
     Ok(Options { window, horizon: positive("horizon", arguments.horizon)? })
 }
 
+/// What was taken otherwise than the file says.
+fn warnings(recording: &Recording) -> Vec<String> {
+    let source = recording.source();
+    let gap =
+        |gap: Gap| format!("{source}: no samples from {} s to {} s: nothing is carried over it", gap.start, gap.end);
+    let mut warnings: Vec<String> = recording.gaps().into_iter().map(gap).collect();
+    if !recording.channels().excitation {
+        warnings.push(format!("{source}: there is no excitation: taken as free motion"));
+    }
+    warnings
+}
+
 fn hold(arguments: &Arguments, model: &Model, recording: &Recording) -> Hold {
     let asked = arguments.hold.as_deref().and_then(Hold::from_id);
     let settings = || identify::settings_for(recording, Settings::default());
     asked.or(model.hold).unwrap_or_else(|| identify::choose_hold(model, recording, &settings()))
-}
-
-#[derive(Serialize)]
-struct Report {
-    verdict: &'static str,
-    error: ErrorReport,
-    coefficients: Pairs,
-    std: Pairs,
-    fails: Vec<FailReport>,
-    best: SideReport,
-    recordings: Vec<RecordingReport>,
-}
-
-#[derive(Serialize)]
-struct SideReport {
-    error: ErrorReport,
-    coefficients: Pairs,
-    std: Pairs,
-    undetermined: Vec<String>,
-    fails: Vec<FailReport>,
-}
-
-#[derive(Serialize)]
-struct FailReport {
-    kind: &'static str,
-    over: &'static str,
-    bounds: Vec<BoundsReport>,
-    data: Option<String>,
-    share: f64,
-    time_share: f64,
-    evidence: f64,
-    sentence: String,
-}
-
-#[derive(Serialize)]
-struct BoundsReport {
-    of: &'static str,
-    lower: Option<f64>,
-    upper: Option<f64>,
-}
-
-#[derive(Serialize)]
-struct RecordingReport {
-    data: String,
-    hold: &'static str,
-    noise: Pairs,
-    error: ErrorReport,
-    best: ErrorReport,
-}
-
-#[derive(Serialize)]
-struct ErrorReport {
-    force_residual: f64,
-    window: f64,
-    noise_floor: f64,
-    ratio: Option<f64>,
-    free_run_nrmse: Option<f64>,
-    free_run_nrmse_velocity: Option<f64>,
-    free_run_diverged: Option<f64>,
-    window_rmse: Option<f64>,
-    horizon: f64,
-}
-
-impl Report {
-    fn of(found: &Comparison, holds: &[Hold]) -> Report {
-        let error = |error: &Error| ErrorReport::of(error, found);
-        let recordings = found.sources.iter().enumerate().map(|(index, source)| RecordingReport {
-            data: source.clone(),
-            hold: holds[index].id(),
-            noise: noise(found.noise[index]),
-            error: error(&found.given.each[index]),
-            best: error(&found.best.each[index]),
-        });
-        Report {
-            verdict: id(found.verdict()),
-            error: error(&found.given.error),
-            coefficients: coefficients(&found.given),
-            std: std(&found.given),
-            fails: found.given.fails.iter().map(|fail| FailReport::of(fail, found)).collect(),
-            best: SideReport {
-                error: error(&found.best.error),
-                coefficients: coefficients(&found.best),
-                std: std(&found.best),
-                undetermined: found.best.law.undetermined.iter().map(|term| term.name()).collect(),
-                fails: found.best.fails.iter().map(|fail| FailReport::of(fail, found)).collect(),
-            },
-            recordings: recordings.collect(),
-        }
-    }
-}
-
-impl FailReport {
-    fn of(fail: &Fail, found: &Comparison) -> FailReport {
-        let over = over(fail.over);
-        let one = |of: &'static str, bounds: Bounds| BoundsReport { of, lower: bounds.lower, upper: bounds.upper };
-        let bounds = match fail.over {
-            Over::PhasePlane => vec![one("q", fail.bounds), one("qd", fail.velocity)],
-            _ => vec![one(over, fail.bounds)],
-        };
-        FailReport {
-            kind: if fail.over == Over::Time { "time" } else { "region" },
-            over,
-            bounds,
-            data: fail.recording.and_then(|index| found.sources.get(index).cloned()),
-            share: fail.share,
-            time_share: fail.time_share,
-            evidence: fail.evidence,
-            sentence: found.sentence(fail),
-        }
-    }
-}
-
-fn over(over: Over) -> &'static str {
-    match over {
-        Over::Time => "t",
-        Over::Displacement => "q",
-        Over::Excursion => "excursion",
-        Over::Velocity => "qd",
-        Over::Speed => "speed",
-        Over::Amplitude => "amplitude",
-        Over::PhasePlane => "phase_plane",
-        Over::Frequency => "frequency",
-    }
-}
-
-impl ErrorReport {
-    fn of(error: &Error, found: &Comparison) -> ErrorReport {
-        ErrorReport {
-            force_residual: error.force_residual,
-            window: found.window,
-            noise_floor: error.noise_floor,
-            ratio: Some(error.ratio()).filter(|ratio| ratio.is_finite()),
-            free_run_nrmse: error.free_run_nrmse,
-            free_run_nrmse_velocity: error.free_run_nrmse_velocity,
-            free_run_diverged: error.diverged,
-            window_rmse: error.window_rmse,
-            horizon: found.horizon,
-        }
-    }
-}
-
-fn id(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::AtNoise => "at_noise",
-        Verdict::NumbersOff => "numbers_off",
-        Verdict::NumbersOffAndMore => "numbers_off_and_more",
-        Verdict::FormWrong => "form_wrong",
-    }
-}
-
-fn noise(std: [f64; 2]) -> Pairs {
-    let channels = ["q", "qd"].into_iter().zip(std).filter(|(_, std)| *std > 0.0);
-    Pairs(channels.map(|(channel, std)| (channel.to_string(), std)).collect())
-}
-
-fn coefficients(side: &Side) -> Pairs {
-    let law = &side.law;
-    let known = law.terms.iter().zip(&law.coefficients).filter(|(term, _)| !law.undetermined.contains(term));
-    Pairs(known.map(|(term, value)| (term.name(), *value)).collect())
-}
-
-fn std(side: &Side) -> Pairs {
-    let pairs = side.law.terms.iter().zip(&side.law.std);
-    Pairs(pairs.filter_map(|(term, std)| Some((term.name(), (*std)?))).collect())
 }
 
 fn text(found: &Comparison, model: &Model, file: &str) -> String {
@@ -324,7 +173,7 @@ fn table(found: &Comparison) -> String {
         sides.map(|side| number(Some(side.force_residual))),
     );
     line("noise floor", sides.map(|side| number(Some(side.noise_floor))));
-    line("residual ÷ noise floor", sides.map(|side| format!("{:.2}", side.ratio())));
+    line("residual ÷ noise floor", sides.map(|side| ratio(side.ratio())));
     line(
         "free run, RMSE ÷ std",
         sides.map(|side| side.diverged.map_or(number(side.free_run_nrmse), |t| format!("diverges {t:.2} s"))),
@@ -347,7 +196,7 @@ fn numbers(found: &Comparison, model: &Model) -> String {
         .collect();
     let mut text = format!("\nbest of this form: {}\n", equation(&pairs, found.forced));
     for (index, entry) in model.terms.iter().enumerate() {
-        let known = |law: &crate::diagnose::Estimate| match law.std[index] {
+        let known = |law: &Estimate| match law.std[index] {
             Some(std) => format!("{:.6e} ± {std:.1e}", law.coefficients[index]),
             None if law.undetermined.contains(&entry.term) => "not determined".into(),
             None => format!("{:.6e} (held)", law.coefficients[index]),
@@ -372,6 +221,10 @@ fn recordings(found: &Comparison) -> String {
         );
     }
     text
+}
+
+fn ratio(ratio: f64) -> String {
+    if ratio < 100.0 { format!("{ratio:.2}") } else { format!("{ratio:.0}") }
 }
 
 fn percent(share: f64) -> String {

@@ -1,6 +1,7 @@
 //! Why a command did not do its work.
 
 use crate::data::DataError;
+use crate::fmu::FmuError;
 use crate::identify::BuildError;
 use crate::simulate::{SimulateError, UnknownBuiltin};
 use thiserror::Error;
@@ -34,6 +35,32 @@ pub(super) enum CommandError {
         model: String,
         /// Why.
         source: BuildError,
+    },
+    /// There is no FMU of the model.
+    #[error("{model}: {source}")]
+    Fmu {
+        /// The model's file.
+        model: String,
+        /// Why.
+        source: FmuError,
+    },
+    /// The prebuilt binary of an FMU is not there.
+    #[error(
+        "{folder}: there is no libswitchid_fmu_{kind}.so (or .dll, .dylib): build it with `cargo build --release -p switchid-fmu-{kind}`, or say where it lies with --binaries DIR"
+    )]
+    NoBinary {
+        /// Which one.
+        kind: &'static str,
+        /// Where it was looked for.
+        folder: String,
+    },
+    /// A file cannot be read.
+    #[error("{file}: cannot be read: {reason}")]
+    Read {
+        /// The file.
+        file: String,
+        /// What the system says.
+        reason: String,
     },
     /// A number of the command line is out of range.
     #[error("--{option} {value} is out of range: it must be {range}")]

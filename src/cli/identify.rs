@@ -6,10 +6,11 @@ use super::progress::Progress;
 use super::trace::Trace;
 use crate::data::{self, Opened};
 use crate::identify::{self, Gap, Identification, Method, Recording, Settings, Stage};
-use crate::law::{Hold, Model};
+use crate::law::{Hold, Model, Term, Units, unit_of};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -22,8 +23,10 @@ A model file:
   name = "positioning axis"
   [columns]                  # which column is what; without it t, q, qd and F
   t = "time_s"
-  q = "position_m"
+  q = "position"
   F = "force_N"
+  [units]                    # of columns whose header names none; else SI
+  q = "mm"
   [terms]                    # m q̈ + c q̇ + k q = F
   inertia = "fit"            # "fit": estimated, stays
   linear_damping = 0.3       # a number: known, held
@@ -33,7 +36,7 @@ A model file:
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
 pub(super) struct Arguments {
-    /// The recording (CSV with a header), or a section of it: DATA@t0:t1 in seconds
+    /// The recording (CSV with a header, MAT or Parquet), or a section of it: DATA@t0:t1 in seconds
     data: String,
     /// The model file (TOML)
     #[arg(long, short)]
@@ -153,6 +156,8 @@ struct StageReport {
     law: Option<String>,
     coefficients: Pairs,
     std: Pairs,
+    /// By term, where known.
+    units: BTreeMap<String, String>,
     unidentifiable: Vec<String>,
 }
 
@@ -161,7 +166,7 @@ impl Report {
         let Run { opened, settings, found, .. } = run;
         let forced = settings.channels.excitation;
         Report {
-            stages: found.stages.iter().map(|stage| StageReport::of(stage, forced)).collect(),
+            stages: found.stages.iter().map(|stage| StageReport::of(stage, forced, &opened.units)).collect(),
             noise: Pairs(noise(found)),
             hold: settings.hold.id(),
             gaps: opened.recording.gaps().into_iter().map(|gap| [gap.start, gap.end]).collect(),
@@ -171,7 +176,7 @@ impl Report {
 }
 
 impl StageReport {
-    fn of(stage: &Stage, forced: bool) -> StageReport {
+    fn of(stage: &Stage, forced: bool, units: &Units) -> StageReport {
         StageReport {
             start: stage.start,
             end: stage.end,
@@ -180,6 +185,10 @@ impl StageReport {
             law: stage.law(forced),
             coefficients: Pairs(stage.known().map(|(known, _)| (known.term.name(), known.value)).collect()),
             std: Pairs(stage.known().map(|(known, std)| (known.term.name(), std)).collect()),
+            units: stage
+                .known()
+                .filter_map(|(known, _)| Some((known.term.name(), unit_of(known.term, units)?)))
+                .collect(),
             unidentifiable: stage.unidentifiable.clone(),
         }
     }
@@ -204,7 +213,8 @@ fn text(run: &Run) -> String {
         );
     }
     for (index, stage) in run.found.stages.iter().enumerate() {
-        let _ = write!(text, "\nstage {}: {}", index + 1, law(stage, run.settings.channels.excitation));
+        let _ =
+            write!(text, "\nstage {}: {}", index + 1, law(stage, run.settings.channels.excitation, &run.opened.units));
     }
     text
 }
@@ -223,12 +233,14 @@ fn head(run: &Run) -> String {
     text
 }
 
-/// The law on one line, its coefficients with their std, and what is not known.
-fn law(stage: &Stage, forced: bool) -> String {
+/// The law on one line, its coefficients with their std and units, and what is not known.
+fn law(stage: &Stage, forced: bool, units: &Units) -> String {
     let unknown = "cannot be determined from these data";
     let mut text = stage.law(forced).unwrap_or_else(|| unknown.into()) + "\n";
     for (known, std) in stage.known() {
-        let _ = writeln!(text, "  {:<12} {:>14.6e} ± {std:.1e}", known.term.name(), known.value);
+        let line =
+            format!("  {:<12} {:>14.6e} ± {std:.1e} {}", known.term.name(), known.value, unit(known.term, units));
+        text = text + line.trim_end() + "\n";
     }
     let open: Vec<String> =
         stage.coefficients.iter().filter(|entry| entry.std.is_none()).map(|entry| entry.term.name()).collect();
@@ -239,6 +251,10 @@ fn law(stage: &Stage, forced: bool) -> String {
         let _ = writeln!(text, "  no data of this stage determine {combination}");
     }
     text
+}
+
+fn unit(term: Term, units: &Units) -> String {
+    unit_of(term, units).unwrap_or_default()
 }
 
 fn time(t: Option<f64>) -> String {

@@ -4,7 +4,9 @@
 //! 0 done, 1 a gate or a check failed, 2 bad usage or bad input.
 
 mod compare;
+mod compare_report;
 mod error;
+mod fmu;
 mod identify;
 mod output;
 mod progress;
@@ -26,6 +28,7 @@ struct CommandLine {
 #[derive(Subcommand)]
 enum Command {
     Compare(compare::Arguments),
+    Fmu(fmu::Arguments),
     Identify(identify::Arguments),
     Simulate(simulate::Arguments),
 }
@@ -34,6 +37,7 @@ impl Command {
     fn run(self) -> Result<(), CommandError> {
         match self {
             Command::Compare(arguments) => compare::run(&arguments),
+            Command::Fmu(arguments) => fmu::run(&arguments),
             Command::Identify(arguments) => identify::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
         }

@@ -1,11 +1,13 @@
 //! Why something that a user brought cannot be used.
 
+use super::kind::FileKind;
 use crate::identify::RecordingError;
 use crate::law::ModelError;
 use crate::simulate::ScenarioError;
 use thiserror::Error;
 
-/// Why a file cannot be used. `file` is its name as the user wrote it, `line` counts from 1 with the header as line 1.
+/// Why a file cannot be used. `file` is its name as the user wrote it, `line` counts from 1 with the header as line 1,
+/// `row` is a line of CSV or counts samples from 1.
 #[derive(Debug, Error)]
 pub enum DataError {
     /// It cannot be opened or read.
@@ -22,6 +24,87 @@ pub enum DataError {
         /// The file.
         file: String,
     },
+    /// It is of no known kind.
+    #[error(
+        "{file}: cannot be read: this is neither CSV text (UTF-8) nor a MAT file of version 5 or 7.3 nor Parquet; export it as one of these (in MATLAB: save with -v7)"
+    )]
+    Foreign {
+        /// The file.
+        file: String,
+    },
+    /// It breaks off, or its bytes make no sense.
+    #[error("{file}: this {} file is damaged, incomplete or of a form that is not supported: {reason}. Copy or export it again", kind.name())]
+    Damaged {
+        /// The file.
+        file: String,
+        /// What kind of file it is.
+        kind: FileKind,
+        /// What was found.
+        reason: String,
+    },
+    /// A column that holds no signal.
+    #[error(
+        "{file}: {0} \"{column}\" is {what}, but a vector of real numbers is needed: convert it, or name another {0} in the model's [columns]",
+        kind.column()
+    )]
+    NotAVector {
+        /// The file.
+        file: String,
+        /// What kind of file it is.
+        kind: FileKind,
+        /// The column.
+        column: String,
+        /// What it is instead.
+        what: String,
+    },
+    /// Columns of different length.
+    #[error(
+        "{file}: {0} \"{column}\" has {count} values, but \"{first}\" has {expected}: all {0}s of a recording must be equally long",
+        kind.column()
+    )]
+    UnequalLength {
+        /// The file.
+        file: String,
+        /// What kind of file it is.
+        kind: FileKind,
+        /// The column.
+        column: String,
+        /// How many values it has.
+        count: usize,
+        /// The column that it is compared with.
+        first: String,
+        /// How many values that one has.
+        expected: usize,
+    },
+    /// A value that is missing or infinite.
+    #[error(
+        "{file}: {0} {row}: {1} \"{column}\" is {value}, no finite number: correct it or delete the {0}",
+        kind.row(), kind.column()
+    )]
+    NotFinite {
+        /// The file.
+        file: String,
+        /// What kind of file it is.
+        kind: FileKind,
+        /// The row.
+        row: u64,
+        /// The column.
+        column: String,
+        /// What stands there.
+        value: String,
+    },
+    /// A sample time or sampling rate that is none.
+    #[error(
+        "{file}: variable \"{variable}\" is {found}: as the distance of two samples (dt, Ts in s) or the sampling rate (fs in Hz) it must be one positive number"
+    )]
+    SampleTime {
+        /// The file.
+        file: String,
+        /// The variable.
+        variable: String,
+        /// What it is.
+        found: String,
+    },
     /// The section is no `t0:t1`.
     #[error("{data}: \"{section}\" is no section: write two times in seconds, DATA@1.5:20")]
     Section {
@@ -32,11 +115,14 @@ pub enum DataError {
     },
     /// A column that must be there is not.
     #[error(
-        "{file}: line 1: there is no column \"{column}\" for {channel}; the columns are {columns}. Name the right one in the model: [columns] {channel} = \"...\""
+        "{file}: {}there is no {1} \"{column}\" for {channel}; the {1}s are {columns}. Name the right one in the model: [columns] {channel} = \"...\"{2}",
+        kind.heading(), kind.column(), time_hint(*kind, channel)
     )]
     MissingColumn {
         /// The file.
         file: String,
+        /// What kind of file it is.
+        kind: FileKind,
         /// The column that was looked for.
         column: String,
         /// What it would hold.
@@ -46,29 +132,36 @@ pub enum DataError {
     },
     /// Neither displacement nor velocity.
     #[error(
-        "{file}: line 1: there is no column \"q\" or \"qd\", and one of them is needed; the columns are {columns}. Name the right one in the model: [columns] q = \"...\""
+        "{file}: {}there is no {1} \"q\" or \"qd\", and one of them is needed; the {1}s are {columns}. Name the right one in the model: [columns] q = \"...\"",
+        kind.heading(), kind.column()
     )]
     NoMotion {
         /// The file.
         file: String,
+        /// What kind of file it is.
+        kind: FileKind,
         /// The columns there are.
         columns: String,
     },
     /// Several columns fit.
-    #[error("{file}: line 1: several columns are \"{column}\": {columns}. Rename all but one")]
+    #[error("{file}: {}several {}s are \"{column}\": {columns}. Rename all but one", kind.heading(), kind.column())]
     Ambiguous {
         /// The file.
         file: String,
+        /// What kind of file it is.
+        kind: FileKind,
         /// The column that was looked for.
         column: String,
         /// The headers that fit.
         columns: String,
     },
     /// A unit that is not known.
-    #[error("{file}: line 1: column \"{column}\": unknown unit \"{unit}\" for {channel}; known are {known}")]
+    #[error("{file}: {}{} \"{column}\": unknown unit \"{unit}\" for {channel}; known are {known}", kind.heading(), kind.column())]
     UnknownUnit {
         /// The file.
         file: String,
+        /// What kind of file it is.
+        kind: FileKind,
         /// The header.
         column: String,
         /// The unit as written.
@@ -80,15 +173,18 @@ pub enum DataError {
     },
     /// A unit of another quantity.
     #[error(
-        "{file}: line 1: column \"{column}\": {unit} is a unit of {quantity}, but {channel} is {expected}. Map another column to {channel}, or rename this one if its ending is no unit"
+        "{file}: {}{1} \"{column}\": {unit} is a unit of {quantity}, but {channel} is {expected}. Map another {1} to {channel}, or rename this one if its ending is no unit",
+        kind.heading(), kind.column()
     )]
     WrongUnit {
         /// The file.
         file: String,
+        /// What kind of file it is.
+        kind: FileKind,
         /// The header.
         column: String,
         /// The unit as written.
-        unit: String,
+        unit: Box<str>,
         /// What the unit measures.
         quantity: &'static str,
         /// The quantity.
@@ -96,13 +192,32 @@ pub enum DataError {
         /// What it is.
         expected: &'static str,
     },
+    /// The model names another unit than the header.
+    #[error(
+        "{file}: \"{column}\" is in {unit}, but the model says [units] {channel} = \"{declared}\": take one of them out, or correct it"
+    )]
+    UnitContradicts {
+        /// The file.
+        file: String,
+        /// The header.
+        column: String,
+        /// The header's unit.
+        unit: &'static str,
+        /// The quantity.
+        channel: &'static str,
+        /// The model's unit.
+        declared: Box<str>,
+    },
     /// Displacement and velocity of different kinds.
     #[error(
-        "{file}: line 1: column \"{velocity}\" ({velocity_quantity}) is not the rate of column \"{displacement}\" ({displacement_quantity}): correct the units"
+        "{file}: {}{1} \"{velocity}\" ({velocity_quantity}) is not the rate of {1} \"{displacement}\" ({displacement_quantity}): correct the units",
+        kind.heading(), kind.column()
     )]
     UnitsDisagree {
         /// The file.
         file: String,
+        /// What kind of file it is.
+        kind: FileKind,
         /// The displacement's header.
         displacement: String,
         /// What it measures.
@@ -150,17 +265,20 @@ pub enum DataError {
     },
     /// Time that does not increase.
     #[error(
-        "{file}: line {line}: time does not increase: {previous} s on line {previous_line}, then {t} s. Sort the lines and delete duplicates"
+        "{file}: {0} {row}: time does not increase: {previous} s on {0} {previous_row}, then {t} s. Sort the {0}s and delete duplicates",
+        kind.row()
     )]
     NotIncreasing {
         /// The file.
         file: String,
-        /// The line.
-        line: u64,
+        /// What kind of file it is.
+        kind: FileKind,
+        /// The row.
+        row: u64,
         /// The time before, s.
         previous: f64,
-        /// The line before.
-        previous_line: u64,
+        /// The row before.
+        previous_row: u64,
         /// The time, s.
         t: f64,
     },
@@ -178,11 +296,14 @@ pub enum DataError {
     },
     /// A column that never changes.
     #[error(
-        "{file}: column \"{column}\" is {value} in every line: a motion that stands still determines no law. Check the sensor, or map another column to {channel}"
+        "{file}: {0} \"{column}\" is {value} in every {1}: a motion that stands still determines no law. Check the sensor, or map another {0} to {channel}",
+        kind.column(), kind.row()
     )]
     Constant {
         /// The file.
         file: String,
+        /// What kind of file it is.
+        kind: FileKind,
         /// The header.
         column: String,
         /// The quantity.
@@ -205,11 +326,14 @@ pub enum DataError {
     Recording(#[from] RecordingError),
     /// The model needs a quantity that is not measured.
     #[error(
-        "{file}: the term \"{term}\" needs the excitation, but the file has no column \"F\": map one in the model, [columns] F = \"...\", or leave the term out"
+        "{file}: the term \"{term}\" needs the excitation, but the file has no {} \"F\": map one in the model, [columns] F = \"...\", or leave the term out",
+        kind.column()
     )]
     NeedsExcitation {
         /// The file.
         file: String,
+        /// What kind of file it is.
+        kind: FileKind,
         /// The term.
         term: String,
     },
@@ -229,6 +353,11 @@ pub enum DataError {
         /// Why.
         source: ScenarioError,
     },
+}
+
+/// MAT files may say the distance of the samples in place of their times.
+fn time_hint(kind: FileKind, channel: &str) -> &'static str {
+    if kind.is_mat() && channel == "t" { "; or save a scalar dt or Ts (s) or fs (Hz) with the signals" } else { "" }
 }
 
 fn span_hint(span: Option<(f64, f64)>) -> String {

@@ -1,8 +1,8 @@
 //! Which column holds which quantity, and in which unit.
 
 use super::DataError;
-use super::unit::{self, Channel, Unit};
-use crate::law::Columns;
+use super::kind::FileKind;
+use crate::law::{Channel, ColumnUnits, Model, Unit, Units};
 
 /// A column that is read.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,9 +15,25 @@ pub(super) struct Column {
     unit: Option<Unit>,
 }
 
+/// What the column of time holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum TimeBase {
+    /// The time of every sample.
+    Stamps,
+    /// One number: the distance of two samples.
+    Step,
+    /// One number: samples per second.
+    Rate,
+}
+
+/// Names under which a MAT file may hold a time base in place of times.
+const TIME_BASES: [(&str, TimeBase); 3] = [("dt", TimeBase::Step), ("Ts", TimeBase::Step), ("fs", TimeBase::Rate)];
+
 /// The columns of a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Layout {
+    kind: FileKind,
+    pub(super) time_base: TimeBase,
     pub(super) t: Column,
     pub(super) q: Option<Column>,
     pub(super) qd: Option<Column>,
@@ -38,8 +54,9 @@ enum Written<'a> {
 
 impl Layout {
     /// Finds the columns in the headers of a file.
-    pub(super) fn find(file: &str, headers: &[String], columns: &Columns) -> Result<Layout, DataError> {
-        let finder = Finder { file, headers };
+    pub(super) fn find(kind: FileKind, file: &str, headers: &[String], model: &Model) -> Result<Layout, DataError> {
+        let finder = Finder { kind, file, headers, units: &model.units };
+        let columns = &model.columns;
         let optional = |channel, name: &Option<String>| match name {
             Some(name) => finder.required(channel, name).map(Some),
             None => finder.column(channel, channel.name()),
@@ -47,11 +64,11 @@ impl Layout {
         let q = optional(Channel::Displacement, &columns.q)?;
         let qd = optional(Channel::Velocity, &columns.qd)?;
         let excitation = optional(Channel::Excitation, &columns.excitation)?;
-        let t = finder.required(Channel::Time, columns.t.as_deref().unwrap_or(Channel::Time.name()))?;
+        let (t, time_base) = finder.time(&columns.t)?;
         if q.is_none() && qd.is_none() {
-            return Err(DataError::NoMotion { file: file.into(), columns: quoted(headers) });
+            return Err(DataError::NoMotion { file: file.into(), kind, columns: quoted(headers) });
         }
-        let layout = Layout { t, q, qd, excitation };
+        let layout = Layout { kind, time_base, t, q, qd, excitation };
         layout.check_rate(file)?;
         Ok(layout)
     }
@@ -60,7 +77,19 @@ impl Layout {
     pub(super) fn describe(&self) -> Vec<String> {
         let columns = [Some(&self.t), self.q.as_ref(), self.qd.as_ref(), self.excitation.as_ref()];
         let named = Channel::ALL.into_iter().zip(columns);
-        named.filter_map(|(channel, column)| column.map(|column| column.describe(channel))).collect()
+        named.filter_map(|(channel, column)| column.map(|column| column.describe(self.kind, channel))).collect()
+    }
+
+    /// What the columns say of the units of coefficients. In free motion these are relative to the inertia, unless the model
+    /// holds it at a number.
+    pub(super) fn units(&self, inertia_held: bool) -> Units {
+        let quantity =
+            |column: &Option<Column>| column.as_ref().and_then(|column| column.unit).map(|unit| unit.quantity);
+        let (q, qd) = (quantity(&self.q), quantity(&self.qd));
+        match &self.excitation {
+            None if !inertia_held => Units::free(q, qd),
+            excitation => Units::forced(q, qd, quantity(excitation)),
+        }
     }
 
     fn check_rate(&self, file: &str) -> Result<(), DataError> {
@@ -71,6 +100,7 @@ impl Layout {
         }
         Err(DataError::UnitsDisagree {
             file: file.into(),
+            kind: self.kind,
             displacement: q.header.clone(),
             displacement_quantity: q_unit.quantity.name(),
             velocity: qd.header.clone(),
@@ -80,21 +110,41 @@ impl Layout {
 }
 
 impl Column {
-    fn describe(&self, channel: Channel) -> String {
+    fn describe(&self, kind: FileKind, channel: Channel) -> String {
         let unit = self.unit.map_or("SI", |unit| unit.name);
-        format!("{} = column \"{}\" in {unit}", channel.name(), self.header)
+        format!("{} = {} \"{}\" in {unit}", channel.name(), kind.column(), self.header)
     }
 }
 
 struct Finder<'a> {
+    kind: FileKind,
     file: &'a str,
     headers: &'a [String],
+    units: &'a ColumnUnits,
 }
 
 impl Finder<'_> {
+    /// The column of time, or a MAT file's distance of two samples.
+    fn time(&self, name: &Option<String>) -> Result<(Column, TimeBase), DataError> {
+        let wanted = name.as_deref().unwrap_or(Channel::Time.name());
+        if let Some(column) = self.column(Channel::Time, wanted)? {
+            return Ok((column, TimeBase::Stamps));
+        }
+        if self.kind.is_mat() && name.is_none() {
+            for (name, base) in TIME_BASES {
+                let plain = Finder { units: &ColumnUnits::default(), ..*self };
+                if let Some(column) = plain.column(Channel::Time, name)? {
+                    return Ok((column, base));
+                }
+            }
+        }
+        self.required(Channel::Time, wanted).map(|column| (column, TimeBase::Stamps))
+    }
+
     fn required(&self, channel: Channel, name: &str) -> Result<Column, DataError> {
         self.column(channel, name)?.ok_or_else(|| DataError::MissingColumn {
             file: self.file.into(),
+            kind: self.kind,
             column: name.into(),
             channel: channel.name(),
             columns: quoted(self.headers),
@@ -110,7 +160,12 @@ impl Finder<'_> {
             [index] => self.read(channel, index).map(Some),
             _ => {
                 let fitting: Vec<String> = found.iter().map(|index| self.headers[*index].clone()).collect();
-                Err(DataError::Ambiguous { file: self.file.into(), column: name.into(), columns: quoted(&fitting) })
+                Err(DataError::Ambiguous {
+                    file: self.file.into(),
+                    kind: self.kind,
+                    column: name.into(),
+                    columns: quoted(&fitting),
+                })
             }
         }
     }
@@ -121,14 +176,22 @@ impl Finder<'_> {
 
     fn read(&self, channel: Channel, index: usize) -> Result<Column, DataError> {
         let header = self.headers[index].clone();
-        let (file, column) = (self.file.to_string(), header.clone());
+        let (file, kind, column) = (self.file.to_string(), self.kind, header.clone());
+        let declared = self.units.unit(channel);
         match heading(&self.headers[index]).unit {
-            Written::Nothing => Ok(Column { index, header, factor: 1.0, unit: None }),
+            Written::Nothing => {
+                Ok(Column { index, header, factor: declared.map_or(1.0, |unit| unit.factor), unit: declared })
+            }
+            Written::Known(_, unit) if declared.is_some_and(|declared| declared.is_not(unit)) => {
+                let declared = self.units.written(channel).unwrap_or_default().into();
+                Err(DataError::UnitContradicts { file, column, unit: unit.name, channel: channel.name(), declared })
+            }
             Written::Known(_, unit) if channel.accepts(unit.quantity) => {
                 Ok(Column { index, header, factor: unit.factor, unit: Some(unit) })
             }
             Written::Known(text, unit) => Err(DataError::WrongUnit {
                 file,
+                kind,
                 column,
                 unit: text.into(),
                 quantity: unit.quantity.name(),
@@ -137,6 +200,7 @@ impl Finder<'_> {
             }),
             Written::Unknown(text) => Err(DataError::UnknownUnit {
                 file,
+                kind,
                 column,
                 unit: text.into(),
                 channel: channel.name(),
@@ -151,7 +215,7 @@ fn heading(header: &str) -> Heading<'_> {
     for (open, close) in [('[', ']'), ('(', ')')] {
         let inside = header.strip_suffix(close).and_then(|rest| rest.rsplit_once(open));
         if let Some((name, text)) = inside {
-            let unit = unit::parse(text).map_or(Written::Unknown(text), |unit| Written::Known(text, unit));
+            let unit = Unit::parse(text).map_or(Written::Unknown(text), |unit| Written::Known(text, unit));
             return Heading { name: name.trim(), unit };
         }
     }
@@ -167,10 +231,10 @@ fn endings(header: &str) -> impl Iterator<Item = (&str, &str)> {
 
 /// The unit of an ending: as it stands, or `mm_s` for mm/s and `N_m` for N m.
 fn written_unit(ending: &str) -> Option<Unit> {
-    let worded = || ending.strip_suffix("_s").and_then(|length| unit::parse(&format!("{length}/s")));
-    let product = || if ending == "N_m" { unit::parse("Nm") } else { None };
+    let worded = || ending.strip_suffix("_s").and_then(|length| Unit::parse(&format!("{length}/s")));
+    let product = || if ending == "N_m" { Unit::parse("Nm") } else { None };
     // A bare digit or dash is a numbering, no unit.
-    unit::parse(ending).filter(|unit| unit.name.chars().any(char::is_alphabetic)).or_else(worded).or_else(product)
+    Unit::parse(ending).filter(|unit| unit.name.chars().any(char::is_alphabetic)).or_else(worded).or_else(product)
 }
 
 fn quoted(headers: &[String]) -> String {

@@ -1,18 +1,27 @@
 //! Opening what a user brings: recordings, model files, scenario files.
 //!
-//! A recording is a CSV file with a header. The model's `[columns]` say which column is which quantity, else `t`, `q`,
+//! A recording is a CSV file with a header, a MAT file (version 5 or 7.3) whose vectors, or the fields of whose only structure,
+//! are the columns, or a Parquet file; the content tells which. The model's `[columns]` say which column is which quantity, else `t`, `q`,
 //! `qd` and `F` are looked for; one of q, qd and F may be absent. Values are SI unless the header says otherwise:
 //! `q [mm]`, `force (kN)`, `position_mm`. `DATA@t0:t1` is the section t0 ≤ t < t1. Every error names file,
 //! line, column or key, and what would mend it; nothing is repaired or left out in silence.
 
+mod arrays;
 mod csv;
 mod error;
 mod files;
+mod hdf5;
 mod header;
+mod kind;
+mod mat5;
+mod matlab;
+mod open;
+mod parquet;
+mod rows;
 mod section;
-mod unit;
 
-pub use csv::{Opened, open_recording};
 pub use error::DataError;
 pub use files::{open_model, open_scenario};
+pub use kind::FileKind;
+pub use open::{Opened, open_recording};
 pub use section::Section;

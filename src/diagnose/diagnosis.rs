@@ -19,6 +19,9 @@ pub const LEVEL: f64 = 0.01;
 /// Share of what is unexplained that effects of the catalogue must explain for them to be the answer.
 const ENOUGH: f64 = 0.75;
 
+/// Factor by which a coefficient must not grow when a candidate joins: both would be large and of opposite sign.
+const CANCELLING: f64 = 4.0;
+
 /// Share that a first effect must explain for a second to be sought.
 const PROMISING: f64 = 0.15;
 
@@ -243,14 +246,16 @@ fn is_physical(trial: &Trial) -> bool {
     Catalogue::of(trial.term).is_none_or(|entry| entry.sign.allows(trial.coefficient()))
 }
 
-/// Whether no other coefficient turned to a sign that physics does not allow it, by more than its std.
+/// Whether no other coefficient turned to a sign that physics does not allow it, by more than its std, or grew so much that it and the
+/// candidate must cancel.
 fn is_plausible(base: &Fit, trial: &Trial) -> bool {
-    let turned = |index: usize| {
+    let spoilt = |index: usize| {
         let allowed = |value: f64| Catalogue::of(base.form.terms[index]).is_none_or(|entry| entry.sign.allows(value));
-        let (old, new) = (base.coefficients[index], trial.fit.coefficients[index]);
-        allowed(old) && !allowed(new) && new.abs() > 2.0 * trial.fit.std(index)
+        let (old, new, std) = (base.coefficients[index], trial.fit.coefficients[index], trial.fit.std(index));
+        let turned = allowed(old) && !allowed(new) && new.abs() > 2.0 * std;
+        turned || (old.abs() > 3.0 * base.std(index) && new.abs() > CANCELLING * old.abs())
     };
-    !(0..base.form.terms.len()).any(turned)
+    !(0..base.form.terms.len()).any(spoilt)
 }
 
 /// Share of the unexplained acceleration that goes away between two fits.

@@ -4,9 +4,9 @@
 //! likelihood, sensor noise from the innovations, process noise from two rival filters, from much of it down to what the data want.
 //! Terms that no state gives (memory, delay, expressions of time) are series along the smoothed motion, renewed with it.
 
+use super::means::{self, is_series};
 use super::piece::Piece;
 use super::run::{self, Law, Outcome, Sums};
-use super::series::{self, is_series};
 use super::smooth::smooth;
 use super::start;
 use crate::evidence::{Noise, Pass, RIVALS};
@@ -33,6 +33,12 @@ const QUIET_PASSES: usize = 8;
 
 /// Factor by which a step may change the inertia.
 const LARGEST_RATIO: f64 = 2.5;
+
+/// Guesses from which a fit begins, at most.
+const STARTS: usize = 4;
+
+/// Factor by which the inertia has grown in a fit that forgets its excitation.
+const FORGETFUL: f64 = 30.0;
 
 /// A form of law: which terms it has, and what is known of each coefficient.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,9 +161,25 @@ impl Parts {
 }
 
 /// Fits the form to the pieces; none where nothing can be made of them: no motion, or coefficients that no row determines.
+///
+/// The likelihood has another maximum where the inertia grows without bounds: the excitation is forgotten, and process noise drives the
+/// motion. A descent that runs there begins again from the next guess.
 pub fn fit(form: &Form, pieces: &[Piece]) -> Option<Fit> {
-    let begin = start::start(form, pieces)?;
-    refit(form, pieces, &begin.coefficients, begin.noise)
+    let mut best: Option<Fit> = None;
+    for begin in start::starts(form, pieces).into_iter().take(STARTS) {
+        let Some(fitted) = refit(form, pieces, &begin.coefficients, begin.noise) else { continue };
+        let kept = form.inertia().is_none_or(|index| {
+            let ratio = fitted.coefficients[index] / begin.coefficients[index];
+            (0.0..FORGETFUL).contains(&ratio) && begin.coefficients[index] > 0.0
+        });
+        if best.as_ref().is_none_or(|best| fitted.log_likelihood > best.log_likelihood) {
+            best = Some(fitted);
+        }
+        if kept {
+            break;
+        }
+    }
+    best
 }
 
 /// Fits the form from coefficients and noise that are near already. The likelihood may have two maxima, one that leaves error to the law
@@ -266,10 +288,10 @@ impl Descent<'_> {
     fn take_series(&mut self, states: &[Vec<State>]) {
         let terms: Vec<Term> = self.parts.series.iter().map(|index| self.form.terms[*index]).collect();
         let columns = |piece: &Piece, states: &[State]| -> Vec<Vec<f64>> {
-            terms.iter().map(|term| series::means(*term, &self.form.expressions, piece, states)).collect()
+            terms.iter().map(|term| means::means(*term, &self.form.expressions, piece, states)).collect()
         };
         let pairs = self.pieces.iter().zip(states);
-        self.series = pairs.map(|(piece, states)| series::rows(&columns(piece, states))).collect();
+        self.series = pairs.map(|(piece, states)| means::rows(&columns(piece, states))).collect();
     }
 
     fn smoothed(&self, outcomes: &[Outcome]) -> Vec<Vec<State>> {

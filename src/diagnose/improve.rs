@@ -105,6 +105,9 @@ pub fn improved_model(model: &Model, fit: &Fit) -> Model {
         own.unwrap_or_else(|| effect_name(term))
     };
     let pairs = fit.form.terms.iter().zip(&fit.coefficients);
-    let terms = pairs.map(|(term, value)| ModelTerm { key: key(*term), ..ModelTerm::new(*term, Given::Known(*value)) });
+    let terms = pairs.map(|(term, value)| {
+        let key = key(*term);
+        ModelTerm { key, ..ModelTerm::new(*term, Given::Known(*value)) }
+    });
     Model { terms: terms.collect(), ..model.clone() }
 }

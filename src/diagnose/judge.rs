@@ -6,9 +6,9 @@
 //! which it comes from one stretch of the record to the next (Vuong 1989).
 
 use super::fit::{Fit, refit};
+use super::means;
 use super::piece::Piece;
 use super::screen::{self, Gain};
-use super::series;
 use super::variants::{Variant, is_continuous};
 use crate::law::{State, Term};
 
@@ -68,6 +68,11 @@ impl Trial {
         self.by_stretch = by_stretch(&self.fit, pieces);
     }
 
+    /// What a screen would have said of it.
+    pub fn as_gain(&self) -> Gain {
+        Gain { coefficient: self.coefficient(), std: self.std(), gain: self.gain }
+    }
+
     /// Gain less what its fitted inner parameters would gain by chance, ½ ln N each (Schwarz 1978).
     pub fn merit(&self) -> f64 {
         let inner = Variant { term: self.term, spacing: 1.0 }.fitted();
@@ -119,7 +124,7 @@ fn polished(fit: &Fit, pieces: &[Piece]) -> Option<Fit> {
             let sides = [DIFFERENCE.exp(), (-DIFFERENCE).exp()].map(|factor| at(*index, factor));
             let [Some(above), Some(below)] = sides else { return vec![0.0; piece.len() - 1] };
             let pairs =
-                series::means(above, &[], piece, states).into_iter().zip(series::means(below, &[], piece, states));
+                means::means(above, &[], piece, states).into_iter().zip(means::means(below, &[], piece, states));
             pairs.map(|(above, below)| coefficient * (above - below) / (2.0 * DIFFERENCE)).collect()
         };
         moving.iter().map(slope).collect()

@@ -16,7 +16,7 @@ const TIME_BINS: usize = 48;
 const SIDE: usize = 6;
 
 /// Evidence that a place must have, nats.
-const EVIDENCE: f64 = 6.0;
+const EVIDENCE: f64 = 3.0;
 
 /// Share of the energy that a place must hold, and how many times its share of the time.
 const SHARE: f64 = 0.25;
@@ -35,7 +35,7 @@ const TWO_SIDED: f64 = 1.3;
 const CLOSED: f64 = 0.6;
 
 /// What the evidence of a band of frequencies counts: the force is a poorer measure of what to expect than time.
-const BAND: f64 = 0.2;
+const BAND: f64 = 0.1;
 
 /// What a failure is laid out over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

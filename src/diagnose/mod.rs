@@ -10,6 +10,7 @@ mod free_run;
 mod improve;
 mod judge;
 mod locate;
+mod means;
 mod noise;
 mod piece;
 mod record;

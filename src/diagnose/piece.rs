@@ -5,6 +5,9 @@ use crate::identify::Recording;
 use crate::law::{BandLimited, Drive, Hold, REACH};
 use std::ops::Range;
 
+/// Parts that are taken of a long record.
+const PARTS: usize = 8;
+
 /// Samples without a gap, SI units; every signal is as long as `t`.
 #[derive(Clone, Debug)]
 pub struct Piece {
@@ -45,6 +48,19 @@ impl Piece {
         piece
     }
 
+    /// The samples of a range, at least three.
+    pub fn part(&self, range: Range<usize>) -> Piece {
+        let cut = |values: &Vec<f64>| values[range.clone()].to_vec();
+        Piece {
+            t: cut(&self.t),
+            q: self.q.as_ref().map(cut),
+            qd: self.qd.as_ref().map(cut),
+            excitation: cut(&self.excitation),
+            hold: self.hold,
+            observations: self.observations[range.start..range.end - 1].to_vec(),
+        }
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.t.len()
@@ -81,4 +97,21 @@ impl Piece {
         let first = k as i64 - (REACH as i64 - 1);
         std::array::from_fn(|tap| self.excitation[(first + tap as i64).clamp(0, last) as usize])
     }
+}
+
+/// At most `limit` samples of the pieces, in [`PARTS`] parts spread evenly over them; all of them where there are no more.
+pub fn thinned(pieces: &[Piece], limit: usize) -> Vec<Piece> {
+    let samples: usize = pieces.iter().map(Piece::len).sum();
+    if samples <= limit {
+        return pieces.to_vec();
+    }
+    let share = limit as f64 / samples as f64;
+    let parts = |piece: &Piece| {
+        let count = (PARTS as f64 * piece.len() as f64 / samples as f64).ceil() as usize;
+        let length = piece.len() / count;
+        let kept = ((length as f64 * share) as usize).max(3);
+        let part = |part: usize| piece.part(part * length..part * length + kept);
+        (0..count).filter(|_| length > 3).map(part).collect::<Vec<_>>()
+    };
+    pieces.iter().flat_map(parts).collect()
 }

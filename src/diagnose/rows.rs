@@ -5,8 +5,9 @@
 //! (σ_q, σ_q̇) gives the residual the variance Σ_k (∂/∂q_k)² σ_q² + (∂/∂q̇_k)² σ_q̇².
 
 use super::piece::Piece;
+use super::series::{Series, doubt, jumped, series};
 use super::trajectory::Trajectory;
-use crate::law::{self, Expression, Hold, Monomial, Term, term_series};
+use crate::law::{Expression, Hold, Term};
 use crate::weak::Variation;
 
 /// The variation: 4 s (1 − s) to the power 4.
@@ -19,17 +20,6 @@ const GAUSS: [(f64, f64); 3] =
 /// Share of a sample's distance by which a window's times may differ from another's and still share its weights.
 const SAME_TIMES: f64 = 1e-4;
 
-/// Points at which the mean about a reversal of the velocity is taken.
-const PARTS: usize = 16;
-
-/// One series of a term: what stands against a derivative of φ, and its slopes by the readings of q and q̇.
-#[derive(Clone, Debug)]
-struct Series {
-    order: usize,
-    values: Vec<f64>,
-    slopes: [Option<Vec<f64>>; 2],
-}
-
 /// A piece with the series of a set of terms.
 #[derive(Clone, Debug)]
 pub struct Prepared {
@@ -38,6 +28,8 @@ pub struct Prepared {
     /// Its motion.
     pub motion: Trajectory,
     terms: Vec<Vec<Series>>,
+    /// By term, half the jump of its force where the velocity may have either sign; empty for a force that does not jump.
+    doubt: Vec<Vec<f64>>,
 }
 
 /// The weak equations of a piece, one for each window.
@@ -85,8 +77,9 @@ impl Windows {
 impl Prepared {
     /// The series of these terms along a piece's motion.
     pub fn new(piece: Piece, motion: Trajectory, terms: &[Term], expressions: &[Expression]) -> Prepared {
+        let doubt = terms.iter().map(|term| doubt(*term, &motion)).collect();
         let terms = terms.iter().map(|term| series(*term, expressions, &piece, &motion)).collect();
-        Prepared { piece, motion, terms }
+        Prepared { piece, motion, terms, doubt }
     }
 
     /// The equation of every window.
@@ -116,7 +109,10 @@ impl Prepared {
                 (0..windows.samples).map(|k| slope(k).powi(2)).sum::<f64>() * noise[channel].powi(2)
             };
             let measured = self.piece.measured();
-            variances.push((0..2).filter(|channel| measured[*channel].is_some()).map(of).sum());
+            let sensors: f64 = (0..2).filter(|channel| measured[*channel].is_some()).map(of).sum();
+            let jumps = self.doubt.iter().zip(coefficients).filter(|(doubt, _)| !doubt.is_empty());
+            let jumps = jumps.map(|(doubt, c)| c * c * jumped(&weights.phi[0], &doubt[first..]));
+            variances.push(sensors + jumps.sum::<f64>());
         });
         variances
     }
@@ -216,75 +212,6 @@ fn held(t: &[f64], hold: Hold) -> Vec<f64> {
         }
     }
     weights
-}
-
-/// The force of a term at every sample, without what multiplies q̈: the one place that knows how a term follows from a motion.
-pub(super) fn force_series(term: Term, q: &[f64], qd: &[f64], excitation: &[f64]) -> Vec<f64> {
-    q.iter().zip(qd).zip(excitation).map(|((q, qd), excitation)| term.force(*q, *qd, *excitation)).collect()
-}
-
-/// A term as series against φ and its derivatives. Products of powers take the readings themselves, whose noise is known; effects, which
-/// may jump, the smoothed motion.
-fn series(term: Term, expressions: &[Expression], piece: &Piece, motion: &Trajectory) -> Vec<Series> {
-    let q = piece.q.as_ref().unwrap_or(&motion.q);
-    let qd = piece.qd.as_ref().unwrap_or(&motion.qd);
-    let one = |order, values, slopes| vec![Series { order, values, slopes }];
-    match term {
-        Term::Inertia if piece.qd.is_some() => {
-            one(1, qd.iter().map(|qd| -qd).collect(), [None, Some(vec![-1.0; qd.len()])])
-        }
-        Term::Inertia => one(2, q.clone(), [Some(vec![1.0; q.len()]), None]),
-        Term::Monomial(Monomial { q: power, qd: 1, excitation: 0 }) => {
-            let next = i32::from(power) + 1;
-            let values = q.iter().map(|q| -q.powi(next) / f64::from(next)).collect();
-            one(1, values, [Some(q.iter().map(|q| -q.powi(next - 1)).collect()), None])
-        }
-        Term::Monomial(_) => {
-            let gradient = |k: usize| term.gradient(q[k], qd[k], piece.excitation[k]);
-            let by_q = (0..q.len()).map(|k| gradient(k).0).collect();
-            let by_qd = (0..q.len()).map(|k| gradient(k).1).collect();
-            one(0, force_series(term, q, qd, &piece.excitation), [Some(by_q), Some(by_qd)])
-        }
-        Term::Effect(_) if term.mass(1.0) != term.mass(0.0) => varying_mass(term, piece, motion),
-        Term::Effect(effect) if effect.is_pointwise() => one(0, reversed_series(term, piece, motion), [None, None]),
-        Term::Effect(_) | Term::Expression(_) => {
-            let Piece { t, excitation, hold, .. } = piece;
-            let along = law::Trajectory { t, q: &motion.q, qd: &motion.qd, excitation, hold: *hold };
-            one(0, term_series(term, expressions, &along), [None, None])
-        }
-    }
-}
-
-/// The force of an effect at every sample; where the velocity reverses next to a sample, so that a force may jump there, its mean between the
-/// middles of the intervals on both sides.
-fn reversed_series(term: Term, piece: &Piece, motion: &Trajectory) -> Vec<f64> {
-    let (q, qd, excitation) = (&motion.q, &motion.qd, &piece.excitation);
-    let mut series = force_series(term, q, qd, excitation);
-    for k in 1..qd.len().saturating_sub(1) {
-        if qd[k - 1] * qd[k] > 0.0 && qd[k] * qd[k + 1] > 0.0 {
-            continue;
-        }
-        let force = |part: usize| {
-            let x = (part as f64 + 0.5) / PARTS as f64 - 0.5;
-            let other = if x < 0.0 { k - 1 } else { k + 1 };
-            let at = |values: &[f64]| values[k] + x.abs() * (values[other] - values[k]);
-            term.force(at(q), at(qd), excitation[k])
-        };
-        series[k] = (0..PARTS).map(force).sum::<f64>() / PARTS as f64;
-    }
-    series
-}
-
-/// μ(q) q̈ + f, its first part integrated by parts: (μ q̇)' − μ' q̇² + f.
-fn varying_mass(term: Term, piece: &Piece, motion: &Trajectory) -> Vec<Series> {
-    let (q, qd) = (&motion.q, &motion.qd);
-    let momentum = q.iter().zip(qd).map(|(q, qd)| -term.mass(*q) * qd).collect();
-    let own = force_series(term, q, qd, &piece.excitation);
-    let rest = own.iter().zip(q.iter().zip(qd)).map(|(force, (q, qd))| force - 2.0 * q * qd * qd).collect();
-    vec![
-        Series { order: 1, values: momentum, slopes: [None, None] },
-        Series { order: 0, values: rest, slopes: [None, None] },
-    ]
 }
 
 fn dot(weights: &[f64], values: &[f64]) -> f64 {

@@ -4,9 +4,9 @@
 //! the candidate's own information is i − cᵀM⁻¹c, its own score s − cᵀM⁻¹g, and its gain in log-likelihood ½ score² ÷ information.
 
 use super::fit::{Fit, Parts, solve};
+use super::means;
 use super::piece::Piece;
 use super::run::{self, Law, Sums};
-use super::series;
 use crate::evidence::Pass;
 use crate::law::{Expression, State, Term};
 
@@ -39,7 +39,7 @@ pub(super) fn screen_columns(fit: &Fit, pieces: &[Piece], columns: &Columns) -> 
 }
 
 pub(super) fn columns(terms: &[Term], expressions: &[Expression], piece: &Piece, states: &[State]) -> Vec<Vec<f64>> {
-    terms.iter().map(|term| series::means(*term, expressions, piece, states)).collect()
+    terms.iter().map(|term| means::means(*term, expressions, piece, states)).collect()
 }
 
 fn merged(sums: &[Sums]) -> Sums {
@@ -62,7 +62,7 @@ pub(super) fn sums(fit: &Fit, pieces: &[Piece], candidates: &Columns) -> Vec<Sum
     let mut pass = Pass::new(parts.free.len());
     for (piece, states) in pieces.iter().zip(&fit.states) {
         let rows = [columns(&beside, &fit.form.expressions, piece, states), candidates(piece, states)]
-            .map(|columns| series::rows(&columns));
+            .map(|columns| means::rows(&columns));
         let stretch = |k: usize| (before + k) * STRETCHES / samples.max(1);
         let stretches: Vec<usize> = (0..piece.len() - 1).map(stretch).collect();
         before += piece.len() - 1;

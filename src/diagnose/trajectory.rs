@@ -11,7 +11,10 @@ use nalgebra::{Matrix4, Vector4};
 const REACHES: [usize; 11] = [2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64];
 
 /// How much of the readings' scatter beyond their noise, as a share of its variance, is taken for noise.
-const TOLERANCE: f64 = 0.15;
+const TOLERANCE: f64 = 0.01;
+
+/// The same share, times the square root of the number of samples, for what chance does to the scatter.
+const CHANCE: f64 = 4.0;
 
 /// The motion of one piece; all slices are as long as the piece.
 #[derive(Clone, Debug)]
@@ -22,6 +25,8 @@ pub struct Trajectory {
     pub qd: Vec<f64>,
     /// Acceleration.
     pub qdd: Vec<f64>,
+    /// Variance that the sensors' noise gives the velocity.
+    pub velocity_variance: f64,
     /// Variance that the sensors' noise gives the acceleration.
     pub acceleration_variance: f64,
 }
@@ -49,6 +54,7 @@ impl Trajectory {
             q: Vec::with_capacity(count),
             qd: Vec::with_capacity(count),
             qdd: Vec::with_capacity(count),
+            velocity_variance: kernels[reach].variance(1, noise, dt) / dt.powi(2),
             acceleration_variance: kernels[reach].variance(2, noise, dt) / dt.powi(4),
         };
         for k in 0..count {
@@ -137,29 +143,32 @@ fn spacing(piece: &Piece) -> f64 {
     (piece.t[piece.len() - 1] - piece.t[0]) / (piece.len() - 1) as f64
 }
 
-/// The longest reach at which the readings scatter about the polynomial no more than their noise.
+/// The longest reach at which the readings scatter about the polynomial no more than at the shortest, as far as their noise explains.
 fn reach(pieces: &[Piece], noise: [f64; 2]) -> usize {
-    let fits = |reach: usize| pieces.iter().all(|piece| 2 * reach < piece.len()) && scatter(pieces, noise, reach) < 1.0;
-    REACHES.into_iter().take_while(|reach| fits(*reach)).last().unwrap_or(REACHES[0])
+    let shortest = scatter(pieces, noise, REACHES[0]);
+    let count = pieces.iter().map(Piece::len).sum::<usize>() as f64;
+    let allowed = TOLERANCE + CHANCE / count.sqrt();
+    let fits = |reach: usize| {
+        let ratios = scatter(pieces, noise, reach);
+        ratios.iter().zip(shortest).all(|(ratio, shortest)| *ratio <= (1.0 + allowed) * shortest.max(1.0 - allowed))
+    };
+    let longest = pieces.iter().map(|piece| (piece.len() - 1) / 2).min().unwrap_or(REACHES[0]);
+    REACHES.into_iter().rfind(|reach| *reach <= longest && fits(*reach)).unwrap_or(REACHES[0])
 }
 
-/// The bias of the best measured channel's polynomial as a share of what is tolerated.
-fn scatter(pieces: &[Piece], noise: [f64; 2], reach: usize) -> f64 {
-    let mut largest: f64 = 0.0;
-    for channel in 0..2 {
+/// Scatter of the readings of q and q̇ about the polynomial ÷ what their noise explains; 0 where not measured.
+fn scatter(pieces: &[Piece], noise: [f64; 2], reach: usize) -> [f64; 2] {
+    [0, 1].map(|channel| {
         let (mut squares, mut expected) = (0.0, 0.0);
-        for piece in pieces {
+        for piece in pieces.iter().filter(|piece| 2 * reach < piece.len()) {
             let Some(signal) = piece.measured()[channel] else { continue };
             let kernel = Kernel::new(piece, noise, spacing(piece), 2 * reach + 1, reach);
             let (found, explained) = misfit(piece, signal, &kernel, channel, noise, reach);
             squares += found;
             expected += explained;
         }
-        if expected > 0.0 {
-            largest = largest.max((squares / expected - 1.0) / TOLERANCE);
-        }
-    }
-    largest
+        if expected > 0.0 { squares / expected } else { 0.0 }
+    })
 }
 
 /// Sum of squared distances of the readings from the polynomial at its centre, and what noise alone would make of it.

@@ -38,12 +38,17 @@ pub fn periods(records: &[Record]) -> Periods {
         let count = motion.q.len() as f64;
         let mean = motion.q.iter().sum::<f64>() / count;
         powers[0] += motion.q.iter().map(|q| (q - mean).powi(2)).sum::<f64>();
-        powers[1] += motion.qd.iter().map(|qd| qd * qd).sum::<f64>();
-        let acceleration = motion.qdd.iter().map(|qdd| qdd * qdd).sum::<f64>();
-        powers[2] += (acceleration - count * motion.acceleration_variance).max(0.1 * acceleration);
+        powers[1] += beyond(&motion.qd, motion.velocity_variance);
+        powers[2] += beyond(&motion.qdd, motion.acceleration_variance);
     }
     let period = |over: f64, under: f64| if under > 0.0 { TAU * (over / under).sqrt() } else { 0.0 };
     Periods { displacement: period(powers[0], powers[1]), velocity: period(powers[1], powers[2]) }
+}
+
+/// Sum of squares beyond noise of this variance, a tenth at least.
+fn beyond(values: &[f64], variance: f64) -> f64 {
+    let squares: f64 = values.iter().map(|value| value * value).sum();
+    (squares - values.len() as f64 * variance).max(0.1 * squares)
 }
 
 /// The length of window that suits the records, s.

@@ -4,6 +4,7 @@ use super::problem::Problem;
 use super::publication::Publication;
 use super::settings::{Method, Settings, SettingsError};
 use super::tracker::Tracker;
+use crate::evidence::Missing;
 use crate::law::{Model, ModelError, Term};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -110,6 +111,8 @@ pub struct Output {
     pub prediction_q: f64,
     /// Velocity that the law predicts for this instant.
     pub prediction_qd: f64,
+    /// The effect of the catalogue that the present law lacks most; `None` where none stands out.
+    pub missing: Option<Missing>,
     /// Estimated std of the displacement's sensor noise; `None` while not known or not measured.
     pub noise_q: Option<f64>,
     /// Estimated std of the velocity's sensor noise; `None` while not known or not measured.
@@ -182,6 +185,7 @@ impl Identifier {
             prediction_qd: 0.0,
             noise_q: None,
             noise_qd: None,
+            missing: None,
         };
         Ok(Identifier { settings, problem, engine, potential, coefficients, output, last: None })
     }

@@ -18,6 +18,8 @@ pub enum OutputKind {
     Flag,
     /// A [`Status`].
     Status,
+    /// An effect of the catalogue, 2 the first; 1 for none.
+    Effect,
 }
 
 /// An output's name and meaning.
@@ -42,6 +44,8 @@ pub enum OutputValue {
     Flag(bool),
     /// Of [`OutputKind::Status`].
     Status(Status),
+    /// Of [`OutputKind::Effect`].
+    Effect(u8),
 }
 
 impl OutputValue {
@@ -52,6 +56,7 @@ impl OutputValue {
             OutputValue::Count(count) => f64::from(count),
             OutputValue::Flag(flag) => f64::from(u8::from(flag)),
             OutputValue::Status(status) => f64::from(status as u8),
+            OutputValue::Effect(effect) => f64::from(effect),
         }
     }
 }
@@ -64,7 +69,7 @@ pub struct Outputs {
     places: Vec<Option<usize>>,
 }
 
-const SCALARS: [(&str, OutputKind, &str); 12] = [
+const SCALARS: [(&str, OutputKind, &str); 14] = [
     ("switch.count", OutputKind::Count, "Switches detected so far"),
     ("switch.time", OutputKind::Real(Some("s")), "Estimated instant at which the present stage began"),
     (
@@ -84,6 +89,16 @@ const SCALARS: [(&str, OutputKind, &str); 12] = [
         "identified_time",
         OutputKind::Real(Some("s")),
         "First time at which the identifier vouched for the present law; 1e30 before",
+    ),
+    (
+        "missing.effect",
+        OutputKind::Effect,
+        "The effect of the catalogue that the present law lacks most; none where no evidence stands out",
+    ),
+    (
+        "missing.evidence",
+        OutputKind::Real(None),
+        "Log-likelihood that missing.effect would gain, less that of chance among all candidates, nats",
     ),
 ];
 
@@ -138,6 +153,8 @@ fn scalars(identifier: &Identifier) -> [OutputValue; SCALARS.len()] {
         or_unknown(output.noise_q),
         or_unknown(output.noise_qd),
         or_unknown(output.identified_time),
+        OutputValue::Effect(output.missing.map_or(1, |missing| missing.entry as u8 + 2)),
+        OutputValue::Real(output.missing.map_or(0.0, |missing| missing.evidence)),
     ]
 }
 

@@ -12,7 +12,7 @@ use super::scales::Scales;
 use super::settings::Settings;
 use super::structure::Structure;
 use super::window::Window;
-use crate::evidence::{Channel, Filter, Information, Noise, Pass, RIVALS, Solution, Track};
+use crate::evidence::{Channel, Filter, Information, Lack, Missing, Noise, Pass, RIVALS, Solution, Track};
 use crate::law::{Motion, State};
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +48,9 @@ const LASTING: f64 = 2.5;
 
 /// Smallest sensor noise std, relative to the largest value measured: rounding and the integration's own error.
 const NOISE_FLOOR: f64 = 3e-7;
+
+/// Noise levels that move by less than this part have come to rest, whatever a level out of reach promises.
+const AT_REST: f64 = 0.05;
 
 /// The record of a stage is folded into a prior when it fills this fraction of the window.
 const FULL: f64 = 0.9;
@@ -90,6 +93,11 @@ pub struct Stage {
     trial: Trial,
     /// What is known beside the record, about `coefficients`.
     prior: Information,
+    /// The effect that the law lacks most, as of the last pass that looked for one.
+    pub missing: Option<Missing>,
+    lack: Lack,
+    /// Whether the pass looks for effects that the law lacks.
+    looking: bool,
     pass: Pass,
     next: u64,
     closed_at: u64,
@@ -172,6 +180,9 @@ impl Stage {
             stood: 0,
             trial: Trial { length: 0, all: vec![0.0; problem.terms.len()] },
             prior: Information::none(n),
+            missing: None,
+            lack: Lack::new(&problem.terms, n),
+            looking: false,
             pass: Pass::new(n),
             next: 0,
             closed_at: 0,
@@ -218,6 +229,7 @@ impl Stage {
             self.inertia_prior = Some(InertiaPrior { centre: prior.centre[index], log_std: prior.log_inertia });
         }
         self.gain = f64::INFINITY;
+        self.missing = None;
         self.largest = [0.0; 2];
         self.begin_pass(problem, window);
     }
@@ -238,7 +250,10 @@ impl Stage {
         let stop = end.min(self.next + budget as u64);
         while self.next < stop {
             let observation = window.observation(self.next);
-            self.pass.step(&motion, &problem.free_terms, &self.noise, &observation);
+            let innovations = self.pass.step(&motion, &problem.free_terms, &self.noise, &observation);
+            if self.looking {
+                self.lack.step(&motion, &self.pass, &observation, &innovations);
+            }
             self.running_scales.add(problem, &self.all, &self.pass, &observation);
             self.blocks.step(&self.pass.information);
             for (largest, measured) in self.largest.iter_mut().zip(observation.measured) {
@@ -301,6 +316,9 @@ impl Stage {
     fn close(&mut self, problem: &Problem, settings: &Settings, window: &Window) {
         let track = self.pass.track;
         self.closed_at = self.next;
+        if self.looking {
+            self.missing = self.lack.missing(&self.active, self.overdispersion);
+        }
         std::mem::swap(&mut self.scales, &mut self.running_scales);
         self.passes += 1;
         self.information.clone_from_slices(&self.pass.information);
@@ -399,6 +417,7 @@ impl Stage {
         let overdispersion = self.blocks.overdispersion(&self.pass.information);
         self.overdispersion = if overdispersion > LASTING { overdispersion } else { 1.0 };
         let given = [settings.noise_q, settings.noise_qd];
+        let before = self.noise;
         for channel in Channel::ALL {
             let index = channel as usize;
             let floor = (NOISE_FLOOR * self.largest[index]).powi(2).max(f64::MIN_POSITIVE);
@@ -424,6 +443,11 @@ impl Stage {
         let force = settings.noise_excitation / self.all[problem.inertia];
         let floor = force * force * settings.sample_time + f64::MIN_POSITIVE;
         self.noise.process = (self.noise.process * ratio * mean).max(floor);
+        let moved = |new: f64, old: f64| (new / old - 1.0).abs() > AT_REST;
+        let pairs = self.noise.sensor.iter().zip(before.sensor);
+        if !moved(self.noise.process, before.process) && !pairs.into_iter().any(|(new, old)| moved(*new, old)) {
+            self.gain = self.gain.min(0.0);
+        }
     }
 
     /// When the record outgrows the window, its first half becomes prior knowledge.
@@ -442,6 +466,10 @@ impl Stage {
         self.checkpoint.at = long.then_some(self.start + length / 2);
         self.pass.begin(first_state(problem, window, self.start, &self.noise));
         self.next = self.start + 1;
+        self.looking = self.settled();
+        if self.looking {
+            self.lack.begin(self.pass.filter.state, self.largest);
+        }
         self.running_scales.clear();
         self.blocks.begin(length);
     }

@@ -428,6 +428,7 @@ impl Tracker {
         output.switch_time = self.window.sample(instant).t;
         output.detection_time = Some(self.now());
         output.identified_time = None;
+        output.missing = None;
         output.valid = false;
         output.status = Status::ReIdentifying;
     }
@@ -439,6 +440,7 @@ impl Tracker {
         if suspense || !self.stage.refine(problem, settings, &self.window, budget) {
             return;
         }
+        output.missing = self.stage.missing;
         let worth_showing = self.stage.settled() && self.stage.stated_error() < TRUSTED;
         let worth_monitoring = worth_showing && self.stage.stands();
         if worth_showing {

@@ -10,7 +10,8 @@
 //! - hidden resonator: ÿ with ÿ = Ω² (q − y) + 2ζΩ (q̇ − ẏ), an unmeasured mass on a spring that the coordinate carries
 //!   (Den Hartog, Mechanical Vibrations, ch. 3); its coefficient is that mass.
 
-use super::inner::{Inner, InnerError, InnerParameter, InnerRange, InnerUnit};
+use super::inner::{Inner, InnerError, InnerParameter};
+use super::inner_parameters::{DEAD_ZONE_GAP, DELAY, HYSTERESIS, POWER, RESONATOR, SPEED, STOP_GAP};
 use serde::{Deserialize, Serialize};
 
 /// A physical effect on the left-hand side that is no monomial; `q`, `q̇` in SI units.
@@ -71,87 +72,6 @@ pub enum Effect {
         damping_ratio: Inner,
     },
 }
-
-const SPEED: [InnerParameter; 1] = [InnerParameter {
-    name: "speed",
-    default: 0.1,
-    unit: InnerUnit::Velocity,
-    range: InnerRange::Positive,
-    description: "Stribeck speed, at which the falling part is down to 1/e",
-}];
-
-const DEAD_ZONE_GAP: [InnerParameter; 1] = [InnerParameter {
-    name: "gap",
-    default: 0.1,
-    unit: InnerUnit::Coordinate,
-    range: InnerRange::NotNegative,
-    description: "Half the play, the same on both sides",
-}];
-
-const STOP_GAP: [InnerParameter; 1] = [InnerParameter {
-    name: "gap",
-    default: 0.1,
-    unit: InnerUnit::Coordinate,
-    range: InnerRange::NotNegative,
-    description: "Displacement at which the stop is met",
-}];
-
-const POWER: [InnerParameter; 1] = [InnerParameter {
-    name: "power",
-    default: 3.0,
-    unit: InnerUnit::Number,
-    range: InnerRange::Either(2.0, 3.0),
-    description: "Power of the excitation",
-}];
-
-const DELAY: [InnerParameter; 1] = [InnerParameter {
-    name: "delay",
-    default: 0.01,
-    unit: InnerUnit::Time,
-    range: InnerRange::NotNegative,
-    description: "Time by which the excitation acts late",
-}];
-
-const HYSTERESIS: [InnerParameter; 3] = [
-    InnerParameter {
-        name: "yield_displacement",
-        default: 0.1,
-        unit: InnerUnit::Coordinate,
-        range: InnerRange::Positive,
-        description: "Displacement at which the internal displacement saturates",
-    },
-    InnerParameter {
-        name: "share",
-        default: 1.0,
-        unit: InnerUnit::Number,
-        range: InnerRange::AtLeast(0.5),
-        description: "Bouc-Wen's beta / (beta + gamma): 1 is Dahl, 0.5 unloads parallel to the first loading",
-    },
-    InnerParameter {
-        name: "exponent",
-        default: 1.0,
-        unit: InnerUnit::Number,
-        range: InnerRange::AtLeast(1.0),
-        description: "Sharpness of the knee",
-    },
-];
-
-const RESONATOR: [InnerParameter; 2] = [
-    InnerParameter {
-        name: "frequency",
-        default: 10.0,
-        unit: InnerUnit::AngularFrequency,
-        range: InnerRange::Positive,
-        description: "Angular frequency of the hidden mass on its spring, the coordinate held still",
-    },
-    InnerParameter {
-        name: "damping_ratio",
-        default: 0.02,
-        unit: InnerUnit::Number,
-        range: InnerRange::NotNegative,
-        description: "Damping ratio of the hidden mass on its spring",
-    },
-];
 
 const fn default(parameter: &InnerParameter) -> Inner {
     Inner::new(parameter.default)
@@ -364,6 +284,7 @@ fn step(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::InnerRange;
 
     #[test]
     fn gradients_are_those_of_the_forces() {

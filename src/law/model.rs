@@ -1,7 +1,7 @@
 //! A model file: which terms a law may have, what is known of them, and which columns of a recording it reads.
 
 use super::model_error::ModelError;
-use super::{Compiled, Effect, Expression, Hold, Monomial, Term};
+use super::{ColumnUnits, Compiled, Effect, Expression, Hold, Monomial, Term};
 use serde::{Deserialize, Serialize};
 
 /// What the user knows of a coefficient.
@@ -59,6 +59,8 @@ pub struct Model {
     pub hold: Option<Hold>,
     /// Which columns of a measurement it reads.
     pub columns: Columns,
+    /// Which units these columns are in.
+    pub units: ColumnUnits,
     /// The terms on the left-hand side, in the order of the file.
     pub terms: Vec<ModelTerm>,
     /// Terms of U₀ that are total time derivatives, `q^n*qd`: their variation integrates to zero, so that no data can
@@ -85,8 +87,9 @@ impl Model {
     /// A model of these terms, each under its canonical name.
     pub fn of(name: &str, terms: impl IntoIterator<Item = (Term, Given)>) -> Model {
         let terms = terms.into_iter().map(|(term, given)| ModelTerm::new(term, given)).collect();
-        let (columns, potential, expressions) = (Columns::default(), Vec::new(), Vec::new());
-        Model { name: name.into(), hold: None, columns, terms, potential, expressions }
+        let (columns, units) = (Columns::default(), ColumnUnits::default());
+        let (potential, expressions) = (Vec::new(), Vec::new());
+        Model { name: name.into(), hold: None, columns, units, terms, potential, expressions }
     }
 
     /// The model with only the named terms, each "fit", as the FMU parameter `terms` asks. A term that the model has keeps its

@@ -34,6 +34,18 @@ pub enum ModelError {
         /// Its value as written.
         value: String,
     },
+    /// A unit that is not known, or no unit of that quantity.
+    #[error("[units] {channel} = \"{unit}\" is no unit of {meaning}; known are {known}")]
+    Unit {
+        /// The key.
+        channel: &'static str,
+        /// Its value.
+        unit: String,
+        /// What the quantity is.
+        meaning: &'static str,
+        /// The units that it may have.
+        known: String,
+    },
     /// No terms at all.
     #[error("[terms] is empty: name at least one term, for example inertia = \"fit\"")]
     NoTerms,

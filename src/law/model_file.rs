@@ -1,6 +1,8 @@
 //! The text of a model: TOML in, the same TOML out.
 //!
 //! ```toml
+//! [units]
+//! q = "mm"                                                        # of the column, where its header names none
 //! [terms]
 //! linear_damping = 0.3                                            # held
 //! stribeck_friction = "fit"                                       # its speed is to be fitted, too
@@ -12,7 +14,7 @@
 
 use super::model::{Columns, Given, Model, ModelTerm};
 use super::model_error::ModelError;
-use super::{Expression, Hold, InnerError, Term};
+use super::{Channel, ColumnUnits, Expression, Hold, InnerError, Term};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -22,7 +24,9 @@ struct File {
     coordinates: Option<Vec<String>>,
     hold: Option<Hold>,
     #[serde(default)]
-    columns: ColumnsFile,
+    columns: ByChannel,
+    #[serde(default)]
+    units: ByChannel,
     #[serde(default)]
     terms: toml::Table,
     #[serde(default)]
@@ -33,7 +37,7 @@ struct File {
 
 #[derive(Deserialize, Default)]
 #[serde(deny_unknown_fields)]
-struct ColumnsFile {
+struct ByChannel {
     t: Option<String>,
     q: Option<String>,
     qd: Option<String>,
@@ -75,6 +79,7 @@ impl Model {
                 qd: file.columns.qd,
                 excitation: file.columns.excitation,
             },
+            units: read_units(file.units)?,
             terms,
             potential,
             expressions,
@@ -90,14 +95,10 @@ impl Model {
         if let Some(hold) = self.hold {
             text += &format!("hold = \"{hold}\"\n");
         }
-        let columns =
-            [("t", &self.columns.t), ("q", &self.columns.q), ("qd", &self.columns.qd), ("F", &self.columns.excitation)];
-        if columns.iter().any(|(_, column)| column.is_some()) {
-            text += "\n[columns]\n";
-        }
-        for (name, column) in columns.iter().filter_map(|(name, column)| Some((name, column.as_deref()?))) {
-            text += &format!("{name} = {}\n", quote(column));
-        }
+        let Columns { t, q, qd, excitation } = &self.columns;
+        text += &write_channels("columns", [t, q, qd, excitation]);
+        let ColumnUnits { t, q, qd, excitation } = &self.units;
+        text += &write_channels("units", [t, q, qd, excitation]);
         text += "\n[terms]\n";
         for term in &self.terms {
             text += &format!("{} = {}\n", quote(&term.key), self.write_term(term));
@@ -140,6 +141,25 @@ impl Model {
         let starts = starts.map(|(_, (name, value))| format!("{name} = {}\n", toml::Value::from(*value)));
         format!("expression = {}\n{}", toml::Value::from(expression.text()), starts.collect::<String>())
     }
+}
+
+/// A table with a text for some of the channels t, q, qd, F; nothing where there is none.
+fn write_channels(table: &str, texts: [&Option<String>; 4]) -> String {
+    let lines = Channel::ALL.iter().zip(texts).filter_map(|(channel, text)| Some((channel.name(), text.as_deref()?)));
+    let lines: String = lines.map(|(name, text)| format!("{name} = {}\n", toml::Value::from(text))).collect();
+    if lines.is_empty() { lines } else { format!("\n[{table}]\n{lines}") }
+}
+
+fn read_units(file: ByChannel) -> Result<ColumnUnits, ModelError> {
+    let units = ColumnUnits { t: file.t, q: file.q, qd: file.qd, excitation: file.excitation };
+    for channel in Channel::ALL {
+        let known = units.unit(channel).is_some_and(|unit| channel.accepts(unit.quantity));
+        if let Some(unit) = units.written(channel).filter(|_| !known) {
+            let (unit, known) = (unit.into(), channel.known_units());
+            return Err(ModelError::Unit { channel: channel.name(), unit, meaning: channel.meaning(), known });
+        }
+    }
+    Ok(units)
 }
 
 /// The user's effects, their inner parameters at their starts.
@@ -294,6 +314,21 @@ mod tests {
         assert_eq!((drag.term, drag.open.as_slice()), (Term::Expression(0), [false, true].as_slice()));
         assert_eq!((model.name_of(drag.term), model.inner_values(drag.term)), ("tip_drag".into(), vec![0.1, 0.5]));
         assert_eq!(model.expressions[1].values(), [3.0]);
+    }
+
+    #[test]
+    fn units_of_columns_are_read_and_written() {
+        let model = Model::from_toml("[units]\nq = \"mm\"\nF = \"kN\"\n[terms]\nqdd = \"fit\"").unwrap();
+        assert_eq!((model.units.q.as_deref(), model.units.qd.as_deref()), (Some("mm"), None));
+        assert_eq!(Model::from_toml(&model.to_toml()).unwrap(), model);
+        for (units, named) in [
+            ("q = \"furlong\"", "[units] q = \"furlong\" is no unit of a displacement"),
+            ("F = \"mm\"", "[units] F = \"mm\" is no unit of an excitation"),
+            ("x = \"mm\"", "unknown field `x`"),
+        ] {
+            let error = Model::from_toml(&format!("[units]\n{units}\n[terms]\nqdd = \"fit\"")).unwrap_err().to_string();
+            assert!(error.contains(named), "{error}");
+        }
     }
 
     #[test]

@@ -2,4 +2,7 @@
 
 mod bad_input;
 mod bench;
+mod compare;
+mod fmu;
 mod good_input;
+mod units;

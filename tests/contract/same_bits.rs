@@ -2,11 +2,11 @@
 
 use super::configurations::duffing;
 use std::process::Command;
+use switchid::fmu::identifier;
 use switchid::identify::{Identifier, Outputs, Sample, Settings};
 use switchid::law::{Model, Term};
 use switchid::simulate::{Builtin, Stage, record};
 use switchid_fmu_identifier::functions;
-use switchid_fmu_package::identifier;
 use switchid_fmu_slave::host::{Instance, Request};
 use switchid_fmu_slave::{Interface, linked_functions};
 

@@ -71,6 +71,9 @@ pub enum Error {
         /// What Python says.
         reason: String,
     },
+    /// An FMU cannot be described.
+    #[error(transparent)]
+    Fmu(#[from] switchid::fmu::FmuError),
     /// An FMU cannot be packed.
     #[error(transparent)]
     Package(#[from] switchid_fmu_package::PackageError),

@@ -3,8 +3,9 @@
 use crate::command::{cargo, root, run};
 use crate::error::Error;
 use std::path::{Path, PathBuf};
+use switchid::fmu::{DUFFING, VAN_DER_POL, identifier, plant};
 use switchid::law::Model;
-use switchid_fmu_package::{DUFFING, Fmu, LINUX64, VAN_DER_POL, identifier, plant};
+use switchid_fmu_package::{Fmu, LINUX64};
 
 /// Name of the default identifier.
 const IDENTIFIER: &str = "SwitchedIdentifier";

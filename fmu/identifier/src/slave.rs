@@ -128,6 +128,7 @@ fn to_fmi(value: OutputValue) -> Value {
         OutputValue::Count(count) => Value::Integer(i32::try_from(count).unwrap_or(i32::MAX)),
         OutputValue::Flag(flag) => Value::Boolean(flag),
         OutputValue::Status(status) => Value::Integer(status as i32),
+        OutputValue::Effect(effect) => Value::Integer(i32::from(effect)),
     }
 }
 

@@ -3,11 +3,11 @@
 mod contract;
 
 use contract::{Drive, OK, Subject};
+use switchid::fmu::identifier;
 use switchid::identify::{Identifier, Outputs, Sample, Settings};
 use switchid::law::{Model, Term};
 use switchid::simulate::{Builtin, Reading, Stage, record};
 use switchid_fmu_identifier::functions;
-use switchid_fmu_package::identifier;
 use switchid_fmu_slave::host::Instance;
 use switchid_fmu_slave::linked_functions;
 

@@ -3,8 +3,6 @@
 use crate::xml::model_description;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Write};
-use switchid::law::ModelError;
-use switchid::simulate::ParametricLawError;
 use switchid_fmu_slave::{Description, INTERFACE_FILE, Interface};
 use thiserror::Error;
 use zip::write::SimpleFileOptions;
@@ -22,12 +20,6 @@ const LICENCES: [(&str, &str); 2] = [
 /// Why an FMU cannot be packed.
 #[derive(Debug, Error)]
 pub enum PackageError {
-    /// The model is refused.
-    #[error(transparent)]
-    Model(#[from] ModelError),
-    /// The law of a plant is refused.
-    #[error(transparent)]
-    Law(#[from] ParametricLawError),
     /// The name cannot name a binary.
     #[error("{name:?} cannot name an FMU: a letter, then letters, digits and underscores")]
     Name {

@@ -1,21 +1,6 @@
 //! The page that an FMU brings along.
 
-use switchid::law::Model;
 use switchid_fmu_slave::{Causality, Description, Kind, Variable};
-
-/// The page of an identifier.
-pub fn identifier(description: &Description, model: &Model) -> String {
-    let terms: Vec<String> = model.terms.iter().map(|entry| entry.term.symbol()).collect();
-    let text = format!(
-        "<p>Connect <code>q</code>, <code>qd</code> and <code>F</code>. One <code>fmi2DoStep</code> is one sample: the \
-         inputs are the sample at the step's start, the outputs hold at its end. Terms stand on the left-hand side, the \
-         excitation on the right; this FMU's law may have {}.</p><p>A sample with a NaN is skipped and said in the log. \
-         While a coefficient is unknown it keeps its last value and its std is 1e30. Parameters are taken at \
-         <code>fmi2ExitInitializationMode</code>; 0 means automatic where the table says so.</p>",
-        escape(&terms.iter().filter(|symbol| !symbol.is_empty()).cloned().collect::<Vec<_>>().join(", "))
-    );
-    page(description, &text)
-}
 
 /// A page of that text, with a table of every variable.
 pub fn page(description: &Description, text: &str) -> String {
@@ -61,6 +46,7 @@ fn start_text(kind: &Kind) -> String {
     }
 }
 
-fn escape(text: &str) -> String {
+/// The text as HTML shows it.
+pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -1,6 +1,6 @@
-//! Short ways to write down variables.
+//! Short ways to write down variables and their units.
 
-use switchid_fmu_slave::{Causality, Kind, Unit, Variability, Variable};
+use switchid_fmu_slave::{Causality, Description, Kind, Unit, Variability, Variable};
 
 /// A real variable without a range.
 pub fn real(name: impl Into<String>, start: f64, unit: Option<&str>, description: impl Into<String>) -> Variable {
@@ -43,11 +43,23 @@ pub fn output(variable: Variable, depends_on: &[&str]) -> Variable {
     Variable { causality: Causality::Output, depends_on, ..variable }
 }
 
-/// The units that the variables name; only seconds and radians per second occur.
+/// The units among seconds and radians per second that the variables name.
 pub fn units(variables: &[Variable]) -> Vec<Unit> {
     let known = [("s", [0, 0, 1, 0, 0]), ("rad/s", [0, 0, -1, 0, 1])];
     let uses =
         |name: &str, variable: &Variable| matches!(&variable.kind, Kind::Real { unit: Some(unit), .. } if unit == name);
     let used = known.into_iter().filter(|(name, _)| variables.iter().any(|variable| uses(name, variable)));
     used.map(|(name, exponents)| Unit { name: name.into(), exponents }).collect()
+}
+
+/// Gives variables the unit that `unit_for` has for their names, where they have none yet.
+pub fn declare_units(description: &mut Description, unit_for: impl Fn(&str) -> Option<Unit>) {
+    for variable in &mut description.variables {
+        let Kind::Real { unit: unit @ None, .. } = &mut variable.kind else { continue };
+        let Some(found) = unit_for(&variable.name) else { continue };
+        *unit = Some(found.name.clone());
+        if description.units.iter().all(|known| known.name != found.name) {
+            description.units.push(found);
+        }
+    }
 }

@@ -1,9 +1,10 @@
 //! The XML, its GUID, the archive.
 
 use std::io::{Cursor, Read};
+use switchid::fmu::{DUFFING, FmuError, STAGES, VAN_DER_POL, identifier, plant};
 use switchid::identify::{Outputs, Parameter};
 use switchid::law::{Given, Model, Term};
-use switchid_fmu_package::{DUFFING, Fmu, LINUX64, PackageError, STAGES, VAN_DER_POL, identifier, plant};
+use switchid_fmu_package::{Fmu, LINUX64, PackageError};
 
 fn default_identifier() -> Fmu {
     identifier("SwitchedIdentifier", &Model::cubic_library()).unwrap()
@@ -113,8 +114,8 @@ fn text_in_the_xml_is_escaped() {
 #[test]
 fn what_cannot_be_packed_is_refused() {
     let refused = identifier("no name", &Model::cubic_library());
-    assert!(matches!(refused, Err(PackageError::Name { .. })));
+    assert!(matches!(refused, Err(FmuError::Package(PackageError::Name { .. }))));
     let no_inertia = Model::of("m", [(Term::power(1, 0), Given::Fit)]);
-    assert!(matches!(identifier("A", &no_inertia), Err(PackageError::Model(_))));
-    assert!(matches!(plant("name = 1"), Err(PackageError::Law(_))));
+    assert!(matches!(identifier("A", &no_inertia), Err(FmuError::Model(_))));
+    assert!(matches!(plant("name = 1"), Err(FmuError::Law(_))));
 }

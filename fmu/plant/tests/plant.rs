@@ -4,9 +4,9 @@
 mod contract;
 
 use contract::{Drive, OK, Subject};
+use switchid::fmu::{DUFFING, VAN_DER_POL, plant};
 use switchid::law::{Catalogue, Term};
 use switchid::simulate::{Builtin, Excitation, ExcitationKind, Plant, Scenario};
-use switchid_fmu_package::{DUFFING, VAN_DER_POL, plant};
 use switchid_fmu_plant::functions;
 use switchid_fmu_slave::host::Instance;
 use switchid_fmu_slave::linked_functions;

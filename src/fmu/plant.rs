@@ -1,17 +1,17 @@
 //! A plant's interface for a law with parameters.
 
-use crate::archive::{Fmu, PackageError};
-use crate::documentation;
-use crate::variables::{at_least, choice, output, real, units, variable};
-use switchid::law::{Catalogue, Entry, InnerParameter, InnerRange, InnerUnit};
-use switchid::simulate::{Excitation, ParametricLaw};
+use super::FmuError;
+use crate::law::{Catalogue, Entry, InnerParameter, InnerRange, InnerUnit};
+use crate::simulate::{Excitation, ParametricLaw};
+use switchid_fmu_package::variables::{at_least, choice, output, real, units, variable};
+use switchid_fmu_package::{Fmu, documentation};
 use switchid_fmu_slave::{Description, Enumeration, Kind, Variability, Variable};
 
 /// The law file of the Duffing oscillator, eq. (5).
-pub const DUFFING: &str = include_str!("../laws/duffing.toml");
+pub const DUFFING: &str = include_str!("laws/duffing.toml");
 
 /// The law file of the van der Pol circuit, eq. (9).
-pub const VAN_DER_POL: &str = include_str!("../laws/van_der_pol.toml");
+pub const VAN_DER_POL: &str = include_str!("laws/van_der_pol.toml");
 
 /// How many stages a plant can have.
 pub const STAGES: usize = 16;
@@ -22,17 +22,20 @@ const NEVER: f64 = 1e30;
 /// A plant whose law is that file's, still without binaries.
 ///
 /// # Errors
-/// [`PackageError`] where the law is refused or its name is no identifier.
-pub fn plant(law_file: &str) -> Result<Fmu, PackageError> {
-    let law = ParametricLaw::from_toml(law_file)?;
-    let description = plant_description(&law);
+/// [`FmuError`] where the law is refused or its name is no identifier.
+pub fn plant(law_file: &str) -> Result<Fmu, FmuError> {
+    pack(plant_description(&ParametricLaw::from_toml(law_file)?), law_file)
+}
+
+/// A plant of that interface.
+pub(super) fn pack(description: Description, law_file: &str) -> Result<Fmu, FmuError> {
     let text = "<p>Outputs <code>q</code>, <code>qd</code> carry sensor noise, <code>F</code> is the excitation that is \
                 held from this instant on; <code>true.*</code> is what no estimator may see. A stage begins at \
                 <code>stage[i].time</code>, counted from the start of the simulation; 1e30 = it does not occur. The inner \
                 integration does not depend on the communication step. <code>hidden.*</code> are effects \
                 besides the law's terms, for a model to lack.</p>";
     let page = documentation::page(&description, text);
-    Fmu::new(description, vec![("plant.toml".into(), law_file.as_bytes().to_vec())], page)
+    Ok(Fmu::new(description, vec![("plant.toml".into(), law_file.as_bytes().to_vec())], page)?)
 }
 
 /// The variables of a plant: parameters, outputs, truth.

@@ -1,24 +1,39 @@
-//! Units that a header may name, and what they are in SI.
+//! Units that a recording's header or a model may name, and what they are in SI.
+
+use serde::{Deserialize, Serialize};
 
 /// What a unit measures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Quantity {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Quantity {
+    /// s.
     Time,
+    /// m.
     Length,
+    /// rad.
     Angle,
+    /// C.
     Charge,
+    /// V.
     Voltage,
+    /// m/s.
     Speed,
+    /// rad/s.
     AngularSpeed,
+    /// A.
     Current,
+    /// V/s.
     VoltageRate,
+    /// N.
     Force,
+    /// Nm.
     Torque,
+    /// 1.
     Number,
 }
 
 impl Quantity {
-    pub(super) fn name(self) -> &'static str {
+    /// Its name.
+    pub fn name(self) -> &'static str {
         match self {
             Quantity::Time => "time",
             Quantity::Length => "length",
@@ -36,7 +51,7 @@ impl Quantity {
     }
 
     /// What its rate of change measures.
-    pub(super) fn rate(self) -> Option<Quantity> {
+    pub fn rate(self) -> Option<Quantity> {
         match self {
             Quantity::Length => Some(Quantity::Speed),
             Quantity::Angle => Some(Quantity::AngularSpeed),
@@ -46,14 +61,47 @@ impl Quantity {
             _ => None,
         }
     }
+
+    /// What it is the rate of change of.
+    pub fn integral(self) -> Option<Quantity> {
+        let all = [Quantity::Length, Quantity::Angle, Quantity::Charge, Quantity::Voltage, Quantity::Number];
+        all.into_iter().find(|quantity| quantity.rate() == Some(self))
+    }
+
+    /// Its SI unit; empty for a pure number.
+    pub fn symbol(self) -> &'static str {
+        let units = UNITS.iter().filter(|unit| unit.quantity == self && unit.factor == 1.0);
+        units.map(|unit| unit.name).next().filter(|name| *name != "1").unwrap_or_default()
+    }
+
+    /// Exponents of kg, m, s, A, rad in its SI unit.
+    pub fn exponents(self) -> [i8; 5] {
+        match self {
+            Quantity::Time => [0, 0, 1, 0, 0],
+            Quantity::Length => [0, 1, 0, 0, 0],
+            Quantity::Angle => [0, 0, 0, 0, 1],
+            Quantity::Charge => [0, 0, 1, 1, 0],
+            Quantity::Voltage => [1, 2, -3, -1, 0],
+            Quantity::Speed => [0, 1, -1, 0, 0],
+            Quantity::AngularSpeed => [0, 0, -1, 0, 1],
+            Quantity::Current => [0, 0, 0, 1, 0],
+            Quantity::VoltageRate => [1, 2, -4, -1, 0],
+            Quantity::Force => [1, 1, -2, 0, 0],
+            Quantity::Torque => [1, 2, -2, 0, 0],
+            Quantity::Number => [0; 5],
+        }
+    }
 }
 
 /// A unit: what it measures, and how many SI units it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Unit {
-    pub(super) name: &'static str,
-    pub(super) quantity: Quantity,
-    pub(super) factor: f64,
+pub struct Unit {
+    /// Its spelling.
+    pub name: &'static str,
+    /// What it measures.
+    pub quantity: Quantity,
+    /// SI units per unit.
+    pub factor: f64,
 }
 
 const fn unit(name: &'static str, quantity: Quantity, factor: f64) -> Unit {
@@ -117,28 +165,40 @@ const UNITS: [Unit; 51] = [
     unit("-", Quantity::Number, 1.0),
 ];
 
-/// The unit of that spelling: `mm/s`, `mm s^-1`, `mm_per_s`, `N m`, `N·m`, `µm`, `°`.
-pub(super) fn parse(text: &str) -> Option<Unit> {
-    let plain = text.trim().replace(['µ', 'μ'], "u").replace('°', "deg");
-    let plain = plain.replace("_per_", "/").replace(" per ", "/").replace(" s^-1", "/s").replace("*s^-1", "/s");
-    let plain: String = plain.chars().filter(|c| !matches!(c, ' ' | '·' | '*' | '.')).collect();
-    UNITS.into_iter().find(|unit| unit.name == plain)
+impl Unit {
+    /// Whether it is another unit, whatever the spelling.
+    pub fn is_not(self, other: Unit) -> bool {
+        self.quantity != other.quantity || self.factor != other.factor
+    }
+
+    /// The unit of that spelling: `mm/s`, `mm s^-1`, `mm_per_s`, `N m`, `N·m`, `µm`, `°`.
+    pub fn parse(text: &str) -> Option<Unit> {
+        let plain = text.trim().replace(['µ', 'μ'], "u").replace('°', "deg");
+        let plain = plain.replace("_per_", "/").replace(" per ", "/").replace(" s^-1", "/s").replace("*s^-1", "/s");
+        let plain: String = plain.chars().filter(|c| !matches!(c, ' ' | '·' | '*' | '.')).collect();
+        UNITS.into_iter().find(|unit| unit.name == plain)
+    }
 }
 
 /// What a column may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Channel {
+pub enum Channel {
+    /// t.
     Time,
+    /// q.
     Displacement,
+    /// q̇.
     Velocity,
+    /// F.
     Excitation,
 }
 
 impl Channel {
-    pub(super) const ALL: [Channel; 4] = [Channel::Time, Channel::Displacement, Channel::Velocity, Channel::Excitation];
+    /// Every channel, in the order t, q, qd, F.
+    pub const ALL: [Channel; 4] = [Channel::Time, Channel::Displacement, Channel::Velocity, Channel::Excitation];
 
     /// Its name in model files, which is its column's default name.
-    pub(super) fn name(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Channel::Time => "t",
             Channel::Displacement => "q",
@@ -148,7 +208,7 @@ impl Channel {
     }
 
     /// What it is, in words.
-    pub(super) fn meaning(self) -> &'static str {
+    pub fn meaning(self) -> &'static str {
         match self {
             Channel::Time => "a time",
             Channel::Displacement => "a displacement (length, angle, charge or raw voltage)",
@@ -157,7 +217,8 @@ impl Channel {
         }
     }
 
-    pub(super) fn accepts(self, quantity: Quantity) -> bool {
+    /// Whether it may measure that.
+    pub fn accepts(self, quantity: Quantity) -> bool {
         use Quantity as Q;
         match self {
             Channel::Time => quantity == Q::Time,
@@ -170,7 +231,7 @@ impl Channel {
     }
 
     /// The units it may have, for a message.
-    pub(super) fn known_units(self) -> String {
+    pub fn known_units(self) -> String {
         let names = UNITS.iter().filter(|unit| self.accepts(unit.quantity)).map(|unit| unit.name);
         names.collect::<Vec<_>>().join(", ")
     }
@@ -184,14 +245,25 @@ mod tests {
     fn spellings_of_one_unit_agree() {
         let spellings = ["mm/s", "mm s^-1", "mm_per_s", " mm / s ", "mm per s"];
         for text in spellings {
-            let unit = parse(text).unwrap();
+            let unit = Unit::parse(text).unwrap();
             assert_eq!((unit.quantity, unit.factor), (Quantity::Speed, 1e-3), "{text}");
         }
-        assert_eq!(parse("N m"), parse("N·m"));
-        assert_eq!(parse("µm").unwrap().factor, 1e-6);
-        assert_eq!(parse("°").unwrap().factor, DEGREE);
-        assert_eq!(parse("furlong"), None);
-        assert_ne!(parse("mN"), parse("MN"));
+        assert_eq!(Unit::parse("N m"), Unit::parse("N·m"));
+        assert_eq!(Unit::parse("µm").unwrap().factor, 1e-6);
+        assert_eq!(Unit::parse("°").unwrap().factor, DEGREE);
+        assert_eq!(Unit::parse("furlong"), None);
+        assert_ne!(Unit::parse("mN"), Unit::parse("MN"));
+    }
+
+    #[test]
+    fn rates_and_integrals_are_inverse() {
+        for quantity in UNITS.map(|unit| unit.quantity) {
+            let rate = quantity.rate();
+            assert!(rate.is_none_or(|rate| rate.integral() == Some(quantity)), "{quantity:?}");
+            let mut exponents = quantity.exponents();
+            exponents[2] -= 1;
+            assert!(rate.is_none_or(|rate| rate == Quantity::Number || rate.exponents() == exponents), "{quantity:?}");
+        }
     }
 
     #[test]

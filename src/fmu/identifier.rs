@@ -1,21 +1,22 @@
 //! The identifier's interface for a model.
 
-use crate::archive::{Fmu, PackageError};
-use crate::documentation;
-use crate::variables::{at_least, choice, input, output, real, units, variable};
-use switchid::identify::{Method, OutputDescription, OutputKind, Outputs, Parameter, Status};
-use switchid::law::{Hold, Model, Term};
+use super::{FmuError, ports};
+use crate::identify::{Method, OutputDescription, OutputKind, Outputs, Parameter, Status};
+use crate::law::{Catalogue, Hold, Model, Term};
+use switchid_fmu_package::variables::{at_least, choice, input, output, real, units, variable};
+use switchid_fmu_package::{Fmu, documentation};
 use switchid_fmu_slave::{Description, Enumeration, Kind, Variable};
 
 /// An identifier for a model, still without binaries.
 ///
 /// # Errors
-/// [`PackageError`] where the model is refused or `name` is no identifier.
-pub fn identifier(name: &str, model: &Model) -> Result<Fmu, PackageError> {
+/// [`FmuError`] where the model is refused, cannot be identified sample by sample, or `name` is no identifier.
+pub fn identifier(name: &str, model: &Model) -> Result<Fmu, FmuError> {
     model.check()?;
+    model.check_streaming()?;
     let description = identifier_description(name, model);
-    let page = documentation::identifier(&description, model);
-    Fmu::new(description, vec![("model.toml".into(), model.to_toml().into_bytes())], page)
+    let page = documentation::page(&description, &text(model));
+    Ok(Fmu::new(description, vec![("model.toml".into(), model.to_toml().into_bytes())], page)?)
 }
 
 /// The variables of an identifier for a model: inputs, parameters, outputs.
@@ -26,7 +27,7 @@ pub fn identifier_description(name: &str, model: &Model) -> Description {
         .chain(parameters(&terms))
         .chain(Outputs::describe(&terms).iter().map(to_variable))
         .collect();
-    Description {
+    let mut description = Description {
         name: name.into(),
         description: "Identifies the law of motion of a switched system, notices switches, re-identifies".into(),
         version: env!("CARGO_PKG_VERSION").into(),
@@ -35,7 +36,27 @@ pub fn identifier_description(name: &str, model: &Model) -> Description {
         units: units(&variables),
         enumerations: enumerations(),
         variables,
-    }
+    };
+    let units = model.units.units();
+    ports::declare(&mut description, &units, |name| {
+        let term = name.strip_prefix("coef.").or(name.strip_prefix("std."))?;
+        terms.iter().find(|known| known.fmu_name() == term).and_then(|term| units.coefficient(*term))
+    });
+    description
+}
+
+/// What the FMU's page says.
+fn text(model: &Model) -> String {
+    let terms: Vec<String> =
+        model.terms.iter().map(|entry| entry.term.symbol()).filter(|term| !term.is_empty()).collect();
+    format!(
+        "<p>Connect <code>q</code>, <code>qd</code> and <code>F</code>. One <code>fmi2DoStep</code> is one sample: the \
+         inputs are the sample at the step's start, the outputs hold at its end. Terms stand on the left-hand side, the \
+         excitation on the right; this FMU's law may have {}.</p><p>A sample with a NaN is skipped and said in the log. \
+         While a coefficient is unknown it keeps its last value and its std is 1e30. Parameters are taken at \
+         <code>fmi2ExitInitializationMode</code>; 0 means automatic where the table says so.</p>",
+        documentation::escape(&terms.join(", "))
+    )
 }
 
 fn inputs() -> [Variable; 3] {
@@ -71,6 +92,7 @@ fn to_variable(of: &OutputDescription) -> Variable {
         OutputKind::Count => Kind::Integer { start: 0, min: None, max: None },
         OutputKind::Flag => Kind::Boolean { start: false },
         OutputKind::Status => Kind::Enumeration { of: "Status".into(), start: 1 },
+        OutputKind::Effect => Kind::Enumeration { of: "Effect".into(), start: 1 },
     };
     output(variable(&of.name, kind, &of.description), initial_dependencies(&of.name))
 }
@@ -112,9 +134,12 @@ fn enumerations() -> Vec<Enumeration> {
         };
         item(status.id(), text)
     });
+    let none = std::iter::once(item("none", "Nothing stands out"));
+    let effects = none.chain(Catalogue::ENTRIES.iter().map(|entry| item(entry.id, entry.equation)));
     vec![
         Enumeration { name: "Method".into(), items: methods.into() },
         Enumeration { name: "Hold".into(), items: holds.into() },
         Enumeration { name: "Status".into(), items: statuses.into() },
+        Enumeration { name: "Effect".into(), items: effects.collect() },
     ]
 }

@@ -1,0 +1,47 @@
+//! What our FMUs are: the variables, units and resources of an identifier for a model, and of a plant for a law.
+//!
+//! model → interface → [`Fmu`], to which the binaries of `fmu/identifier` or `fmu/plant` are added as bytes. Ports are in SI
+//! units: where the model names a unit of q, qd or F, they declare the SI unit of that quantity, else none, so that they
+//! connect to anything.
+
+mod identifier;
+mod plant;
+mod plant_of_model;
+mod ports;
+
+pub use identifier::{identifier, identifier_description};
+pub use plant::{DUFFING, STAGES, VAN_DER_POL, plant, plant_description};
+pub use plant_of_model::plant_of_model;
+pub use switchid_fmu_package::{Fmu, PackageError};
+
+use crate::law::ModelError;
+use crate::simulate::ParametricLawError;
+use thiserror::Error;
+
+/// Why there is no FMU.
+#[derive(Debug, Error)]
+pub enum FmuError {
+    /// The model is refused.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The law of a plant is refused.
+    #[error(transparent)]
+    Law(#[from] ParametricLawError),
+    /// A plant of a law whose numbers are not all known.
+    #[error("[terms]: a plant needs numbers, but {terms} have none: write them, or let `switchid improve` find them")]
+    NoNumbers {
+        /// The keys of these terms, with the inner parameter where that is what lacks.
+        terms: String,
+    },
+    /// A term that no plant knows.
+    #[error(
+        "[terms]: \"{key}\" is an effect of your own, which a plant FMU cannot carry: take it out, or `switchid simulate` the model"
+    )]
+    Expression {
+        /// The key.
+        key: String,
+    },
+    /// The interface or the archive cannot be written.
+    #[error(transparent)]
+    Package(#[from] PackageError),
+}
