@@ -105,8 +105,12 @@ impl Arguments {
             return vec![Secret::Missing(vec![one.trim().into(), other.trim().into()])];
         }
         let all = GROUPS.into_iter().zip(groups);
+        let exact = Catalogue::find(&self.effect).is_some();
+        let named = |secret: &Secret| {
+            if exact { secret.name() == self.effect } else { secret.name().contains(&self.effect) }
+        };
         let chosen = |group: &str, secret: &Secret| {
-            self.effect == group || (group != "pairs" && secret.name().contains(&self.effect)) || self.effect.is_empty()
+            self.effect.is_empty() || self.effect == group || (group != "pairs" && named(secret))
         };
         let wanted = all.flat_map(|(group, secrets)| secrets.into_iter().filter(move |secret| chosen(group, secret)));
         wanted.collect()

@@ -35,6 +35,12 @@ const QUIET_PASSES: usize = 8;
 /// Factor by which a step may change the inertia.
 const LARGEST_RATIO: f64 = 2.5;
 
+/// Guesses from which a fit begins, at most.
+const STARTS: usize = 4;
+
+/// Factor by which the inertia has grown in a fit that forgets its excitation.
+const FORGETFUL: f64 = 30.0;
+
 /// A form of law: which terms it has, and what is known of each coefficient.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Form {
@@ -171,9 +177,25 @@ impl Parts {
 }
 
 /// Fits the form to the pieces; none where nothing can be made of them: no motion, or coefficients that no row determines.
+///
+/// The likelihood has another maximum where the inertia grows without bounds: the excitation is forgotten, and process noise drives the
+/// motion. A descent that runs there begins again from the next guess.
 pub fn fit(form: &Form, pieces: &[Piece]) -> Option<Fit> {
-    let begin = start::start(form, pieces)?;
-    refit(form, pieces, &begin.coefficients, begin.noise)
+    let mut best: Option<Fit> = None;
+    for begin in start::starts(form, pieces).into_iter().take(STARTS) {
+        let Some(fitted) = refit(form, pieces, &begin.coefficients, begin.noise) else { continue };
+        let kept = form.inertia().is_none_or(|index| {
+            let ratio = fitted.coefficients[index] / begin.coefficients[index];
+            (0.0..FORGETFUL).contains(&ratio) && begin.coefficients[index] > 0.0
+        });
+        if best.as_ref().is_none_or(|best| fitted.log_likelihood > best.log_likelihood) {
+            best = Some(fitted);
+        }
+        if kept {
+            break;
+        }
+    }
+    best
 }
 
 /// Fits the form from coefficients and noise that are near already. The likelihood may have two maxima, one that leaves error to the law

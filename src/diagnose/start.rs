@@ -21,14 +21,20 @@ pub(super) struct Start {
     pub(super) noise: Noise,
 }
 
-/// The guess of the length whose rows leave the smallest part of the force unexplained; none without rows enough.
-pub(super) fn start(form: &Form, pieces: &[Piece]) -> Option<Start> {
+/// Guesses from rows of every length, the best first: those of positive inertia, then by the part of the force that their rows leave
+/// unexplained. None without rows enough.
+pub(super) fn starts(form: &Form, pieces: &[Piece]) -> Vec<Start> {
     let sensor = sensor_noise(pieces);
-    let guesses = LENGTHS.iter().filter_map(|length| guess(form, pieces, *length));
-    let (_, coefficients, intensity) = guesses.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    let inertia = form.terms.iter().position(|term| *term == Term::Inertia).map_or(1.0, |index| coefficients[index]);
-    let process = intensity / (inertia * inertia) + f64::MIN_POSITIVE;
-    (inertia != 0.0 && process.is_finite()).then_some(Start { coefficients, noise: Noise { sensor, process } })
+    let position = form.terms.iter().position(|term| *term == Term::Inertia);
+    let inertia = |coefficients: &[f64]| position.map_or(1.0, |index| coefficients[index]);
+    let mut guesses: Vec<_> = LENGTHS.iter().filter_map(|length| guess(form, pieces, *length)).collect();
+    guesses.sort_by(|a, b| (inertia(&a.1) <= 0.0).cmp(&(inertia(&b.1) <= 0.0)).then(a.0.total_cmp(&b.0)));
+    let begin = |(_, coefficients, intensity): (f64, Vec<f64>, f64)| {
+        let process = intensity / inertia(&coefficients).powi(2) + f64::MIN_POSITIVE;
+        (process.is_finite() && inertia(&coefficients) != 0.0)
+            .then_some(Start { coefficients, noise: Noise { sensor, process } })
+    };
+    guesses.into_iter().filter_map(begin).collect()
 }
 
 /// (relative residual, coefficients, intensity of the unexplained force) from rows of one length.

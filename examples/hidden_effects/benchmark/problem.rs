@@ -84,7 +84,7 @@ fn attempted(setting: &Setting, generator: &mut Generator) -> Option<Problem> {
     };
     let alone = scaled(&mut rig, &base)?;
     let (track, law) = with_secret(setting, generator, &rig, &base, &alone)?;
-    Some(measured(setting, generator, &rig, track.from(lead), &law))
+    measured(setting, generator, &rig, track.from(lead), &law)
 }
 
 /// Scales the excitation to the size of the motion that the base law is to have.
@@ -176,7 +176,7 @@ fn bounded(track: &Track, alone: &Track) -> bool {
     (0.1..5.0).contains(&ratio) && largest(&track.q) < 10.0 * largest(&alone.q)
 }
 
-fn measured(setting: &Setting, generator: &mut Generator, rig: &Rig, track: Track, law: &Law) -> Problem {
+fn measured(setting: &Setting, generator: &mut Generator, rig: &Rig, track: Track, law: &Law) -> Option<Problem> {
     let mut noisy = |signal: &[f64]| -> Vec<f64> {
         let deviation = setting.noise * std(signal);
         signal.iter().map(|value| value + deviation * generator.normal()).collect()
@@ -189,15 +189,15 @@ fn measured(setting: &Setting, generator: &mut Generator, rig: &Rig, track: Trac
     let relieved = track.excitation.iter().zip(&track.outside).map(|(force, outside)| force - outside).collect();
     let complete = matches!(setting.secret, Secret::Complete(_));
     let split = if complete { law.terms.len() } else { law.known };
-    Problem {
-        recording: record(track.excitation.clone()).expect("a drawn record is one"),
+    Some(Problem {
+        recording: record(track.excitation.clone()).ok()?,
         hold: rig.hold(),
         model: law.terms[..split].to_vec(),
         lacking: law.terms[split..].to_vec(),
         coefficients: law.coefficients.clone(),
         relieved: matches!(setting.secret, Secret::Outside(_)).then(|| record(relieved)).and_then(Result::ok),
         words: words(rig, law, velocity),
-    }
+    })
 }
 
 fn words(rig: &Rig, law: &Law, velocity: bool) -> String {
