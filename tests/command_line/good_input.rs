@@ -90,7 +90,7 @@ fn sections_are_read_and_bad_ones_refused() {
 #[test]
 fn every_command_shows_an_example() {
     let bench = Bench::new("help");
-    for command in ["compare", "identify", "simulate"] {
+    for command in ["add", "compare", "diagnose", "identify", "improve", "simulate"] {
         let help = String::from_utf8(bench.run(&[command, "--help"]).stdout).unwrap();
         assert!(help.contains(&format!("\n  switchid {command} ")), "{help}");
     }
