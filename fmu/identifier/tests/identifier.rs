@@ -62,7 +62,7 @@ fn numbers(subject: &Subject, instance: &Instance) -> Vec<f64> {
     let read = |name: &str| {
         let reference = subject.reference(name);
         match name {
-            "switch.count" | "status" => f64::from(instance.integer(reference).unwrap()),
+            "switch.count" | "status" | "missing.effect" => f64::from(instance.integer(reference).unwrap()),
             "valid" => f64::from(instance.boolean(reference).unwrap()),
             _ => instance.reals(&[reference]).unwrap()[0],
         }
