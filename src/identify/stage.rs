@@ -40,6 +40,9 @@ const LONG: u32 = 4;
 /// e below this square makes a law good enough to weigh switches against.
 pub const TRUSTED: f64 = 0.2 * 0.2;
 
+/// Effects that the law lacks are looked for again when the record has grown by this factor: most passes are spared the work.
+const LOOK_AGAIN: f64 = 1.4;
+
 /// Variance of an innovation ÷ that of its sensor from which on the law's own error counts.
 const PROCESS_SHARE: f64 = 2.0;
 
@@ -98,6 +101,8 @@ pub struct Stage {
     lack: Lack,
     /// Whether the pass looks for effects that the law lacks.
     looking: bool,
+    /// Length of the record from which the next pass looks.
+    next_look: u64,
     pass: Pass,
     next: u64,
     closed_at: u64,
@@ -183,6 +188,7 @@ impl Stage {
             missing: None,
             lack: Lack::new(&problem.terms, n),
             looking: false,
+            next_look: 0,
             pass: Pass::new(n),
             next: 0,
             closed_at: 0,
@@ -230,6 +236,7 @@ impl Stage {
         }
         self.gain = f64::INFINITY;
         self.missing = None;
+        self.next_look = 0;
         self.largest = [0.0; 2];
         self.begin_pass(problem, window);
     }
@@ -318,6 +325,7 @@ impl Stage {
         self.closed_at = self.next;
         if self.looking {
             self.missing = self.lack.missing(&self.active, self.overdispersion);
+            self.next_look = (LOOK_AGAIN * self.length(self.next) as f64) as u64;
         }
         std::mem::swap(&mut self.scales, &mut self.running_scales);
         self.passes += 1;
@@ -466,7 +474,7 @@ impl Stage {
         self.checkpoint.at = long.then_some(self.start + length / 2);
         self.pass.begin(first_state(problem, window, self.start, &self.noise));
         self.next = self.start + 1;
-        self.looking = self.settled();
+        self.looking = self.settled() && length >= self.next_look;
         if self.looking {
             self.lack.begin(self.pass.filter.state, self.largest);
         }
