@@ -2,17 +2,13 @@
 //!
 //! Beside a run of the filter the sensitivity of the innovations to each candidate's coefficient is carried, as if it were a term with
 //! coefficient 0. With M and g the information and score of the law's own terms, c, i and s those of a candidate beside them, its gain in
-//! log-likelihood is ½ (s − cᵀM⁻¹g)² ÷ (i − cᵀM⁻¹c) (Rao, *Proc. Cambridge Phil. Soc.* 44 (1948), 50). Sums are taken of every fourth
-//! sample: neighbours say much the same.
+//! log-likelihood is ½ (s − cᵀM⁻¹g)² ÷ (i − cᵀM⁻¹c) (Rao, *Proc. Cambridge Phil. Soc.* 44 (1948), 50).
 
 use super::filter::{Channel, Innovation};
 use super::information::{Information, Solution};
 use super::pass::{Observation, Pass};
 use crate::law::{Catalogue, Effect, Motion, State, Term};
 use serde::{Deserialize, Serialize};
-
-/// Every such sample enters the sums.
-const EVERY: u64 = 4;
 
 /// Evidence, nats, from which an effect is named.
 const NAMED: f64 = 10.0;
@@ -42,7 +38,6 @@ pub struct Lack {
     active: Vec<bool>,
     before: State,
     row: Vec<f64>,
-    number: u64,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -86,7 +81,6 @@ impl Lack {
             active: vec![true; n],
             before: State::default(),
             row: vec![0.0; n],
-            number: 0,
         }
     }
 
@@ -98,7 +92,7 @@ impl Lack {
             candidate.term = scaled(candidate.term, largest);
         }
         self.own.clear();
-        (self.before, self.number) = (state, 0);
+        self.before = state;
     }
 
     /// Takes the sample that the run has just taken, under the law `motion`.
@@ -120,10 +114,7 @@ impl Lack {
             candidate.advance(-(force + term.mass(state.q) * acceleration) * inverse_mass, pass, gains);
         }
         self.before = state;
-        self.number += 1;
-        if self.number.is_multiple_of(EVERY) {
-            self.sum(pass, innovations);
-        }
+        self.sum(pass, innovations);
     }
 
     fn sum(&mut self, pass: &Pass, innovations: &[Option<Innovation>; 2]) {
@@ -149,7 +140,7 @@ impl Lack {
         let evidence = |candidate: &Candidate| {
             let (coefficient, gain) = candidate.gain(&self.solution, &self.active, &self.own.score);
             let allowed = Catalogue::ENTRIES[candidate.entry].sign.allows(coefficient);
-            if allowed { EVERY as f64 * gain / overdispersion.max(1.0) - price } else { 0.0 }
+            if allowed { gain / overdispersion.max(1.0) - price } else { 0.0 }
         };
         let all =
             self.candidates.iter().map(|candidate| Missing { entry: candidate.entry, evidence: evidence(candidate) });
