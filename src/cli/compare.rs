@@ -186,7 +186,7 @@ fn recordings(found: &Comparison) -> String {
     let mut text = String::from("\nby recording: force residual as given, best, noise floor; free run as given\n");
     for (index, source) in found.sources.iter().enumerate() {
         let (given, best) = (&found.given.each[index], &found.best.each[index]);
-        let free = given.free_run_nrmse.map_or_else(|| "diverges".into(), |value| format!("{value:.4e}"));
+        let free = given.free_run_nrmse.map_or_else(|| "–".into(), |value| format!("{value:.4e}"));
         let _ = writeln!(
             text,
             "  {:.4e} {:.4e} {:.4e}  {free:>10}  {source}",

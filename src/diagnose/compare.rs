@@ -35,7 +35,8 @@ pub struct Error {
     pub force_residual: f64,
     /// What `force_residual` would be were the law right.
     pub noise_floor: f64,
-    /// RMSE of the free run of q (of q̇ where q is not measured) ÷ std of the measurement.
+    /// RMSE of the free run of q (of q̇ where q is not measured) ÷ std of the measurement; none where it diverges, or where the law
+    /// has memory, a delay or an expression, whose state at the start no reading gives.
     pub free_run_nrmse: Option<f64>,
     /// The same of q̇ where both are measured.
     pub free_run_nrmse_velocity: Option<f64>,
@@ -191,21 +192,28 @@ impl Totals {
         };
         let samples = |length: f64| (length / record.sample_time).round().max(2.0) as usize;
         let motion = Motion { terms: &law.terms, coefficients: &law.coefficients };
+        let from_state = law.terms.iter().all(|term| term.is_pointwise());
         for prepared in &record.pieces {
-            let run = FreeRun::new(prepared, &motion);
-            match run.whole(samples(stretch)) {
-                Ok(distance) => totals.free = totals.free.and(distance),
-                Err(t) => totals.diverged = totals.diverged.or(Some(t)),
-            }
-            match run.windows(samples(horizon)) {
-                Ok(distance) => totals.windowed = totals.windowed.and(distance),
-                Err(_) => totals.windows_diverged = true,
+            if from_state {
+                totals.predict(&FreeRun::new(prepared, &motion), samples(stretch), samples(horizon));
             }
             for (spread, signal) in totals.spread.iter_mut().zip(prepared.piece.measured()) {
                 *spread += signal.map_or(0.0, |values| variance(values) * values.len() as f64);
             }
         }
         totals
+    }
+
+    /// Adds a free run and open-loop windows of this many samples.
+    fn predict(&mut self, run: &FreeRun, stretch: usize, horizon: usize) {
+        match run.whole(stretch) {
+            Ok(distance) => self.free = self.free.and(distance),
+            Err(t) => self.diverged = self.diverged.or(Some(t)),
+        }
+        match run.windows(horizon) {
+            Ok(distance) => self.windowed = self.windowed.and(distance),
+            Err(_) => self.windows_diverged = true,
+        }
     }
 
     fn and(self, other: &Totals) -> Totals {
@@ -224,7 +232,7 @@ impl Totals {
         let first = if measured(0) { 0 } else { 1 };
         let nrmse = |channel: usize| {
             let share = (self.free.squares[channel] / self.spread[channel]).sqrt();
-            (self.diverged.is_none() && measured(channel)).then_some(share)
+            (self.diverged.is_none() && self.free.count[channel] > 0.0 && measured(channel)).then_some(share)
         };
         Error {
             force_residual: self.balance.force_residual(),
