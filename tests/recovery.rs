@@ -65,3 +65,10 @@ fn the_publication_s_van_der_pol_noise_case_is_found_in_the_full_library() {
     let error = median_error(Builtin::VanDerPolNoise);
     assert!(error <= 1e-2, "{error:e}");
 }
+
+/// Its first law, once found, was contested by its equal again and again, and so never vouched for: every switch was missed.
+#[test]
+fn a_law_that_challengers_confirm_is_vouched_for() {
+    let found = figures(Builtin::VanDerPolSine, &Builtin::VanDerPolSine.random(40).with_noise(0.01));
+    assert_eq!((found.missed(), found.false_alarms), (0, 0), "{found:#?}");
+}
