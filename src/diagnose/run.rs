@@ -6,7 +6,7 @@
 //! likelihood, with the noise of all samples accounted for.
 
 use super::piece::Piece;
-use crate::evidence::{Channel, Filter, Innovation, Noise, Observation, Pass};
+use crate::evidence::{Channel, Filter, Innovation, Noise, Observation, Pass, gains};
 use crate::law::{Drive, Effect, Motion, State, Term};
 use nalgebra::{DMatrix, DVector};
 
@@ -144,17 +144,9 @@ impl Carried {
 
     /// Over an interval in which the forces have these means, and through its measurements.
     fn step(&mut self, forces: &[f64], pass: &Pass, inverse_mass: f64, gains: [[f64; 2]; 2]) {
-        let [[a, b], [c, d]] = pass.map.transition;
-        let push = pass.map.push.map(|push| -push * inverse_mass);
-        let [first, second] = gains;
         let [q_rows, qd_rows] = &mut self.rows;
         for (((state, force), q_row), qd_row) in self.state.iter_mut().zip(forces).zip(q_rows).zip(qd_rows) {
-            let [q, qd] = *state;
-            let (q, qd) = (a * q + b * qd + push[0] * force, c * q + d * qd + push[1] * force);
-            *q_row = q;
-            let (q, qd) = (q - first[0] * q, qd - first[1] * q);
-            *qd_row = qd;
-            *state = [q - second[0] * qd, qd - second[1] * qd];
+            ([*q_row, *qd_row], *state) = pass.carry(*state, -force * inverse_mass, gains);
         }
     }
 }
@@ -178,18 +170,14 @@ pub fn run(
     let (mut carried, mut tried) = (Carried::new(extra), Carried::new(kinds));
     let mut unknowns = vec![0.0; n + extra];
     pass.begin(first_state(piece, &law.noise));
-    if law
-        .terms
-        .iter()
-        .any(|term| matches!(term, Term::Effect(Effect::CoulombFriction | Effect::StribeckFriction { .. })))
-    {
+    if law.terms.iter().any(|term| jumps(*term)) {
         pass.parts = pass.parts.max(PARTS_OF_A_JUMP);
     }
     for (k, observation) in piece.observations.iter().enumerate() {
         let observation = beside(observation, law.series, series.get(k));
         let innovations = pass.step(&motion, &free, &law.noise, &observation);
         let inverse_mass = motion.mass(pass.filter.state.q).recip();
-        let gains = innovations.map(|innovation| innovation.map_or([0.0; 2], |innovation| innovation.gain));
+        let gains = gains(&innovations);
         if let Some(forces) = series.get(k) {
             carried.step(forces, pass, inverse_mass, gains);
         }
@@ -225,6 +213,11 @@ impl Outcome {
             finite: true,
         }
     }
+}
+
+/// Whether the term's force jumps where the velocity reverses.
+fn jumps(term: Term) -> bool {
+    matches!(term, Term::Effect(Effect::CoulombFriction | Effect::StribeckFriction { .. }))
 }
 
 /// The observation with the series' forces taken off its excitation.

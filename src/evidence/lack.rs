@@ -6,7 +6,7 @@
 
 use super::filter::{Channel, Innovation};
 use super::information::{Information, Solution};
-use super::pass::{Observation, Pass};
+use super::pass::{Observation, Pass, gains};
 use crate::law::{Catalogue, Effect, Motion, State, Term};
 use serde::{Deserialize, Serialize};
 
@@ -107,11 +107,12 @@ impl Lack {
         let inverse_mass = motion.mass(state.q).recip();
         let acceleration = (state.qd - self.before.qd) / observation.dt;
         let [from, _, to] = observation.drive.part(0, 1);
-        let gains = innovations.map(|innovation| innovation.map_or([0.0; 2], |innovation| innovation.gain));
+        let gains = gains(innovations);
         for candidate in &mut self.candidates {
             let term = candidate.term;
             let force = 0.5 * (term.force(self.before.q, self.before.qd, from) + term.force(state.q, state.qd, to));
-            candidate.advance(-(force + term.mass(state.q) * acceleration) * inverse_mass, pass, gains);
+            let push = -(force + term.mass(state.q) * acceleration) * inverse_mass;
+            (candidate.rows, candidate.sensitivity) = pass.carry(candidate.sensitivity, push, gains);
         }
         self.before = state;
         self.sum(pass, innovations);
@@ -149,19 +150,6 @@ impl Lack {
 }
 
 impl Candidate {
-    /// Over an interval with this acceleration per unit of the coefficient, and through its measurements.
-    fn advance(&mut self, acceleration: f64, pass: &Pass, gains: [[f64; 2]; 2]) {
-        let [[a, b], [c, d]] = pass.map.transition;
-        let [to_q, to_qd] = pass.map.push;
-        let [q, qd] = self.sensitivity;
-        let (q, qd) = (a * q + b * qd + to_q * acceleration, c * q + d * qd + to_qd * acceleration);
-        let [first, second] = gains;
-        self.rows[0] = q;
-        let (q, qd) = (q - first[0] * q, qd - first[1] * q);
-        self.rows[1] = qd;
-        self.sensitivity = [q - second[0] * qd, qd - second[1] * qd];
-    }
-
     /// (coefficient, gain in log-likelihood) beside the law's own terms.
     fn gain(&self, own: &Solution, active: &[bool], own_score: &[f64]) -> (f64, f64) {
         let n = self.cross.len();

@@ -23,4 +23,4 @@ pub use bank::{Bank, Law, Suspect};
 pub use filter::{Channel, Filter, Innovation, Noise};
 pub use information::{Information, Solution};
 pub use lack::{Lack, Missing};
-pub use pass::{IntervalMap, Observation, Pass, RIVALS, Track};
+pub use pass::{IntervalMap, Observation, Pass, RIVALS, Track, gains};

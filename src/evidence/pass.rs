@@ -201,6 +201,15 @@ impl Pass {
         &self.rows[channel as usize].as_flattened()[..self.sensitivity.len()]
     }
 
+    /// Carries the sensitivity of the state to an unknown beside the free terms, an acceleration over the last interval per unit of it,
+    /// over that interval and through its measurements. Returns that of the expected measurements by channel, and the state's.
+    #[inline]
+    pub fn carry(&self, [q, qd]: [f64; 2], acceleration: f64, gains: [[f64; 2]; 2]) -> ([f64; 2], [f64; 2]) {
+        let [[a, b], [c, d]] = self.map.transition;
+        let [to_q, to_qd] = self.map.push;
+        measured([a * q + b * qd + to_q * acceleration, c * q + d * qd + to_qd * acceleration], gains)
+    }
+
     fn advance(&mut self, noise: &Noise, observation: &Observation) {
         let parts = observation.drive.parts(self.parts);
         let dt = observation.dt / parts as f64;
@@ -236,22 +245,33 @@ impl Pass {
     /// Carries the sensitivity over the interval and through its measurements, and adds what they say.
     #[inline]
     fn inform(&mut self, innovations: &[Option<Innovation>; 2]) {
-        let [first, second] = innovations.map(|innovation| innovation.map_or([0.0; 2], |innovation| innovation.gain));
+        let gains = gains(innovations);
         let [[a, b], [c, d]] = self.map.transition;
         let [q_row, qd_row] = &mut self.rows;
         let rows = q_row.as_flattened_mut().iter_mut().zip(qd_row.as_flattened_mut());
         for ((state, input), (q_row, qd_row)) in self.sensitivity.iter_mut().zip(&self.map.input).zip(rows) {
             let [q, qd] = *state;
-            let (q, qd) = (a * q + b * qd + input[0], c * q + d * qd + input[1]);
-            *q_row = q;
-            let (q, qd) = (q - first[0] * q, qd - first[1] * q);
-            *qd_row = qd;
-            *state = [q - second[0] * qd, qd - second[1] * qd];
+            let moved = [a * q + b * qd + input[0], c * q + d * qd + input[1]];
+            ([*q_row, *qd_row], *state) = measured(moved, gains);
         }
         let residuals = innovations.map(|innovation| innovation.map_or(0.0, |innovation| innovation.residual));
         let weights = innovations.map(|innovation| innovation.map_or(0.0, |innovation| innovation.precision));
         self.information.add_pair([&self.rows[0], &self.rows[1]], residuals, weights);
     }
+}
+
+/// How much of each channel's residual goes into the state; nothing where it was not measured.
+#[inline]
+pub fn gains(innovations: &[Option<Innovation>; 2]) -> [[f64; 2]; 2] {
+    innovations.map(|innovation| innovation.map_or([0.0; 2], |innovation| innovation.gain))
+}
+
+/// A sensitivity of the state through the measurements of both channels: what it is of the expected ones, and what is left of it.
+#[inline]
+fn measured([q, qd]: [f64; 2], [first, second]: [[f64; 2]; 2]) -> ([f64; 2], [f64; 2]) {
+    let row = q;
+    let (q, qd) = (q - first[0] * q, qd - first[1] * q);
+    ([row, qd], [q - second[0] * qd, qd - second[1] * qd])
 }
 
 /// Where a state near the one that was integrated ends: it is carried by the linearised step.

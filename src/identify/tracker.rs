@@ -246,7 +246,7 @@ impl Tracker {
         }
         self.next_guess = window.end() + (window.end() - since) / 8 + 4;
         let sensor = match self.phase {
-            Phase::Gathering => first_noise(problem, settings, window),
+            Phase::Gathering => first_noise(settings, window),
             Phase::Refining if self.noise_weight > 0.0 => self.live.noise.sensor,
             Phase::Refining => self.stage.noise.sensor,
         };
@@ -290,7 +290,7 @@ impl Tracker {
             return;
         }
         self.next_noise_challenge = end + self.stage.length(end);
-        let sensor = first_noise(problem, settings, &self.window);
+        let sensor = first_noise(settings, &self.window);
         let noise = Noise { sensor, process: 1e-6 * self.stage.noise.process };
         self.set_spread(problem);
         self.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
@@ -602,7 +602,7 @@ fn keep_inertia(problem: &Problem, old: &[f64], new: &mut [f64]) {
 }
 
 /// Sensor variances from third differences, which a smooth motion leaves small; an upper bound that passes then lower.
-fn first_noise(problem: &Problem, settings: &Settings, window: &Window) -> [f64; 2] {
+fn first_noise(settings: &Settings, window: &Window) -> [f64; 2] {
     let given = [settings.noise_q, settings.noise_qd];
     let channel = |index: usize, value: fn(&super::Sample) -> f64| {
         if given[index] > 0.0 {
@@ -616,6 +616,5 @@ fn first_noise(problem: &Problem, settings: &Settings, window: &Window) -> [f64;
         let count = window.end().saturating_sub(3).saturating_sub(first).max(1);
         differences.sum::<f64>() / (20.0 * count as f64) + f64::MIN_POSITIVE
     };
-    let _ = problem;
     [channel(0, |sample| sample.q), channel(1, |sample| sample.qd)]
 }
