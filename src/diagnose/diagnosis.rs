@@ -5,34 +5,26 @@
 //! plausible, and how much of what the law leaves unexplained goes away. Where that is too little, a second and a third effect are
 //! sought before the answer is that the catalogue does not have it.
 
+use super::conclude::{Answer, conclude};
 use super::errors::{Left, Windows};
 use super::fit::{Fit, Form, fit, refit};
-use super::judge::Trial;
+use super::judge::{Trial, p_value};
 use super::piece::Piece;
-use super::search::{Search, search};
+use super::place::place;
+use super::search::search;
+use super::sound::{Sound, is_physical};
+use super::variants::same_effect;
 use crate::identify::Recording;
-use crate::law::{Catalogue, Effect, Expression, Given, Hold, Model, Term};
+use crate::law::{Catalogue, Expression, Given, Hold, Model, Term};
 
 /// Chance, shared among all candidates tried, below which a gain is none.
 pub const LEVEL: f64 = 0.01;
-
-/// Share of what is unexplained that effects of the catalogue must explain for them to be the answer.
-const ENOUGH: f64 = 0.75;
-
-/// Factor by which a coefficient must not grow when a candidate joins: both would be large and of opposite sign.
-const CANCELLING: f64 = 4.0;
-
-/// Share that a first effect must explain for a second to be sought.
-const PROMISING: f64 = 0.05;
 
 /// Part by which error energy may exceed the sensors' noise in a law that is adequate.
 const TOLERATED: f64 = 0.02;
 
 /// Log-likelihood, nats, that an error of the law must gain to be one.
 const EVIDENT: f64 = 6.0;
-
-/// Effects that may be missing together.
-const DEPTH: usize = 3;
 
 /// What a diagnosis comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +83,7 @@ pub struct Diagnosis {
     pub beside: Vec<String>,
     /// The law as it is, fitted.
     pub base: Fit,
-    /// The law with the effect that is missing.
+    /// The law with all effects that are missing.
     pub improved: Option<Trial>,
     /// Candidates tried, inner parameters counted apart.
     pub tried: usize,
@@ -135,6 +127,7 @@ pub fn best_of_form(model: &Model, evidence: &Evidence) -> Option<Fit> {
     let form = Form {
         terms: model.terms.iter().map(|entry| entry.term).collect(),
         held: model.terms.iter().map(|entry| held(entry.term, entry.given)).collect(),
+        open: model.terms.iter().map(|entry| entry.open.clone()).collect(),
         expressions: model.expressions.clone(),
     };
     let mut fitted = fit(&form, &evidence.pieces)?;
@@ -171,33 +164,79 @@ pub fn candidates(expressions: &[Expression]) -> Vec<Term> {
 pub fn diagnose(base: &Fit, evidence: &Evidence) -> Diagnosis {
     let candidates = candidates(&base.form.expressions);
     let found = search(base, &evidence.pieces, &candidates);
-    let ranked = ranked(base, &found);
-    let windows = windows(base, &ranked, evidence);
-    let (before, left) = windows.error(base, &evidence.pieces);
-    let describe = |trial: &Trial| {
-        let (after, remaining) = windows.error(&trial.fit, &evidence.pieces);
-        describe(base, trial, found.tried, [before, after], place(&left, &remaining))
-    };
-    let listed: Vec<Candidate> = ranked.iter().map(describe).collect();
-    let mut diagnosis = Diagnosis {
-        finding: Finding::Adequate,
-        effect: None,
-        indistinguishable: Vec::new(),
-        beside: Vec::new(),
+    let sound = Sound::new(base, &evidence.pieces);
+    let singles = sound.ranked(found.trials(1));
+    let answer = conclude(base, evidence, &found, &singles, &sound);
+    let listed = Listed::new(base, &answer, &singles);
+    let described = listed.describe(evidence, &sound, found.tried);
+    let name = |term: Term| base.form.effect_name(term);
+    let missing = answer.finding == Finding::Missing;
+    let named: Vec<String> = answer.members.iter().map(|member| name(member.term)).collect();
+    Diagnosis {
+        finding: answer.finding,
+        effect: named.first().cloned(),
+        beside: named.into_iter().skip(1).collect(),
+        indistinguishable: answer.ties,
+        explained: answer.explained,
+        improved: answer.best.filter(|_| missing),
         base: base.clone(),
-        improved: None,
         tried: found.tried,
-        explained: 0.0,
-        window: windows.length,
-        candidates: listed,
-    };
-    let first = diagnosis.candidates.first().is_some_and(Candidate::is_missing);
-    match ranked.into_iter().next().filter(|_| first) {
-        Some(best) => conclude(&mut diagnosis, best, &found, evidence, &candidates),
-        None if is_evident(base) => diagnosis.finding = Finding::Unexplained,
-        None => {}
+        window: described.window,
+        candidates: described.candidates,
     }
-    diagnosis
+}
+
+/// What is to be listed: a law without the term of that position, and with it.
+struct Listed<'a> {
+    base: &'a Fit,
+    pairs: Vec<(&'a Fit, &'a Fit, usize)>,
+}
+
+struct Described {
+    candidates: Vec<Candidate>,
+    window: f64,
+}
+
+impl<'a> Listed<'a> {
+    /// The members of the answer, then the candidates alone.
+    fn new(base: &'a Fit, answer: &'a Answer, singles: &'a [Trial]) -> Listed<'a> {
+        let together = answer.best.iter().filter(|best| best.count > 1).flat_map(|best| {
+            let position = |term: Term| best.fit.form.terms.iter().position(|other| *other == term);
+            answer.members.iter().filter_map(move |member| Some((&member.without, &best.fit, position(member.term)?)))
+        });
+        let is_listed = |trial: &&Trial| match &answer.best {
+            Some(best) if best.count > 1 => !best.terms().iter().any(|term| same_effect(*term, trial.term())),
+            _ => true,
+        };
+        let alone = singles.iter().filter(is_listed).map(|trial| (base, &trial.fit, trial.fit.form.terms.len() - 1));
+        Listed { base, pairs: together.chain(alone).collect() }
+    }
+
+    fn describe(&self, evidence: &Evidence, sound: &Sound, tried: usize) -> Described {
+        let windows = self.windows(evidence);
+        let error = |fit: &Fit| windows.error(fit, &evidence.pieces);
+        let mut last: Option<(&Fit, (f64, Vec<Left>))> = None;
+        let candidates = self.pairs.iter().map(|(without, with, index)| {
+            let known = last.take().filter(|(fit, _)| std::ptr::eq(*fit, *without));
+            let (fit, (before, left)) = known.unwrap_or_else(|| (*without, error(without)));
+            let (after, remaining) = error(with);
+            let place = place(&left, &remaining);
+            last = Some((fit, (before, left)));
+            describe(without, with, *index, [before, after], place, sound, tried)
+        });
+        Described { candidates: candidates.collect(), window: windows.length }
+    }
+
+    /// Windows with every term of every law.
+    fn windows(&self, evidence: &Evidence) -> Windows {
+        let mut terms = self.base.form.terms.clone();
+        for term in self.pairs.iter().flat_map(|(without, with, _)| without.form.terms.iter().chain(&with.form.terms)) {
+            if !terms.contains(term) {
+                terms.push(*term);
+            }
+        }
+        Windows::new(&evidence.recordings, terms, self.base.form.terms.len(), &self.base.form.expressions)
+    }
 }
 
 impl Candidate {
@@ -217,50 +256,8 @@ pub fn excess(fit: &Fit) -> f64 {
     (2.0 * fit.lack() / fit.measurements.max(1.0)).exp() - 1.0
 }
 
-/// Trials with the physical and plausible ones first; among those that the record cannot tell apart the simplest.
-fn ranked(base: &Fit, found: &Search) -> Vec<Trial> {
-    let (mut sound, unsound): (Vec<Trial>, Vec<Trial>) =
-        found.trials.iter().cloned().partition(|trial| is_physical(trial) && is_plausible(base, trial));
-    if let Some(best) = sound.first().cloned() {
-        let tied = (0..sound.len()).filter(|index| !best.is_clearly_better_than(&sound[*index]));
-        let simplest = tied.min_by_key(|index| (sound[*index].inner_count(), *index)).unwrap_or(0);
-        let contained = |index: usize| Catalogue::is_contained(&name(&sound[index]), &name(&best));
-        if sound[simplest].inner_count() < best.inner_count() || contained(simplest) {
-            let simplest = sound.remove(simplest);
-            sound.insert(0, simplest);
-        }
-    }
-    sound.extend(unsound);
-    sound
-}
-
-fn name(trial: &Trial) -> String {
-    trial.fit.form.effect_name(trial.term)
-}
-
-/// The effect id of a term, or its canonical name.
-pub fn effect_name(term: Term) -> String {
-    Catalogue::of(term).map_or_else(|| term.name(), |entry| entry.id.into())
-}
-
-fn is_physical(trial: &Trial) -> bool {
-    Catalogue::of(trial.term).is_none_or(|entry| entry.sign.allows(trial.coefficient()))
-}
-
-/// Whether no other coefficient turned to a sign that physics does not allow it, by more than its std, or grew so much that it and the
-/// candidate must cancel.
-fn is_plausible(base: &Fit, trial: &Trial) -> bool {
-    let spoilt = |index: usize| {
-        let allowed = |value: f64| Catalogue::of(base.form.terms[index]).is_none_or(|entry| entry.sign.allows(value));
-        let (old, new, std) = (base.coefficients[index], trial.fit.coefficients[index], trial.fit.std(index));
-        let turned = allowed(old) && !allowed(new) && new.abs() > 2.0 * std;
-        turned || (old.abs() > 3.0 * base.std(index) && new.abs() > CANCELLING * old.abs())
-    };
-    !(0..base.form.terms.len()).any(spoilt)
-}
-
 /// Share of the unexplained acceleration that goes away between two fits.
-fn share(base: &Fit, fit: &Fit) -> f64 {
+pub(super) fn share(base: &Fit, fit: &Fit) -> f64 {
     let inertia = |fit: &Fit| {
         let position = fit.form.terms.iter().position(|term| *term == Term::Inertia);
         position.map_or(1.0, |index| fit.coefficients[index])
@@ -270,100 +267,42 @@ fn share(base: &Fit, fit: &Fit) -> f64 {
     if before > 0.0 && is_evident(base) { (1.0 - unexplained(fit) / before).clamp(0.0, 1.0) } else { 1.0 }
 }
 
-fn windows(base: &Fit, ranked: &[Trial], evidence: &Evidence) -> Windows {
-    let own = base.form.terms.len();
-    let terms = base.form.terms.iter().copied().chain(ranked.iter().map(|trial| trial.term)).collect();
-    Windows::new(&evidence.recordings, terms, own, &base.form.expressions)
+/// The effect id of a term, or its canonical name.
+pub fn effect_name(term: Term) -> String {
+    Catalogue::of(term).map_or_else(|| term.name(), |entry| entry.id.into())
 }
 
-fn describe(base: &Fit, trial: &Trial, tried: usize, error: [f64; 2], place: Option<String>) -> Candidate {
-    let inner = match trial.term {
+fn describe(
+    without: &Fit,
+    with: &Fit,
+    index: usize,
+    error: [f64; 2],
+    place: Option<String>,
+    sound: &Sound,
+    tried: usize,
+) -> Candidate {
+    let term = with.form.terms[index];
+    let inner = match term {
         Term::Effect(effect) => {
             let names = effect.inner().iter().map(|parameter| parameter.name.to_string());
             names.zip(effect.inner_values()).collect()
         }
         _ => Vec::new(),
     };
+    let gain = with.log_likelihood - without.log_likelihood;
     Candidate {
-        effect: name(trial),
-        term: trial.term,
-        inner,
-        coefficient: trial.coefficient(),
-        std: trial.std(),
+        effect: with.form.effect_name(term),
+        term,
+        coefficient: with.coefficients[index],
+        std: with.std(index),
         error_before: error[0],
         error_after: error[1],
-        p_value: trial.p_value(tried),
-        gain: trial.gain,
-        share: share(base, &trial.fit),
-        physical: is_physical(trial),
-        plausible: is_plausible(base, trial),
+        p_value: p_value(gain, inner.len(), with.measurements, tried),
+        inner,
+        gain,
+        share: share(without, with),
+        physical: is_physical(with, index),
+        plausible: sound.is_plausible(with),
         place,
-    }
-}
-
-/// The answer where a first effect is missing: it alone, it with others, or nothing that the catalogue has.
-fn conclude(diagnosis: &mut Diagnosis, best: Trial, found: &Search, evidence: &Evidence, candidates: &[Term]) {
-    let base = diagnosis.base.clone();
-    let mut reached = best.fit.clone();
-    for _ in 1..DEPTH {
-        let explained = share(&base, &reached);
-        if !is_evident(&reached) || !(PROMISING..ENOUGH).contains(&explained) {
-            break;
-        }
-        let next = search(&reached, &evidence.pieces, candidates);
-        let sound = ranked(&reached, &next).into_iter().next();
-        let Some(next) = sound.filter(|trial| trial.p_value(next.tried) < LEVEL && is_physical(trial)) else { break };
-        diagnosis.beside.push(name(&next));
-        reached = next.fit;
-    }
-    diagnosis.explained = share(&base, &reached);
-    if is_evident(&reached) && diagnosis.explained < ENOUGH {
-        diagnosis.finding = Finding::Unexplained;
-        diagnosis.beside.clear();
-        return;
-    }
-    diagnosis.finding = Finding::Missing;
-    diagnosis.effect = Some(name(&best));
-    let others = found.trials.iter().filter(|trial| name(trial) != name(&best));
-    let tied =
-        others.filter(|trial| is_physical(trial) && is_plausible(&base, trial) && !best.is_clearly_better_than(trial));
-    let group: Vec<String> = std::iter::once(name(&best)).chain(tied.map(name)).collect();
-    if group.len() > 1 {
-        diagnosis.indistinguishable.push(group);
-    }
-    diagnosis.improved = Some(best);
-}
-
-/// Where a candidate removes error: the third of the motion, by speed or by displacement, that holds most of what goes away.
-fn place(before: &[Left], after: &[Left]) -> Option<String> {
-    let removed: Vec<f64> = before.iter().zip(after).map(|(before, after)| before.squared - after.squared).collect();
-    let total: f64 = removed.iter().sum();
-    if total <= 0.0 || removed.len() < 12 {
-        return None;
-    }
-    let mean = before.iter().map(|left| left.q).sum::<f64>() / before.len() as f64;
-    let speeds: Vec<f64> = before.iter().map(|left| left.qd.abs()).collect();
-    let excursions: Vec<f64> = before.iter().map(|left| (left.q - mean).abs()).collect();
-    let thirds = [(&speeds, "|q̇|"), (&excursions, "|q − mean|")].into_iter().flat_map(|(values, symbol)| {
-        let mut sorted = values.clone();
-        sorted.sort_by(f64::total_cmp);
-        let (low, high) = (sorted[sorted.len() / 3], sorted[2 * sorted.len() / 3]);
-        let share = |inside: &dyn Fn(f64) -> bool| {
-            let held = values.iter().zip(&removed).filter(|(value, _)| inside(**value));
-            held.map(|(_, removed)| removed).sum::<f64>() / total
-        };
-        [
-            (share(&|value| value < low), format!("where {symbol} < {low:.3}")),
-            (share(&|value| value > high), format!("where {symbol} > {high:.3}")),
-        ]
-    });
-    let best = thirds.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (best.0 > 0.45).then(|| format!("{:.0} % of what it removes lies {}", 100.0 * best.0.min(1.0), best.1))
-}
-
-impl Trial {
-    /// Number of inner parameters that were fitted.
-    pub fn inner_count(&self) -> usize {
-        self.term.effect().map_or(0, |effect: Effect| effect.inner().len())
     }
 }

@@ -5,6 +5,7 @@
 //! Terms that no state gives (memory, delay, expressions of time) are series along the smoothed motion, renewed with it.
 
 use super::diagnosis::effect_name;
+use super::inner_slopes::{self, Sought};
 use super::means::{self, is_series};
 use super::piece::Piece;
 use super::run::{self, Law, Outcome, Sums};
@@ -48,6 +49,8 @@ pub struct Form {
     pub terms: Vec<Term>,
     /// Their coefficients where held; `None` where sought.
     pub held: Vec<Option<f64>>,
+    /// Which inner parameters of each are sought beside them.
+    pub open: Vec<Vec<bool>>,
     /// What [`Term::Expression`] names.
     pub expressions: Vec<Expression>,
 }
@@ -59,7 +62,8 @@ pub struct Fit {
     pub form: Form,
     /// One coefficient per term.
     pub coefficients: Vec<f64>,
-    /// Covariance of the sought coefficients, in the order of the terms.
+    /// Covariance of what is sought: coefficients in the order of the terms, terms that the state gives first, then logarithms of inner
+    /// parameters.
     pub covariance: DMatrix<f64>,
     /// Noise levels: the sensors', and the white acceleration that the law leaves unexplained.
     pub noise: Noise,
@@ -86,14 +90,15 @@ impl Form {
             Term::Inertia if !forced => Some(held.unwrap_or(1.0)),
             _ => None,
         });
-        Form { terms: self.terms.clone(), held: held.collect(), expressions: self.expressions.clone() }
+        Form { held: held.collect(), ..self.clone() }
     }
 
-    /// The form with one more term, sought.
+    /// The form with one more term, sought with its inner parameters.
     pub fn with(&self, term: Term) -> Form {
         let mut form = self.clone();
         form.terms.push(term);
         form.held.push(None);
+        form.open.push(vec![true; term.effect().map_or(0, |effect| effect.inner().len())]);
         form
     }
 
@@ -102,6 +107,7 @@ impl Form {
         let mut form = self.clone();
         form.terms.remove(index);
         form.held.remove(index);
+        form.open.remove(index);
         form
     }
 
@@ -143,12 +149,13 @@ impl Fit {
 /// Where a descent stands.
 #[derive(Clone, Debug)]
 struct Descent<'a> {
-    form: &'a Form,
+    form: Form,
     pieces: &'a [Piece],
     parts: Parts,
+    inner: Vec<Sought>,
     coefficients: Vec<f64>,
     noise: Noise,
-    /// Mean forces of the series, by piece and interval.
+    /// Mean forces of the series, then the slopes of the inner parameters, by piece and interval.
     series: Vec<Vec<Vec<f64>>>,
 }
 
@@ -204,9 +211,15 @@ pub fn refit(form: &Form, pieces: &[Piece], coefficients: &[f64], noise: Noise) 
     let series = vec![Vec::new(); pieces.len()];
     let parts = Parts::of(form);
     let mut pass = Pass::new(parts.free.len());
-    let mut descent = Descent { form, pieces, parts, coefficients: coefficients.to_vec(), noise, series };
+    let inner = inner_slopes::sought(form);
+    let mut descent =
+        Descent { form: form.clone(), pieces, parts, inner, coefficients: coefficients.to_vec(), noise, series };
     descent.begin_series(&mut pass);
     let mut loud = descent.descend(&mut pass)?;
+    if loud.noise.process <= start::negligible(&loud.noise) {
+        loud.log_likelihood_if_right = loud.log_likelihood;
+        return Some(loud);
+    }
     loud.log_likelihood_if_right = descent.quieten(&mut pass, loud.log_likelihood);
     if loud.log_likelihood_if_right <= loud.log_likelihood {
         return Some(loud);
@@ -225,27 +238,30 @@ impl Descent<'_> {
             let outcomes = self.run(pass);
             if outcomes.iter().any(|outcome| !outcome.finite) {
                 self.noise.process *= 100.0;
-                self.coefficients.clone_from(&best.as_ref()?.coefficients);
+                let last = best.as_ref()?;
+                self.coefficients.clone_from(&last.coefficients);
+                self.form.clone_from(&last.form);
                 calm = 0;
                 continue;
             }
             let sums = total(&outcomes);
             let solved = solve(&sums.information, &sums.score)?;
-            let decrement = solved.step.dot(&sums.score) / self.parts.unknowns.len().max(1) as f64;
-            best = Some(self.summary(&outcomes, solved.covariance, sums.count));
+            let decrement = solved.step.dot(&sums.score) / solved.step.len().max(1) as f64;
+            let present = self.summary(&outcomes, solved.covariance, sums.count);
+            if best.as_ref().is_none_or(|best| present.log_likelihood >= best.log_likelihood) {
+                best = Some(present);
+            }
             let steady = move_noise(&mut self.noise, &outcomes, start::largest(self.pieces));
             calm = if steady && decrement < SETTLED.max(1e-9 * sums.count) { calm + 1 } else { 0 };
             if calm >= 2 {
                 break;
             }
             self.take(&solved.step);
-            if !self.parts.series.is_empty() {
-                let states = self.smoothed(&outcomes);
-                self.take_series(&states);
-            }
+            self.renew_series(&outcomes);
         }
         let mut best = best?;
         (self.coefficients, self.noise) = (best.coefficients.clone(), best.noise);
+        self.form.clone_from(&best.form);
         best.states = self.smoothed(&self.run(pass));
         Some(best)
     }
@@ -271,6 +287,7 @@ impl Descent<'_> {
                 return reached;
             }
             self.take(&solved.step);
+            self.renew_series(&outcomes);
         }
         reached
     }
@@ -278,7 +295,8 @@ impl Descent<'_> {
     fn run(&self, pass: &mut Pass) -> Vec<Outcome> {
         let terms: Vec<Term> = self.parts.of_state.iter().map(|index| self.form.terms[*index]).collect();
         let coefficients: Vec<f64> = self.parts.of_state.iter().map(|index| self.coefficients[*index]).collect();
-        let series: Vec<f64> = self.parts.series.iter().map(|index| self.coefficients[*index]).collect();
+        let mut series: Vec<f64> = self.parts.series.iter().map(|index| self.coefficients[*index]).collect();
+        series.resize(series.len() + self.inner.len(), 0.0);
         let law = Law {
             terms: &terms,
             coefficients: &coefficients,
@@ -287,24 +305,36 @@ impl Descent<'_> {
             noise: self.noise,
         };
         let pairs = self.pieces.iter().zip(&self.series);
-        pairs.map(|(piece, series)| run::run(&law, piece, pass, series, &[], &[])).collect()
+        pairs.map(|(piece, series)| run::run(&law, piece, pass, series, &[], &[], None)).collect()
     }
 
     /// Series need a motion before there is one: that of the law without them.
     fn begin_series(&mut self, pass: &mut Pass) {
-        if self.parts.series.is_empty() {
+        if !self.has_series() {
             return;
         }
-        let zeros = vec![0.0; self.parts.series.len()];
+        let zeros = vec![0.0; self.parts.series.len() + self.inner.len()];
         self.series = self.pieces.iter().map(|piece| vec![zeros.clone(); piece.len() - 1]).collect();
         let states = self.smoothed(&self.run(pass));
         self.take_series(&states);
     }
 
+    fn renew_series(&mut self, outcomes: &[Outcome]) {
+        if self.has_series() {
+            let states = self.smoothed(outcomes);
+            self.take_series(&states);
+        }
+    }
+
+    fn has_series(&self) -> bool {
+        !self.parts.series.is_empty() || !self.inner.is_empty()
+    }
+
     fn take_series(&mut self, states: &[Vec<State>]) {
         let terms: Vec<Term> = self.parts.series.iter().map(|index| self.form.terms[*index]).collect();
         let columns = |piece: &Piece, states: &[State]| -> Vec<Vec<f64>> {
-            terms.iter().map(|term| means::means(*term, &self.form.expressions, piece, states)).collect()
+            let series = terms.iter().map(|term| means::means(*term, &self.form.expressions, piece, states));
+            series.chain(inner_slopes::slopes(&self.form, &self.coefficients, &self.inner, piece, states)).collect()
         };
         let pairs = self.pieces.iter().zip(states);
         self.series = pairs.map(|(piece, states)| means::rows(&columns(piece, states))).collect();
@@ -341,6 +371,8 @@ impl Descent<'_> {
         for (index, change) in self.parts.unknowns.iter().zip(step.iter()) {
             self.coefficients[*index] += fraction * change;
         }
+        let inner: Vec<f64> = step.iter().skip(self.parts.unknowns.len()).map(|change| fraction * change).collect();
+        inner_slopes::take(&mut self.form, &self.inner, &inner);
     }
 }
 
@@ -366,6 +398,8 @@ fn move_noise(noise: &mut Noise, outcomes: &[Outcome], largest: [f64; 2]) -> boo
     let present = sum(|outcome| outcome.log_likelihood);
     let [less, more] = [sum(|outcome| outcome.rivals[0]) - present, sum(|outcome| outcome.rivals[1]) - present];
     let ratio = match (less >= more, less > -GAIN, more > GAIN) {
+        // where a part of it does as well, it is none: a law that explains its record is not to be approached step by step
+        (true, true, _) if less < GAIN => 0.0,
         (true, true, _) => RIVALS[0],
         (false, _, true) => RIVALS[1],
         _ => 1.0,

@@ -3,7 +3,9 @@
 use super::diagnosis::{Diagnosis, Evidence, Finding, best_of_form, diagnose};
 use super::errors::Windows;
 use super::fit::{Fit, refit};
+use super::judge::Trial;
 use super::search::search;
+use super::variants::same_effect;
 use crate::law::{Given, Model, ModelTerm, Term};
 
 /// Most effects that are added.
@@ -44,10 +46,27 @@ pub fn improve(model: &Model, evidence: &Evidence) -> Option<Improvement> {
         let (Finding::Missing, Some(found), true) = (last.finding, &last.improved, steps.len() <= STEPS) else {
             return Some(Improvement { steps, last });
         };
-        let (fit, removed) = without_superfluous(found.fit.clone(), &original, evidence);
-        let effect = Some(fit.form.effect_name(found.term));
+        steps.extend(one_by_one(law, found, &last, evidence));
+        let (fit, removed) = without_superfluous(found.fit.clone(), &original, found.count, evidence);
+        let effect = last.beside.last().or(last.effect.as_ref()).cloned();
         steps.push(Step { effect, removed, error: error(&fit, evidence), fit });
     }
+}
+
+/// The steps to several effects before the last of them, the weightiest first.
+fn one_by_one(law: &Fit, found: &Trial, last: &Diagnosis, evidence: &Evidence) -> Vec<Step> {
+    let mut reached = law.clone();
+    let mut steps = Vec::new();
+    for candidate in last.candidates.iter().take(found.count - 1) {
+        let coefficients: Vec<f64> = reached.coefficients.iter().copied().chain([candidate.coefficient]).collect();
+        let Some(fit) = refit(&reached.form.with(candidate.term), &evidence.pieces, &coefficients, law.noise) else {
+            break;
+        };
+        let effect = Some(candidate.effect.clone());
+        steps.push(Step { effect, removed: Vec::new(), error: error(&fit, evidence), fit: fit.clone() });
+        reached = fit;
+    }
+    steps
 }
 
 /// An effect in the law: fitted with it, and its held-out errors before and after.
@@ -66,7 +85,7 @@ pub struct Addition {
 /// Adds an effect to a model, whatever its evidence. None where the record determines no law with it.
 pub fn add(model: &Model, effect: Term, evidence: &Evidence) -> Option<Addition> {
     let before = best_of_form(model, evidence)?;
-    let trial = search(&before, &evidence.pieces, &[effect]).trials.into_iter().next()?;
+    let trial = search(&before, &evidence.pieces, &[effect]).trials(1).into_iter().next()?;
     let [error_before, error_after] = [&before, &trial.fit].map(|fit| error(fit, evidence));
     Some(Addition { before, after: trial.fit, error_before, error_after })
 }
@@ -78,21 +97,24 @@ pub fn error(fit: &Fit, evidence: &Evidence) -> f64 {
     Windows::new(&evidence.recordings, terms, own, &fit.form.expressions).error(fit, &evidence.pieces).0
 }
 
-/// The fit without effects that were added earlier and are now worth less than ln N, and their names.
-fn without_superfluous(mut fit: Fit, original: &[Term], evidence: &Evidence) -> (Fit, Vec<String>) {
+/// The fit without effects that were added before the `newest` ones and are not worth ln N now, and their names.
+///
+/// Whether one may be is told by its std; whether it is, by the likelihood without it: beside a delay that is fitted too, a coefficient that
+/// the law needs has a large std.
+fn without_superfluous(mut fit: Fit, original: &[Term], newest: usize, evidence: &Evidence) -> (Fit, Vec<String>) {
     let mut removed = Vec::new();
-    let price = (2.0 * fit.measurements.max(2.0).ln()).sqrt();
+    let price = fit.measurements.max(2.0).ln();
+    let own = |term: &Term| original.iter().any(|other| same_effect(*term, *other));
     loop {
-        let newest = fit.form.terms.len() - 1;
-        let weak = |index: &usize| {
-            !original.contains(&fit.form.terms[*index]) && fit.coefficients[*index].abs() < price * fit.std(*index)
-        };
-        let Some(index) = (0..newest).find(weak) else { return (fit, removed) };
-        let mut coefficients = fit.coefficients.clone();
-        coefficients.remove(index);
-        let Some(smaller) = refit(&fit.form.without(index), &evidence.pieces, &coefficients, fit.noise) else {
-            return (fit, removed);
-        };
+        let earlier = 0..fit.form.terms.len() - newest;
+        let weak = |index: &usize| fit.coefficients[*index].abs() < (4.0 * price).sqrt() * fit.std(*index);
+        let smaller = earlier.filter(|index| !own(&fit.form.terms[*index])).filter(weak).find_map(|index| {
+            let mut coefficients = fit.coefficients.clone();
+            coefficients.remove(index);
+            let smaller = refit(&fit.form.without(index), &evidence.pieces, &coefficients, fit.noise)?;
+            (fit.log_likelihood - smaller.log_likelihood < price).then_some((index, smaller))
+        });
+        let Some((index, smaller)) = smaller else { return (fit, removed) };
         removed.push(fit.form.effect_name(fit.form.terms[index]));
         fit = smaller;
     }

@@ -6,11 +6,11 @@
 //! which it comes from one stretch of the record to the next (Vuong 1989).
 
 use super::fit::{Fit, refit};
-use super::means;
 use super::piece::Piece;
-use super::screen::{self, Gain};
-use super::variants::{Variant, is_continuous};
-use crate::law::{State, Term};
+use super::proposal::Proposal;
+use super::screen;
+use super::variants::Variant;
+use crate::law::Term;
 
 /// Difference of log-likelihood, nats, below which two candidates are equally good.
 const TIE: f64 = 3.0;
@@ -18,24 +18,15 @@ const TIE: f64 = 3.0;
 /// Standard errors by which one candidate must be better than another, stretch by stretch.
 const CLEAR: f64 = 2.0;
 
-/// Gauss–Newton steps on the inner parameters of a candidate.
-const POLISHES: usize = 4;
+/// Smallest part of the law's process noise with which a fit begins that ought to explain it.
+const LEAST_LEFT: f64 = 1e-3;
 
-/// Gain in log-likelihood, nats, for which another is taken.
-const GAIN: f64 = 0.05;
-
-/// Relative change of an inner parameter from which its slope is taken.
-const DIFFERENCE: f64 = 0.01;
-
-/// Largest step, in the logarithm of an inner parameter.
-const LARGEST_STEP: f64 = 0.3;
-
-/// A candidate in the law.
+/// Candidates in the law.
 #[derive(Clone, Debug)]
 pub struct Trial {
-    /// The candidate.
-    pub term: Term,
-    /// The law with it as its last term, fitted.
+    /// How many they are; they are the last terms of the fitted form.
+    pub count: usize,
+    /// The law with them, fitted, their inner parameters too.
     pub fit: Fit,
     /// Log-likelihood gained.
     pub gain: f64,
@@ -44,62 +35,69 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Fits the law of `base` with the candidate in it.
-    pub fn of(base: &Fit, pieces: &[Piece], variant: Variant, expected: &Gain) -> Option<Trial> {
-        let form = base.form.with(variant.term);
-        let mut coefficients = base.coefficients.clone();
-        coefficients.push(expected.coefficient);
-        let fit = refit(&form, pieces, &coefficients, base.noise)?;
-        Some(Trial { term: variant.term, gain: fit.log_likelihood - base.log_likelihood, fit, by_stretch: Vec::new() })
+    /// Fits the law of `base` with the candidates in it.
+    pub fn of(base: &Fit, pieces: &[Piece], proposal: &Proposal) -> Option<Trial> {
+        let form = proposal.variants.iter().fold(base.form.clone(), |form, variant| form.with(variant.term));
+        let mut noise = base.noise;
+        noise.process *= proposal.left.max(LEAST_LEFT);
+        let fit = refit(&form, pieces, &proposal.coefficients, noise)?;
+        let by_stretch = by_stretch(&fit, pieces);
+        Some(Trial { count: proposal.variants.len(), gain: fit.log_likelihood - base.log_likelihood, fit, by_stretch })
     }
 
-    /// Fits the inner parameters too, and takes the record apart into stretches.
-    pub fn polish(&mut self, pieces: &[Piece]) {
-        for _ in 0..POLISHES {
-            match polished(&self.fit, pieces) {
-                Some(better) if better.log_likelihood > self.fit.log_likelihood + GAIN => {
-                    self.gain += better.log_likelihood - self.fit.log_likelihood;
-                    self.term = better.form.terms.last().copied().unwrap_or(self.term);
-                    self.fit = better;
-                }
-                _ => break,
-            }
-        }
-        self.by_stretch = by_stretch(&self.fit, pieces);
+    /// The candidates, inner parameters fitted.
+    pub fn terms(&self) -> &[Term] {
+        &self.fit.form.terms[self.fit.form.terms.len() - self.count..]
+    }
+
+    /// The first candidate.
+    pub fn term(&self) -> Term {
+        self.terms()[0]
     }
 
     /// What a screen would have said of it.
-    pub fn as_gain(&self) -> Gain {
-        Gain { coefficient: self.coefficient(), std: self.std(), gain: self.gain }
+    pub fn as_proposal(&self) -> Proposal {
+        let variant = |term: &Term| Variant { term: *term, spacing: 1.0 };
+        Proposal {
+            variants: self.terms().iter().map(variant).collect(),
+            coefficients: self.fit.coefficients.clone(),
+            gain: self.gain,
+            left: 1.0,
+        }
     }
 
-    /// Gain less what its fitted inner parameters would gain by chance, ½ ln N each (Schwarz 1978).
+    /// Number of inner parameters that were fitted.
+    pub fn inner_count(&self) -> usize {
+        self.terms().iter().filter_map(|term| term.effect()).map(|effect| effect.inner().len()).sum()
+    }
+
+    /// Gain less what its fitted inner parameters would gain by chance.
     pub fn merit(&self) -> f64 {
-        let inner = Variant { term: self.term, spacing: 1.0 }.fitted();
-        self.gain - 0.5 * inner as f64 * self.fit.measurements.max(1.0).ln()
+        merit(self.gain, self.inner_count(), self.fit.measurements)
     }
 
-    /// The candidate's coefficient.
+    /// The first candidate's coefficient.
     pub fn coefficient(&self) -> f64 {
-        self.fit.coefficients.last().copied().unwrap_or(0.0)
+        self.fit.coefficients.get(self.first()).copied().unwrap_or(0.0)
     }
 
     /// Std of it.
     pub fn std(&self) -> f64 {
-        self.fit.std(self.fit.coefficients.len() - 1)
+        self.fit.std(self.first())
     }
 
-    /// Probability of a gain this large by chance, were the candidate not there and `tried` of them looked at.
+    fn first(&self) -> usize {
+        self.fit.coefficients.len() - self.count
+    }
+
+    /// Probability of a gain this large by chance, were the candidates not there and `tried` of them looked at.
     pub fn p_value(&self, tried: usize) -> f64 {
-        (tried as f64 * chance(2.0 * self.gain)).min(1.0)
+        p_value(self.gain, self.inner_count(), self.fit.measurements, tried)
     }
 
     /// Whether this one is better than the other beyond what the record can tell.
     pub fn is_clearly_better_than(&self, other: &Trial) -> bool {
         let difference = self.gain - other.gain;
-        if other.by_stretch.is_empty() {
-            return difference > TIE;
-        }
         let parts: Vec<f64> = self.by_stretch.iter().zip(&other.by_stretch).map(|(a, b)| a - b).collect();
         let count = parts.len() as f64;
         let mean = parts.iter().sum::<f64>() / count;
@@ -108,35 +106,14 @@ impl Trial {
     }
 }
 
-/// The fit with the inner parameters of its last term moved by a Gauss–Newton step each; none where it has none.
-fn polished(fit: &Fit, pieces: &[Piece]) -> Option<Fit> {
-    let Some(Term::Effect(effect)) = fit.form.terms.last().copied() else { return None };
-    let values = effect.inner_values();
-    let moving: Vec<usize> = (0..values.len()).filter(|index| is_continuous(effect, *index)).collect();
-    let coefficient = fit.coefficients.last().copied().unwrap_or(0.0);
-    let at = |index: usize, factor: f64| {
-        let mut moved = values.clone();
-        moved[index] *= factor;
-        effect.with_inner(&moved).ok().map(Term::Effect)
-    };
-    let slopes = |piece: &Piece, states: &[State]| -> Vec<Vec<f64>> {
-        let slope = |index: &usize| {
-            let sides = [DIFFERENCE.exp(), (-DIFFERENCE).exp()].map(|factor| at(*index, factor));
-            let [Some(above), Some(below)] = sides else { return vec![0.0; piece.len() - 1] };
-            let pairs =
-                means::means(above, &[], piece, states).into_iter().zip(means::means(below, &[], piece, states));
-            pairs.map(|(above, below)| coefficient * (above - below) / (2.0 * DIFFERENCE)).collect()
-        };
-        moving.iter().map(slope).collect()
-    };
-    let steps = screen::screen_columns(fit, pieces, &slopes);
-    let mut moved = values.clone();
-    for (index, step) in moving.iter().zip(&steps) {
-        moved[*index] *= step.coefficient.clamp(-LARGEST_STEP, LARGEST_STEP).exp();
-    }
-    let mut form = fit.form.clone();
-    *form.terms.last_mut()? = Term::Effect(effect.with_inner(&moved).ok()?);
-    if moving.is_empty() { None } else { refit(&form, pieces, &fit.coefficients, fit.noise) }
+/// Gain less what fitted inner parameters would gain by chance, ½ ln N each (Schwarz 1978).
+fn merit(gain: f64, inner: usize, measurements: f64) -> f64 {
+    gain - 0.5 * inner as f64 * measurements.max(1.0).ln()
+}
+
+/// Probability of a gain this large by chance, `tried` candidates having been looked at.
+pub(super) fn p_value(gain: f64, inner: usize, measurements: f64, tried: usize) -> f64 {
+    (tried as f64 * chance(2.0 * merit(gain, inner, measurements))).min(1.0)
 }
 
 /// Log-likelihood of the fitted law by stretch of the record.

@@ -6,6 +6,7 @@
 //! likelihood, with the noise of all samples accounted for.
 
 use super::piece::Piece;
+use super::tableau::Gram;
 use crate::evidence::{Channel, Filter, Innovation, Noise, Observation, Pass, gains};
 use crate::law::{Drive, Effect, Motion, State, Term};
 use nalgebra::{DMatrix, DVector};
@@ -152,7 +153,7 @@ impl Carried {
 }
 
 /// Runs the filter over a piece. `series` and `candidates` hold the mean force of every interval, one row per interval;
-/// `stretches[k]` says to which sum interval k belongs.
+/// `stretches[k]` says to which sum interval k belongs. With `joint`, the candidates go there, one beside the other.
 pub fn run(
     law: &Law,
     piece: &Piece,
@@ -160,12 +161,14 @@ pub fn run(
     series: &[Vec<f64>],
     candidates: &[Vec<f64>],
     stretches: &[usize],
+    mut joint: Option<&mut Gram>,
 ) -> Outcome {
     let free: Vec<Term> = law.free.iter().map(|index| law.terms[*index]).collect();
     let (n, extra) = (free.len(), law.series.len());
     let kinds = candidates.first().map_or(0, Vec::len);
     let stretch_count = stretches.iter().max().map_or(1, |last| last + 1);
-    let mut outcome = Outcome::none(stretch_count, n + extra, kinds, piece.len());
+    let summed = if joint.is_some() { 0 } else { kinds };
+    let mut outcome = Outcome::none(stretch_count, n + extra, summed, piece.len());
     let motion = Motion { terms: law.terms, coefficients: law.coefficients };
     let (mut carried, mut tried) = (Carried::new(extra), Carried::new(kinds));
     let mut unknowns = vec![0.0; n + extra];
@@ -189,7 +192,11 @@ pub fn run(
             if let Some(innovation) = &innovations[channel as usize] {
                 unknowns[..n].copy_from_slice(pass.expected(channel));
                 unknowns[n..].copy_from_slice(&carried.rows[channel as usize]);
-                sums.add(&unknowns, &tried.rows[channel as usize], innovation);
+                let rows = &tried.rows[channel as usize];
+                sums.add(&unknowns, &rows[..summed], innovation);
+                if let Some(joint) = &mut joint {
+                    joint.add(&unknowns, rows, innovation);
+                }
             }
         }
         outcome.steps.push(Step { predicted: pass.predicted, filtered: pass.filter, transition: pass.map.transition });

@@ -7,6 +7,7 @@ use super::fit::{Fit, Parts, solve};
 use super::means;
 use super::piece::Piece;
 use super::run::{self, Law, Sums};
+use super::tableau::{Gram, Tableau};
 use crate::evidence::Pass;
 use crate::law::{Expression, State, Term};
 
@@ -48,8 +49,21 @@ fn merged(sums: &[Sums]) -> Sums {
     total
 }
 
+/// Every candidate beside every other; none where a run leaves no numbers.
+pub(super) fn tableau(fit: &Fit, pieces: &[Piece], candidates: &[Term]) -> Option<Tableau> {
+    let expressions = &fit.form.expressions;
+    let mut gram = Gram::none(Parts::of(&fit.form).unknowns.len(), candidates.len());
+    let columns = |piece: &Piece, states: &[State]| columns(candidates, expressions, piece, states);
+    run_all(fit, pieces, &columns, Some(&mut gram));
+    gram.swept()
+}
+
 /// Sums by stretch of the record, with columns as candidates.
 pub(super) fn sums(fit: &Fit, pieces: &[Piece], candidates: &Columns) -> Vec<Sums> {
+    run_all(fit, pieces, candidates, None)
+}
+
+fn run_all(fit: &Fit, pieces: &[Piece], candidates: &Columns, mut joint: Option<&mut Gram>) -> Vec<Sums> {
     let parts = Parts::of(&fit.form);
     let pick = |positions: &[usize]| -> Vec<f64> { positions.iter().map(|index| fit.coefficients[*index]).collect() };
     let terms: Vec<Term> = parts.of_state.iter().map(|index| fit.form.terms[*index]).collect();
@@ -66,9 +80,10 @@ pub(super) fn sums(fit: &Fit, pieces: &[Piece], candidates: &Columns) -> Vec<Sum
         let stretch = |k: usize| (before + k) * STRETCHES / samples.max(1);
         let stretches: Vec<usize> = (0..piece.len() - 1).map(stretch).collect();
         before += piece.len() - 1;
-        let outcome = run::run(&law, piece, &mut pass, &rows[0], &rows[1], &stretches);
+        let outcome = run::run(&law, piece, &mut pass, &rows[0], &rows[1], &stretches, joint.as_deref_mut());
         if all.is_empty() {
-            all = vec![Sums::none(parts.unknowns.len(), rows[1].first().map_or(0, Vec::len)); STRETCHES];
+            let kinds = outcome.sums[0].own.len();
+            all = vec![Sums::none(parts.unknowns.len(), kinds); STRETCHES];
         }
         all.iter_mut().zip(&outcome.sums).for_each(|(sum, other)| sum.merge(other));
     }

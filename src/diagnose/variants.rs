@@ -110,18 +110,10 @@ impl Variant {
         }
         all
     }
-
-    /// Number of inner parameters that were fitted.
-    pub fn fitted(&self) -> usize {
-        match self.term {
-            Term::Effect(effect) => effect.inner().len(),
-            _ => 0,
-        }
-    }
 }
 
-/// Whether the inner parameter of that position takes any value, not a few.
-pub(super) fn is_continuous(effect: Effect, index: usize) -> bool {
+/// Whether the inner parameter of that position has neighbours on a grid that is narrowed; the others are left to the fit.
+fn is_continuous(effect: Effect, index: usize) -> bool {
     match effect {
         Effect::ExcitationGainNonlinearity { .. } => false,
         Effect::Hysteresis { .. } => index == 0,

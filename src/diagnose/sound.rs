@@ -1,0 +1,89 @@
+//! Whether an answer is one that an expert would sign: signs that physics allows, and no forces that cancel each other.
+
+use super::fit::Fit;
+use super::judge::Trial;
+use super::piece::Piece;
+use super::screen;
+use crate::law::{Catalogue, Expression, State, Term};
+
+/// Forces of a sound law are at most this many times as large as the largest of the law that it begins from: beyond, they cancel.
+pub(super) const CANCELLING: f64 = 4.0;
+
+/// What a law's forces were before candidates joined.
+#[derive(Clone, Debug)]
+pub(super) struct Sound<'a> {
+    base: &'a Fit,
+    pieces: &'a [Piece],
+    largest: f64,
+}
+
+/// Whether physics allows the sign of that coefficient.
+pub(super) fn is_physical(fit: &Fit, index: usize) -> bool {
+    Catalogue::of(fit.form.terms[index]).is_none_or(|entry| entry.sign.allows(fit.coefficients[index]))
+}
+
+impl<'a> Sound<'a> {
+    pub(super) fn new(base: &'a Fit, pieces: &'a [Piece]) -> Sound<'a> {
+        let largest = forces(base, pieces).into_iter().fold(0.0, f64::max);
+        Sound { base, pieces, largest }
+    }
+
+    /// Whether no coefficient of the law turned to a sign that physics does not allow it, by more than its std, and no forces are so large
+    /// that they must cancel.
+    pub(super) fn is_plausible(&self, fit: &Fit) -> bool {
+        let turned = |index: usize| {
+            let allowed =
+                |value: f64| Catalogue::of(fit.form.terms[index]).is_none_or(|entry| entry.sign.allows(value));
+            let (old, new) = (self.base.coefficients[index], fit.coefficients[index]);
+            allowed(old) && !allowed(new) && new.abs() > 2.0 * fit.std(index)
+        };
+        let own =
+            self.base.form.terms.iter().enumerate().filter(|(index, term)| fit.form.terms.get(*index) == Some(term));
+        let mut own = own.map(|(index, _)| index);
+        !own.any(turned) && forces(fit, self.pieces).into_iter().all(|force| force < CANCELLING * self.largest)
+    }
+
+    /// Whether physics allows all its candidates, and the law with them is plausible.
+    pub(super) fn is(&self, trial: &Trial) -> bool {
+        let count = trial.fit.form.terms.len();
+        (count - trial.count..count).all(|index| is_physical(&trial.fit, index)) && self.is_plausible(&trial.fit)
+    }
+
+    /// Trials with the sound ones first; among those that the record cannot tell apart the simplest.
+    pub(super) fn ranked(&self, trials: Vec<Trial>) -> Vec<Trial> {
+        let (mut sound, unsound): (Vec<Trial>, Vec<Trial>) = trials.into_iter().partition(|trial| self.is(trial));
+        if let Some(best) = sound.first().cloned() {
+            let tied = (0..sound.len()).filter(|index| !best.is_clearly_better_than(&sound[*index]));
+            let simplest = tied.min_by_key(|index| (sound[*index].inner_count(), *index)).unwrap_or(0);
+            let contained = Catalogue::is_contained(&self.name(&sound[simplest]), &self.name(&best));
+            if sound[simplest].inner_count() < best.inner_count() || contained {
+                let simplest = sound.remove(simplest);
+                sound.insert(0, simplest);
+            }
+        }
+        sound.extend(unsound);
+        sound
+    }
+
+    fn name(&self, trial: &Trial) -> String {
+        trial.fit.form.effect_name(trial.term())
+    }
+}
+
+/// RMS force of every term of a fitted law along its motion.
+pub(super) fn forces(fit: &Fit, pieces: &[Piece]) -> Vec<f64> {
+    let rms = rms(&fit.form.terms, &fit.form.expressions, pieces, &fit.states);
+    fit.coefficients.iter().zip(rms).map(|(coefficient, rms)| coefficient.abs() * rms).collect()
+}
+
+/// RMS of terms along smoothed motions.
+pub(super) fn rms(terms: &[Term], expressions: &[Expression], pieces: &[Piece], states: &[Vec<State>]) -> Vec<f64> {
+    let mut squares = vec![0.0; terms.len()];
+    let mut count = 0;
+    for (piece, states) in pieces.iter().zip(states) {
+        let columns = screen::columns(terms, expressions, piece, states);
+        squares.iter_mut().zip(&columns).for_each(|(sum, column)| *sum += column.iter().map(|f| f * f).sum::<f64>());
+        count += states.len();
+    }
+    squares.into_iter().map(|square| (square / count.max(1) as f64).sqrt()).collect()
+}
