@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .laws import DUFFING, Law
+from .laws import DUFFING, Law, in_words
 
 EXCITATION = {
     "excitation.kind": "multisine",
@@ -34,8 +34,8 @@ class HiddenEffect:
     parameters: dict[str, float]
     effect: str
     """Id in the catalogue."""
-    hidden: dict[str, float]
-    """The FMU's parameters of the effect, without `hidden.`: its coefficient and its inner parameters."""
+    coefficient: float
+    """On the left-hand side."""
     noise: float
     """Std of the Gaussian noise on q and on q̇."""
     duration: float
@@ -50,31 +50,55 @@ class HiddenEffect:
     def plant_parameters(self, fresh: bool) -> dict[str, float | int | str]:
         """The plant FMU's parameters."""
         law = {f"stage[1].{name}": value for name, value in self.parameters.items()}
-        hidden = {f"hidden.{name}": value for name, value in self.hidden.items()}
+        hidden = {f"hidden.{self.effect}": self.coefficient}
         return self.excitation(fresh) | law | hidden | {"noise.q": self.noise, "noise.qd": self.noise}
 
+    def truth(self) -> dict[str, float]:
+        """Coefficients of the whole law by FMU term, of the hidden effect by its id where it is no product of powers."""
+        hidden = _MONOMIALS.get(self.effect, self.effect)
+        return self.law.coefficients(self.parameters) | {hidden: self.coefficient}
 
-def _effect(group: str, prefix: str, parameters: dict[str, float], hidden: dict[str, float], seed: int) -> HiddenEffect:
-    effect = next(iter(hidden))
-    title = f"Duffing with hidden {effect.replace('_', ' ')}"
+
+_MONOMIALS = {
+    "cubic_damping": "qd_3",
+    "van_der_pol_damping": "q_2_qd",
+    "quadratic_stiffness": "q_2",
+    "constant_force": "const",
+}
+
+
+def _scenario(
+    group: str, prefix: str, parameters: dict[str, float], effect: str, coefficient: float, seed: int
+) -> HiddenEffect:
     return HiddenEffect(
-        f"{prefix}hidden-effect", title, group, DUFFING, parameters, effect, hidden, noise=0.01, duration=30.0, seed=seed
+        id=f"{prefix}hidden-effect",
+        title=f"Duffing with hidden {in_words(effect)}",
+        group=group,
+        law=DUFFING,
+        parameters=parameters,
+        effect=effect,
+        coefficient=coefficient,
+        noise=0.01,
+        duration=30.0,
+        seed=seed,
     )
 
 
 def documented() -> list[HiddenEffect]:
     """The documented one: Coulomb friction of 0.2, about an eighth of the excitation, in a Duffing oscillator."""
     parameters = {"m": 1.0, "c": 0.3, "k1": 4.0, "k3": 2.0}
-    return [_effect("documented", "", parameters, {"coulomb_friction": 0.2}, seed=1)]
+    return [_scenario("documented", "", parameters, "coulomb_friction", 0.2, seed=1)]
 
 
 _RANGES = {"m": (0.7, 1.4), "c": (0.2, 0.6), "k1": (3.0, 6.0), "k3": (1.0, 4.0)}
 _HIDDEN = {
-    "coulomb_friction": (0.15, 0.3),
     "quadratic_damping": (0.15, 0.4),
-    "constant_force": (0.2, 0.5),
+    "cubic_damping": (0.1, 0.3),
+    "van_der_pol_damping": (0.3, 1.0),
     "quadratic_stiffness": (0.8, 2.0),
+    "constant_force": (0.2, 0.5),
 }
+"""No friction: where a draw makes the plant stick, the force residual counts what friction at rest holds, which no law can tell."""
 
 
 def drawn(seed: int) -> list[HiddenEffect]:
@@ -83,4 +107,4 @@ def drawn(seed: int) -> list[HiddenEffect]:
     parameters = {name: round(float(generator.uniform(*bounds)), 3) for name, bounds in _RANGES.items()}
     effect = str(generator.choice(list(_HIDDEN)))
     coefficient = round(float(generator.uniform(*_HIDDEN[effect])), 3)
-    return [_effect(f"drawn from seed {seed}", "drawn-", parameters, {effect: coefficient}, seed=1000 * seed + 301)]
+    return [_scenario(f"drawn from seed {seed}", "drawn-", parameters, effect, coefficient, seed=1000 * seed + 301)]
