@@ -1,4 +1,4 @@
-"""Plants of models beside the plant they describe: the same excitation, the same state at the start, then nothing in common."""
+"""Plants of models beside the plant they describe: same excitation, same state at the start, then nothing in common."""
 
 from dataclasses import dataclass
 

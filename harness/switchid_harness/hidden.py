@@ -98,7 +98,7 @@ _HIDDEN = {
     "quadratic_stiffness": (0.8, 2.0),
     "constant_force": (0.2, 0.5),
 }
-"""No friction: where a draw makes the plant stick, the force residual counts what friction at rest holds, which no law can tell."""
+"""No friction: where a draw makes the plant stick, the force residual counts what friction at rest holds."""
 
 
 def drawn(seed: int) -> list[HiddenEffect]:
@@ -107,4 +107,5 @@ def drawn(seed: int) -> list[HiddenEffect]:
     parameters = {name: round(float(generator.uniform(*bounds)), 3) for name, bounds in _RANGES.items()}
     effect = str(generator.choice(list(_HIDDEN)))
     coefficient = round(float(generator.uniform(*_HIDDEN[effect])), 3)
-    return [_scenario(f"drawn from seed {seed}", "drawn-", parameters, effect, coefficient, seed=1000 * seed + 301)]
+    group = f"drawn from seed {seed}"
+    return [_scenario(group, "drawn-", parameters, effect, coefficient, seed=1000 * seed + 301)]

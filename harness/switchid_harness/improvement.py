@@ -1,9 +1,10 @@
-"""From a recording of a plant with a hidden effect to a better model: compare, diagnose, add, and both models as plant FMUs.
+"""From a recording of a plant with a hidden effect to a better model, and both models as plant FMUs beside the plant.
 
-Everything that estimates is the command line on files. It gets the noisy recording and a model that lacks the effect; the
-hidden effect is looked at by the gates alone.
+Everything that estimates is the command line on files: compare, diagnose, add. It gets the noisy recording and a model that
+lacks the effect; the hidden effect is looked at by the gates alone.
 """
 
+import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -96,7 +97,7 @@ def _beside(scenario: HiddenEffect, fmus: dict[str, Fmu], models: dict[str, Slav
 
 def model_text(name: str, terms: dict[str, float | str]) -> str:
     """A model file: terms by name with their number or `fit`."""
-    lines = [f'"{term}" = "{given}"' if isinstance(given, str) else f'"{term}" = {given!r}' for term, given in terms.items()]
+    lines = [f'"{term}" = {json.dumps(given)}' for term, given in terms.items()]
     return "\n".join([f'name = "{name}"', 'hold = "zero"', "", "[terms]", *lines, ""])
 
 

@@ -1,4 +1,4 @@
-"""The FMUs under test: `target/fmu` of this workspace, or the directory that SWITCHID_FMUS names; and the command line."""
+"""Under test: the FMUs of `target/fmu`, or of the directory that SWITCHID_FMUS names, and the command line."""
 
 import os
 from pathlib import Path

@@ -43,7 +43,8 @@ def _free_run(before: float = 0.1, after: float = 0.001) -> FreeRun:
     truth = np.column_stack([np.sin(3.0 * time), 3.0 * np.cos(3.0 * time)])
     measured = np.column_stack([truth + 0.01, np.cos(time)])
     off = {"refitted": before, "improved": after}
-    return FreeRun(time, measured, truth, {name: np.column_stack([truth, time]) + value * time[:, None] for name, value in off.items()})
+    predicted = {name: np.column_stack([truth, time]) + value * time[:, None] for name, value in off.items()}
+    return FreeRun(time, measured, truth, predicted)
 
 
 def _improvement(

@@ -18,7 +18,8 @@ def effect_row(effect: dict) -> str:
     name = f"{escape(effect['title'])}<small>{escape(effect['set'])}</small>"
     figures = "".join(f"<td>{cell}</td>" for cell in cells)
     outcome = pill("ok" if effect["passed"] else "FAIL")
-    return f'<tr><th scope="row">{name}</th><td class="left">{escape(named(effect))}</td>{figures}<td>{outcome}</td></tr>'
+    found = f'<td class="left">{escape(named(effect))}</td>'
+    return f'<tr><th scope="row">{name}</th>{found}{figures}<td>{outcome}</td></tr>'
 
 
 def named(effect: dict) -> str:
