@@ -8,9 +8,10 @@ import time
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
-from . import scenarios, table
+from . import hidden, improvement, scenarios, table
+from .hidden import HiddenEffect
 from .report.page import write_page
-from .report.traces import run_traces
+from .report.traces import improvement_traces, run_traces
 from .run import perform
 from .scenarios import Scenario
 from .slave import Fmu
@@ -18,6 +19,8 @@ from .slave import Fmu
 FMUS = ["SwitchedIdentifier.fmu", "Duffing.fmu", "VanDerPol.fmu"]
 
 _fmus: dict[str, Fmu] = {}
+
+_Job = Scenario | HiddenEffect
 
 
 def arguments() -> argparse.Namespace:
@@ -28,17 +31,20 @@ def arguments() -> argparse.Namespace:
         "--quick", action="store_true", help="only the documented set without noise and the publication's cases"
     )
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="processes side by side (default: all cores)")
+    parser.add_argument("--command", type=Path, default=Path("target/release/switchid-harness"), help=argparse.SUPPRESS)
     parser.add_argument("--fmus", type=Path, default=Path("target/fmu"), help=argparse.SUPPRESS)
     parser.add_argument("--out", type=Path, default=Path("target/crosscheck"), help=argparse.SUPPRESS)
     return parser.parse_args()
 
 
-def chosen(quick: bool, seed: int) -> list[Scenario]:
-    """The scenarios to run."""
+def chosen(quick: bool, seed: int) -> tuple[list[Scenario], list[HiddenEffect]]:
+    """The scenarios to run: switched plants, plants with a hidden effect."""
     documented = scenarios.documented()
     if quick:
-        return [scenario for scenario in documented if scenario.noise == 0.0] + scenarios.publication_cases()
-    return documented + scenarios.publication_cases() + scenarios.drawn(seed)
+        quiet = [scenario for scenario in documented if scenario.noise == 0.0]
+        return quiet + scenarios.publication_cases(), hidden.documented()
+    switched = documented + scenarios.publication_cases() + scenarios.drawn(seed)
+    return switched, hidden.documented() + hidden.drawn(seed)
 
 
 def unpack(source: Path, directory: Path) -> dict[str, Fmu]:
@@ -49,9 +55,12 @@ def unpack(source: Path, directory: Path) -> dict[str, Fmu]:
     return {name: Fmu(source / name, directory / Path(name).stem) for name in FMUS}
 
 
-def work(scenario: Scenario) -> tuple[dict, dict]:
+def work(job: _Job, command: Path, out: Path) -> tuple[dict, dict]:
     """One scenario in a worker process: figures and the report's traces."""
-    run = perform(scenario, _fmus)
+    if isinstance(job, HiddenEffect):
+        found = improvement.perform(job, _fmus, command, out / job.id)
+        return found.figures, improvement_traces(found)
+    run = perform(job, _fmus)
     return run.figures, run_traces(run)
 
 
@@ -60,18 +69,16 @@ def keep(fmus: dict[str, Fmu]) -> None:
     _fmus.update(fmus)
 
 
-def run_all(chosen_scenarios: list[Scenario], jobs: int) -> list[tuple[dict, dict]]:
+def run_all(jobs: list[_Job], options: argparse.Namespace) -> list[tuple[dict, dict]]:
     """Runs the scenarios side by side; results in the order of the scenarios."""
     begin = time.monotonic()
-    with ProcessPoolExecutor(jobs, initializer=keep, initargs=(_fmus,)) as pool:
-        futures = {pool.submit(work, scenario): scenario for scenario in chosen_scenarios}
+    with ProcessPoolExecutor(options.jobs, initializer=keep, initargs=(_fmus,)) as pool:
+        futures = {pool.submit(work, job, options.command, options.out): job for job in jobs}
         for done, future in enumerate(as_completed(futures), start=1):
             mark = "gates hold" if future.result()[0]["passed"] else "GATES FAIL"
             elapsed = time.monotonic() - begin
-            scenario = futures[future]
-            print(
-                f"[{elapsed:6.1f} s] {done}/{len(futures)} {scenario.title} ({scenario.group}): {mark}", file=sys.stderr
-            )
+            job = futures[future]
+            print(f"[{elapsed:6.1f} s] {done}/{len(futures)} {job.title} ({job.group}): {mark}", file=sys.stderr)
         return [future.result() for future in futures]
 
 
@@ -88,14 +95,18 @@ def main() -> int:
     """Runs everything; 1 when a gate fails."""
     options = arguments()
     options.out.mkdir(parents=True, exist_ok=True)
+    if not options.command.is_file():
+        sys.exit(f"{options.command} not found: run `cargo build --release --package switchid-harness-command`")
     keep(unpack(options.fmus, options.out / "unpacked"))
-    results = run_all(chosen(options.quick, options.seed), options.jobs)
-    runs = [figures for figures, _ in results]
-    print("\n".join(table.block(run) for run in runs))
-    document = {"seed": options.seed, "passed": all(run["passed"] for run in runs), "runs": runs}
+    switched, effects = chosen(options.quick, options.seed)
+    results = run_all([*effects, *switched], options)
+    improvements, results = results[: len(effects)], results[len(effects) :]
+    runs, improved = ([figures for figures, _ in group] for group in (results, improvements))
+    print("\n".join([*(table.block(run) for run in runs), *(table.effect_block(effect) for effect in improved)]))
+    text, passed = summary(runs + improved)
+    document = {"seed": options.seed, "passed": passed, "runs": runs, "hidden_effects": improved}
     (options.out / "report.json").write_text(json.dumps(document, indent=1, allow_nan=False))
-    write_page(options.out / "report.html", options.seed, results)
-    text, passed = summary(runs)
+    write_page(options.out / "report.html", options.seed, results, improvements)
     print(f"{text}\nreport: {options.out / 'report.html'}, figures: {options.out / 'report.json'}")
     return 0 if passed else 1
 

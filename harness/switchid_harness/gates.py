@@ -30,3 +30,20 @@ def gates(scenario: Scenario, stages: list[dict], missed: int, false_alarms: int
         if floors.tracking_delay is not None and number > 1:
             result.append(Gate("tracking delay", number, stage["tracking_delay"], floors.tracking_delay))
     return result
+
+
+MAX_ERROR_TO_FLOOR = 1.2
+MAX_FREE_RUN_FALL = 0.1
+
+
+def effect_gates(named: bool, error_to_floor: float | None, free_run_fall: float | None) -> list[Gate]:
+    """The gates of a hidden effect.
+
+    `named`: the diagnosis names the hidden effect. The others are of the improved model on a record it has not seen: force
+    residual ÷ noise floor, and free-run error ÷ that of the model without the effect.
+    """
+    return [
+        Gate("wrong diagnosis", None, 0 if named else 1, 0),
+        Gate("force residual ÷ noise floor", None, error_to_floor, MAX_ERROR_TO_FLOOR),
+        Gate("free-run error, after ÷ before", None, free_run_fall, MAX_FREE_RUN_FALL),
+    ]

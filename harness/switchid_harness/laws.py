@@ -52,13 +52,31 @@ def factors(term: str) -> list[tuple[str, int]]:
     return result
 
 
+def fmu_name(term: str) -> str:
+    """The FMU name of a term of the command line: `q_3` of `q^3`, `const` of `1`; ids of effects stay."""
+    return "const" if term == "1" else term.replace("^", "_").replace("*", "_")
+
+
+def is_monomial(term: str) -> bool:
+    """Whether the term is a product of powers, not the id of an effect."""
+    return all(base in ("q", "qd", "qdd", "F") for base, _ in factors(term))
+
+
+def in_words(effect: str) -> str:
+    """The id of an effect as it is written in a sentence: `Coulomb friction`."""
+    words = effect.replace("_", " ")
+    for name in ("Coulomb", "Stribeck", "van der Pol"):
+        words = words.replace(name.lower(), name)
+    return words
+
+
 def in_order(terms: Iterable[str]) -> list[str]:
-    """The terms as laws are written: inertia, then damping, then stiffness, the constant last; low powers first."""
+    """The terms as laws are written: inertia, then damping, then stiffness, the constant, other effects; low powers first."""
 
     def rank(term: str) -> tuple:
         powers = dict(factors(term))
         degree = sum(powers.values())
-        return ("qdd" not in powers, degree == 0, "qd" not in powers, degree, -powers.get("q", 0))
+        return (not is_monomial(term), "qdd" not in powers, degree == 0, "qd" not in powers, degree, -powers.get("q", 0))
 
     return sorted(terms, key=rank)
 

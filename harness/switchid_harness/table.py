@@ -16,6 +16,13 @@ def scientific(value: float | None) -> str:
     return "–" if value is None else f"{value:.1e}"
 
 
+def percent(value: float | None) -> str:
+    """A share with three digits, `–` where there is none."""
+    if value is None:
+        return "–"
+    return f"{100.0 * value:.3g} %" if abs(value) >= 1e-6 else f"{100.0 * value:.1e} %"
+
+
 def coefficient(value: float, std: float | None, truth: float) -> str:
     """A coefficient ± its std, with the truth beside it."""
     spread = "unknown" if std is None else f"± {std:.1e}"
@@ -80,6 +87,15 @@ def block(run: dict) -> str:
     for index in range(len(run["stages"])):
         lines += _stage_lines(run, index)
     return "\n".join([*lines, _alarm_line(run), ""])
+
+
+def effect_block(effect: dict) -> str:
+    """The block of one hidden effect."""
+    before, after = effect["models"]["refitted"], effect["models"]["improved"]
+    lines = [f"{effect['title']} ({effect['set']})", *(f"  {line}" for line in effect["diagnosis"]["answer"])]
+    for name, key in (("force residual", "force_residual"), ("free-run error", "free_run_error")):
+        lines.append(f"  {name}, fresh record: {percent(before[key])} → {percent(after[key])}")
+    return "\n".join([*lines, f"  noise floor {percent(after['noise_floor'])}; gate {verdict(effect, None)}", ""])
 
 
 def failures(runs: list[dict]) -> list[str]:

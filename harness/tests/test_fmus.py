@@ -97,9 +97,10 @@ def test_an_unknown_variable_is_named(fmus):
         Slave(fmus[IDENTIFIER], "wrong", {}).port(["coef.q_77"])
 
 
-def test_quick_crosscheck_writes_report_and_exits_by_its_gates(fmu_directory, tmp_path):
-    command = [sys.executable, "-m", "switchid_harness", "--quick", "--fmus", fmu_directory, "--out", tmp_path]
-    done = subprocess.run(command, cwd=Path(ROOT / "harness"), capture_output=True, text=True)
+def test_quick_crosscheck_writes_report_and_exits_by_its_gates(fmu_directory, command, tmp_path):
+    harness = [sys.executable, "-m", "switchid_harness", "--quick", "--command", command]
+    harness += ["--fmus", fmu_directory, "--out", tmp_path]
+    done = subprocess.run(harness, cwd=Path(ROOT / "harness"), capture_output=True, text=True)
     assert (tmp_path / "report.html").stat().st_size > 100_000
     assert done.returncode == ("gates fail" in done.stdout)
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]

@@ -43,13 +43,13 @@ def test_the_grid_is_denser_after_switches_and_inside_the_record():
 
 
 def test_the_page_loads_nothing_from_elsewhere(results):
-    text = page(1, results)
+    text = page(1, results, [])
     assert not re.search(r'(src|href)\s*=\s*"|@import|url\((?!#)', text)
     assert "http" not in re.sub(r"data-[^<]*</script>", "", text)
 
 
 def test_the_page_holds_every_run_with_traces_of_one_length(results):
-    text = page(1, results)
+    text = page(1, results, [])
     figures, traces = results[0]
     meta = json.loads(re.search(rf'id="meta-{re.escape(figures["id"])}">(.*?)</script>', text).group(1))
     found = unpack(traces["data"], len(meta["names"]))

@@ -119,7 +119,15 @@ pub(super) enum CommandError {
         /// The file.
         file: String,
     },
+    /// A picture that this build cannot draw.
+    #[cfg(not(feature = "pictures"))]
+    #[error("{file}: this build of switchid draws no pictures: build it with the feature \"pictures\" (on by default)")]
+    NoPictures {
+        /// The file.
+        file: String,
+    },
     /// A picture that cannot be drawn.
+    #[cfg(feature = "pictures")]
     #[error("{file}: cannot be drawn: {reason}")]
     Draw {
         /// The file.

@@ -4,7 +4,7 @@ use super::diagnose::{self, Answer, CandidateReport};
 use super::error::CommandError;
 use super::input::{Input, ModelArguments};
 use super::output::{self, Pairs, Written};
-use super::picture::{Stair, staircase};
+use super::picture::Picture;
 use super::progress::Waiting;
 use super::words::{number, percent};
 use crate::diagnose::{Evidence, Improvement, Options, Step, compare, improve, improved_model};
@@ -77,14 +77,14 @@ struct Found {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let written = Written::check(&arguments.output, arguments.force)?;
-    let picture = arguments.picture.as_deref().map(|path| Written::check(path, arguments.force)).transpose()?;
+    let picture = arguments.picture.as_deref().map(|path| Picture::open(path, arguments.force)).transpose()?;
     let input = Input::open(&arguments.data, &arguments.model)?;
     let recordings = input.recordings();
     let found = Waiting::on("improving", || find(&input, &recordings)).ok_or_else(|| input.undetermined())?;
     let last = found.steps.last().ok_or_else(|| input.undetermined())?;
     written.write(&improved_model(&input.model, &last.fit).to_toml())?;
     if let Some(picture) = picture {
-        picture.write(&staircase(&stairs(&found), found.floor)?)?;
+        picture.staircase(&stairs(&found), found.floor)?;
     }
     if arguments.json {
         output::print_json(&report(arguments, &found, &input))
@@ -150,6 +150,6 @@ fn title(step: &Step) -> String {
     }
 }
 
-fn stairs(found: &Found) -> Vec<Stair> {
-    found.steps.iter().map(|step| Stair { title: title(step), error: step.error }).collect()
+fn stairs(found: &Found) -> Vec<(String, f64)> {
+    found.steps.iter().map(|step| (title(step), step.error)).collect()
 }

@@ -13,6 +13,10 @@ mod identify;
 mod improve;
 mod input;
 mod output;
+#[cfg(feature = "pictures")]
+mod picture;
+#[cfg(not(feature = "pictures"))]
+#[path = "no_picture.rs"]
 mod picture;
 mod progress;
 mod simulate;

@@ -1,8 +1,10 @@
 //! Pictures as SVG: the error falling step by step to the noise floor.
 
 use super::error::CommandError;
+use super::output::Written;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::path::Path;
 
 /// Width of the picture, and height of one step and of what is around them, pixels.
 const WIDTH: u32 = 760;
@@ -15,30 +17,36 @@ const DECADES: f64 = 1e3;
 const BAR: RGBColor = RGBColor(46, 100, 158);
 const FLOOR: RGBColor = RGBColor(190, 60, 40);
 
-/// One step of the staircase.
-pub(super) struct Stair {
-    /// What was done.
-    pub(super) title: String,
-    /// Held-out error after it, as a share of the force.
-    pub(super) error: f64,
+/// A picture to be drawn into a file.
+pub(super) struct Picture<'a>(Written<'a>);
+
+impl<'a> Picture<'a> {
+    /// A picture for that file.
+    ///
+    /// # Errors
+    /// [`CommandError::Exists`] unless `overwrite`.
+    pub(super) fn open(path: &'a Path, overwrite: bool) -> Result<Picture<'a>, CommandError> {
+        Written::check(path, overwrite).map(Picture)
+    }
+
+    /// Bars on a logarithmic axis, one for each step with its title and its held-out error as a share of the force; the noise
+    /// floor is a line.
+    ///
+    /// # Errors
+    /// [`CommandError::Draw`] says what the drawing failed on; what writing says.
+    pub(super) fn staircase(self, stairs: &[(String, f64)], floor: f64) -> Result<(), CommandError> {
+        let mut text = String::new();
+        draw(&mut text, stairs, floor).map_err(|reason| CommandError::Draw { file: "the staircase".into(), reason })?;
+        self.0.write(&text)
+    }
 }
 
-/// Bars of the error on a logarithmic axis, the noise floor as a line.
-///
-/// # Errors
-/// [`CommandError::Draw`] says what the drawing failed on.
-pub(super) fn staircase(stairs: &[Stair], floor: f64) -> Result<String, CommandError> {
-    let mut text = String::new();
-    draw(&mut text, stairs, floor).map_err(|reason| CommandError::Draw { file: "the staircase".into(), reason })?;
-    Ok(text)
-}
-
-fn draw(text: &mut String, stairs: &[Stair], floor: f64) -> Result<(), String> {
+fn draw(text: &mut String, stairs: &[(String, f64)], floor: f64) -> Result<(), String> {
     let said = |error: &dyn std::fmt::Display| error.to_string();
     let height = AROUND + STEP * stairs.len() as u32;
     let area = SVGBackend::with_string(text, (WIDTH, height)).into_drawing_area();
     area.fill(&WHITE).map_err(|error| said(&error))?;
-    let errors = || stairs.iter().map(|stair| 100.0 * stair.error).chain([100.0 * floor]).filter(|error| *error > 0.0);
+    let errors = || stairs.iter().map(|(_, error)| 100.0 * error).chain([100.0 * floor]).filter(|error| *error > 0.0);
     let highest = 2.0 * errors().fold(0.0, f64::max);
     let range = (0.5 * errors().fold(f64::INFINITY, f64::min)).max(highest / DECADES)..highest;
     let count = stairs.len() as f64;
@@ -58,9 +66,9 @@ fn draw(text: &mut String, stairs: &[Stair], floor: f64) -> Result<(), String> {
         .light_line_style(TRANSPARENT)
         .draw()
         .map_err(|error| said(&error))?;
-    let bars = stairs.iter().enumerate().map(|(index, stair)| {
+    let bars = stairs.iter().enumerate().map(|(index, (_, error))| {
         let top = count - index as f64;
-        Rectangle::new([(left, top - 0.2), (100.0 * stair.error, top - 0.8)], BAR.filled())
+        Rectangle::new([(left, top - 0.2), (100.0 * error, top - 0.8)], BAR.filled())
     });
     chart.draw_series(bars).map_err(|error| said(&error))?;
     let (line, name) = match 100.0 * floor {
@@ -70,13 +78,13 @@ fn draw(text: &mut String, stairs: &[Stair], floor: f64) -> Result<(), String> {
     chart
         .draw_series([PathElement::new(vec![(line, 0.0), (line, count)], FLOOR.stroke_width(2))])
         .map_err(|error| said(&error))?;
-    let labels = stairs.iter().enumerate().flat_map(|(index, stair)| {
+    let labels = stairs.iter().enumerate().flat_map(|(index, (title, error))| {
         let middle = count - index as f64 - 0.5;
         let style = |position: HPos| ("sans-serif", 14).into_font().color(&BLACK).pos(Pos::new(position, VPos::Center));
         [
-            EmptyElement::at((left, middle)) + Text::new(stair.title.clone(), (-8, 0), style(HPos::Right)),
-            EmptyElement::at((100.0 * stair.error, middle))
-                + Text::new(format!("{:.3} %", 100.0 * stair.error), (6, 0), style(HPos::Left)),
+            EmptyElement::at((left, middle)) + Text::new(title.clone(), (-8, 0), style(HPos::Right)),
+            EmptyElement::at((100.0 * error, middle))
+                + Text::new(format!("{:.3} %", 100.0 * error), (6, 0), style(HPos::Left)),
         ]
     });
     chart.draw_series(labels).map_err(|error| said(&error))?;

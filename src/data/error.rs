@@ -32,6 +32,17 @@ pub enum DataError {
         /// The file.
         file: String,
     },
+    /// Its kind is one that this build does not read.
+    #[error(
+        "{file}: this is a {} file, which this build of switchid does not read: build it with the feature \"formats\" (on by default), or convert the file to CSV",
+        kind.name()
+    )]
+    LeftOut {
+        /// The file.
+        file: String,
+        /// What kind of file it is.
+        kind: FileKind,
+    },
     /// It breaks off, or its bytes make no sense.
     #[error("{file}: this {} file is damaged, incomplete or of a form that is not supported: {reason}. Copy or export it again", kind.name())]
     Damaged {

@@ -77,7 +77,11 @@ impl Layout {
     pub(super) fn describe(&self) -> Vec<String> {
         let columns = [Some(&self.t), self.q.as_ref(), self.qd.as_ref(), self.excitation.as_ref()];
         let named = Channel::ALL.into_iter().zip(columns);
-        named.filter_map(|(channel, column)| column.map(|column| column.describe(self.kind, channel))).collect()
+        let line = |(channel, column): (Channel, Option<&Column>)| {
+            let base = if channel == Channel::Time { self.time_base } else { TimeBase::Stamps };
+            column.map(|column| column.describe(self.kind, channel, base))
+        };
+        named.filter_map(line).collect()
     }
 
     /// What the columns say of the units of coefficients. In free motion these are relative to the inertia, unless the model
@@ -110,9 +114,14 @@ impl Layout {
 }
 
 impl Column {
-    fn describe(&self, kind: FileKind, channel: Channel) -> String {
+    fn describe(&self, kind: FileKind, channel: Channel, base: TimeBase) -> String {
         let unit = self.unit.map_or("SI", |unit| unit.name);
-        format!("{} = {} \"{}\" in {unit}", channel.name(), kind.column(), self.header)
+        let meaning = match base {
+            TimeBase::Stamps => "",
+            TimeBase::Step => " (distance of two samples)",
+            TimeBase::Rate => " (samples per second)",
+        };
+        format!("{} = {} \"{}\"{meaning} in {unit}", channel.name(), kind.column(), self.header)
     }
 }
 

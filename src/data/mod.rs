@@ -1,24 +1,30 @@
 //! Opening what a user brings: recordings, model files, scenario files.
 //!
 //! A recording is a CSV file with a header, a MAT file (version 5 or 7.3) whose vectors, or the fields of whose only structure,
-//! are the columns, or a Parquet file; the content tells which. The model's `[columns]` say which column is which quantity, else `t`, `q`,
+//! are the columns, or a Parquet file (these with the feature `formats`); the content tells which. The model's `[columns]` say which column is which quantity, else `t`, `q`,
 //! `qd` and `F` are looked for; one of q, qd and F may be absent. Values are SI unless the header says otherwise:
 //! `q [mm]`, `force (kN)`, `position_mm`. `DATA@t0:t1` is the section t0 ≤ t < t1. Every error names file,
 //! line, column or key, and what would mend it; nothing is repaired or left out in silence.
 
+#[cfg(feature = "formats")]
 mod arrays;
 mod csv;
 mod error;
 mod files;
+#[cfg(feature = "formats")]
 mod hdf5;
 mod header;
 mod kind;
+#[cfg(feature = "formats")]
 mod mat5;
+#[cfg(feature = "formats")]
 mod matlab;
 mod open;
+#[cfg(feature = "formats")]
 mod parquet;
 mod rows;
 mod section;
+mod stored;
 
 pub use error::DataError;
 pub use files::{open_model, open_scenario};

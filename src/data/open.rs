@@ -1,10 +1,9 @@
 //! Opening a recording, whatever kind of file it is in.
 
-use super::arrays;
 use super::header::{Column, Layout};
 use super::kind::FileKind;
 use super::rows::{Signals, Source};
-use super::{DataError, csv, files, hdf5, mat5, parquet};
+use super::{DataError, csv, files, stored};
 use crate::identify::{Recording, RecordingError};
 use crate::law::{Given, Model, Term, Units};
 
@@ -43,9 +42,7 @@ pub fn open_recording(data: &str, model: &Model) -> Result<Opened, DataError> {
 fn read(source: &Source, bytes: Vec<u8>, model: &Model) -> Result<(Layout, Signals), DataError> {
     match source.kind {
         FileKind::Csv => csv::read(source, &files::text(&source.file, bytes)?, model),
-        FileKind::Mat5 => arrays::read(source, &mat5::open(source, &bytes)?, model),
-        FileKind::Hdf5 => arrays::read(source, &hdf5::open(source, bytes)?, model),
-        FileKind::Parquet => arrays::read(source, &parquet::open(source, bytes)?, model),
+        _ => stored::read(source, bytes, model),
     }
 }
 

@@ -102,7 +102,10 @@ fn a_sample_time_or_rate_serves_in_place_of_times() {
     for (name, value) in [("fs", 128.0), ("dt", 1.0 / 128.0), ("Ts", 1.0 / 128.0), ("dt_ms", 1e3 / 128.0)] {
         let mut variables = plain();
         variables[0] = numbers(name, [1, 1], &[value]);
-        expect(&Bench::of(&file(&variables)).open(""), 0, 1e-3);
+        let opened = Bench::of(&file(&variables)).open("");
+        expect(&opened, 0, 1e-3);
+        let said = if name == "fs" { "(samples per second)" } else { "(distance of two samples)" };
+        assert!(opened.columns[0].contains(said), "{}", opened.columns[0]);
     }
     for (values, found) in [(&[0.0][..], "is 0"), (&[f64::NAN], "is NaN"), (&[1.0, 2.0], "is 2 numbers")] {
         let mut variables = plain();

@@ -7,15 +7,16 @@ use crate::{fmu, python};
 use std::path::Path;
 use std::process::Command;
 
-/// Builds the FMUs, makes the Python environment and runs the harness with the user's arguments.
+/// Builds the FMUs and the command line, makes the Python environment and runs the harness with the user's arguments.
 ///
 /// # Errors
 /// [`Error::Usage`] before anything is built; whatever step fails; a gate that fails is [`Error::Failed`] after the table was printed.
 pub fn crosscheck(arguments: &[String]) -> Result<(), Error> {
     check(arguments)?;
-    let mut steps = Steps::new(3);
+    let mut steps = Steps::new(4);
     let interpreter = steps.run("Python environment (target/python)", python::environment)?;
     steps.run("FMUs (target/fmu)", fmu::build)?;
+    steps.run("command line", fmu::build_command)?;
     steps.run("cross-check", || {
         let mut command = harness(&interpreter);
         command.args(["-m", "switchid_harness", "--fmus", "target/fmu", "--out", "target/crosscheck"]).args(arguments);

@@ -1,4 +1,4 @@
-//! The example FMUs: builds the binaries and packs them under `target/fmu/`.
+//! The example FMUs, packed under `target/fmu/`, and the other release binaries that the cross-check steps and calls.
 
 use crate::command::{cargo, root, run};
 use crate::error::Error;
@@ -45,12 +45,26 @@ fn pack(fmu: Fmu) -> Result<(), Error> {
     write(&directory.join(format!("{}.fmu", fmu.name())), &fmu.to_bytes()?)
 }
 
+/// The harness's command line, `target/release/switchid-harness`: without MAT, Parquet and pictures, which would take longer to
+/// build than the cross-check takes to run.
+///
+/// # Errors
+/// What cargo says.
+pub fn build_command() -> Result<(), Error> {
+    build_package("switchid-harness-command").map(|_| ())
+}
+
 fn build_binary(package: &str) -> Result<Vec<u8>, Error> {
+    let path = build_package(package)?.join(format!("lib{}.so", package.replace('-', "_")));
+    std::fs::read(&path).map_err(file("read", &path))
+}
+
+/// Builds one package apart from the others, so that it gets the features that it asks for and no more; where its binary lies.
+fn build_package(package: &str) -> Result<PathBuf, Error> {
     let target = root().join("target");
     let mut command = cargo(&["build", "--quiet", "--release", "--package", package, "--target-dir"]);
     run(command.arg(&target), "install Rust from https://rustup.rs")?;
-    let path: PathBuf = target.join("release").join(format!("lib{}.so", package.replace('-', "_")));
-    std::fs::read(&path).map_err(file("read", &path))
+    Ok(target.join("release"))
 }
 
 fn write(path: &Path, content: &[u8]) -> Result<(), Error> {

@@ -17,7 +17,8 @@ const USAGE: &str = "\
 usage: cargo xtask CHORE
 
   crosscheck [--seed N] [--quick] [--jobs N]
-                     steps plant and identifier FMUs together under fmpy, gates the figures,
+                     steps plant and identifier FMUs together under fmpy, has the command line find
+                     a hidden effect, gates the figures,
                      writes target/crosscheck/report.html and report.json
   test               every test
   fmu                builds SwitchedIdentifier.fmu, Duffing.fmu, VanDerPol.fmu into target/fmu,

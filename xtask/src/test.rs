@@ -16,15 +16,19 @@ const CHECK: &str = "switchid-fmu-check";
 /// # Errors
 /// [`Error::Steps`]; [`Error::Data`] when real records are missing in CI.
 pub fn test() -> Result<(), Error> {
-    let mut steps = Steps::new(11);
+    let mut steps = Steps::new(13);
     steps.check("real records", real_records);
     steps.check("format", || cargo_run(&["fmt", "--all", "--check"]));
     steps.check("clippy", || cargo_run(&clippy(&["--workspace", "--exclude", CHECK, "--all-targets"])));
     steps.check("clippy, heart alone", || cargo_run(&clippy(&["--package", "switchid", "--no-default-features"])));
+    steps.check("clippy, command line without formats and pictures", || {
+        cargo_run(&clippy(&["--package", "switchid", "--no-default-features", "--features", "cli"]))
+    });
     steps.check("documentation", documentation);
     steps.check("Rust tests", || cargo_run(&["test", "--release", "--quiet", "--no-fail-fast"]));
     steps.check("FMUs", fmu::build);
     steps.check("FMUs through the fmi crate", fmi_crate);
+    steps.check("command line of the cross-check", fmu::build_command);
     steps.check("README's commands", readme::commands);
     let interpreter = steps.run("Python environment", python::environment);
     steps.check("harness tests", || pytest(&interpreter?));

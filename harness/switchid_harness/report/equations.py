@@ -1,8 +1,9 @@
 """Laws and figures typeset for the page, in plain HTML: any font with combining dots shows them well."""
 
 import math
+from html import escape
 
-from ..laws import factors, in_order
+from ..laws import factors, in_order, in_words, is_monomial
 
 _BASES = {"qdd": "q̈", "qd": "q̇"}
 
@@ -38,7 +39,9 @@ def _factor(base: str, exponent: int) -> str:
 
 
 def term_markup(term: str) -> str:
-    """The term alone; 1 for the constant."""
+    """The term alone; 1 for the constant; an effect by its name."""
+    if not is_monomial(term):
+        return f'<span class="effect">{escape(in_words(term))}</span>'
     return "\u200a".join(_factor(base, exponent) for base, exponent in factors(term)) or "1"
 
 

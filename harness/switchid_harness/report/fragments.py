@@ -16,7 +16,8 @@ def _worst(values: Iterable[float | None]) -> float | None:
     return None if not kept or None in kept else max(kept)
 
 
-def _pill(outcome: str) -> str:
+def pill(outcome: str) -> str:
+    """Whether gates hold, as a coloured word; `outcome` as `table.verdict` gives it."""
     names = {"ok": ("good", "holds"), "FAIL": ("bad", "fails"), "–": ("", "not gated")}
     kind, text = names[outcome]
     return f'<span class="pill {kind}">{text}</span>'
@@ -41,7 +42,7 @@ def overview_row(run: dict) -> str:
     name = f"{escape(run['title'])}<small>{escape(run['set'])}</small>"
     return (
         f'<tr data-run="{escape(run["id"])}" tabindex="0"><th scope="row">{name}</th>'
-        f"{methods}<td>{_pill(outcome)}</td></tr>"
+        f"{methods}<td>{pill(outcome)}</td></tr>"
     )
 
 
@@ -100,7 +101,7 @@ def _stage_row(run: dict, index: int) -> str:
         texts = [power(found["e"])]
         texts += [table.seconds(found[key]) for key in ("detection_delay", "tracking_delay", "identified")]
         cells += [f'<td class="{method}">{text}</td>' for text in texts]
-    return f"<tr>{''.join(cells)}<td>{_pill(table.verdict(run, index + 1))}</td></tr>"
+    return f"<tr>{''.join(cells)}<td>{pill(table.verdict(run, index + 1))}</td></tr>"
 
 
 _COLUMNS = (
@@ -116,7 +117,7 @@ _HEAD = (
 
 def _stage_table(run: dict) -> str:
     rows = "".join(_stage_row(run, index) for index in range(len(run["stages"])))
-    return f'<table class="wide">{_HEAD}<tbody>{rows}</tbody></table><p class="note">{_alarms(run)}</p>{_gates(run)}'
+    return f'<table class="wide">{_HEAD}<tbody>{rows}</tbody></table><p class="note">{_alarms(run)}</p>{gate_table(run)}'
 
 
 def _alarms(run: dict) -> str:
@@ -130,11 +131,12 @@ def _alarms(run: dict) -> str:
     return escape("; ".join(parts)) + "."
 
 
-def _gates(run: dict) -> str:
+def gate_table(run: dict) -> str:
+    """The gates of a run, folded."""
     rows = "".join(
         f"<tr><td>{escape(gate['name'])}{'' if gate['stage'] is None else ', stage ' + str(gate['stage'])}</td>"
         f"<td>{'none' if gate['value'] is None else format(gate['value'], '.3g')}</td><td>≤ {gate['floor']:.3g}</td>"
-        f"<td>{_pill('ok' if gate['passed'] else 'FAIL')}</td></tr>"
+        f"<td>{pill('ok' if gate['passed'] else 'FAIL')}</td></tr>"
         for gate in run["gates"]
     )
     head = "<thead><tr><th>gate</th><th>figure</th><th>floor</th><th></th></tr></thead>"

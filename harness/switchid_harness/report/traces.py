@@ -10,6 +10,8 @@ import zlib
 
 import numpy as np
 
+from ..free_run import error_over_time
+from ..improvement import Improvement
 from ..laws import in_order
 from ..run import UNKNOWN_STD, Run
 from ..stepping import Track
@@ -64,6 +66,18 @@ def _method_traces(track: Track, error: np.ndarray, terms: list[str], method: st
         std = track.std[kept, index]
         traces[f"{method}.std.{term}"] = np.where(std < UNKNOWN_STD, std, np.nan)
     return traces
+
+
+def improvement_traces(improvement: Improvement) -> dict:
+    """Packed traces of a fresh record: `points`, `names` in stored order, `data`. `<model>.error` is over the last second."""
+    run = improvement.run
+    kept = grid(len(run.time), [])
+    traces = {"t": run.time[kept]}
+    traces |= {name: run.measured[kept, i] for i, name in enumerate(("q", "qd", "F"))}
+    for model, motion in run.predicted.items():
+        traces |= {f"{model}.{name}": motion[kept, i] for i, name in enumerate(("q", "qd"))}
+        traces[f"{model}.error"] = error_over_time(run, model)[kept]
+    return {"points": len(kept), "names": list(traces), "data": pack(list(traces.values()))}
 
 
 def run_traces(run: Run) -> dict:

@@ -42,9 +42,10 @@ document.querySelectorAll(".overview tbody tr").forEach((row) => {
   row.addEventListener("click", () => choose(row.dataset.run, true));
   row.addEventListener("keydown", (event) => { if (event.key === "Enter") choose(row.dataset.run, true); });
 });
-window.addEventListener("scroll", () => view && view.schedule(), { passive: true });
-window.addEventListener("resize", () => { if (shown) { showPortraits(shown); view.redraw(); } });
+const everyView = () => (view ? [view, ...effectViews] : effectViews);
+window.addEventListener("scroll", () => everyView().forEach((each) => each.schedule()), { passive: true });
+window.addEventListener("resize", () => { if (shown) showPortraits(shown); everyView().forEach((each) => each.redraw()); });
 
 const wanted = decodeURIComponent(location.hash.slice(1));
 show([...chooser.options].some((option) => option.value === wanted) ? wanted : chooser.options[0].value);
-window.addEventListener("beforeprint", () => view && view.charts.forEach((chart) => chart.draw()));
+window.addEventListener("beforeprint", () => everyView().forEach((each) => each.charts.forEach((chart) => chart.draw())));
