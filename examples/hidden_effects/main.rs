@@ -33,7 +33,8 @@ fn run(setting: &Setting, arguments: &Arguments) -> Option<Outcome> {
     let problem = draw(setting)?;
     let outcome = judge(setting, &problem);
     if arguments.all || (arguments.misses && !outcome.is_right() && outcome.visible) {
-        println!("{}\n    {}\n    {:?}: {}\n", repeat(setting), problem.words, outcome.answer, outcome.words);
+        let Outcome { answer, seconds, words, .. } = &outcome;
+        println!("{}\n    {}\n    {answer:?} in {seconds:.1} s: {words}\n", repeat(setting), problem.words);
     }
     Some(outcome)
 }
