@@ -1,0 +1,103 @@
+//! The Cramér–Rao bound of a record.
+
+use super::LimitsError;
+use super::course::{Course, Sensors};
+use super::law::Law;
+use super::marginal::Marginal;
+use crate::law::Term;
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// Limit of e below which a law counts as known: 5 % rms.
+pub const SETTLED_ERROR: f64 = 0.05 * 0.05;
+
+/// Part by which the record grows between two looks for the shortest one.
+const GROWTH: f64 = 0.005;
+
+/// Eigenvalue of the information, scaled to a unit diagonal, below which it is rounding: nothing is known in that direction.
+const TOLERANCE: f64 = 1e-12;
+
+/// Part in such a direction from which a coefficient counts as touched by it.
+const TOUCHED: f64 = 1e-3;
+
+/// What any method could reach on a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bound {
+    /// Smallest std of each sought coefficient, in the order of [`Law::sought`]; `None` where the record does not determine it.
+    pub std: Vec<Option<f64>>,
+    /// Trace of the inverse information ÷ Σθ²: the smallest mean of e, eq. (8); `None` where a coefficient is not determined.
+    pub relative_error: Option<f64>,
+    /// Terms that nothing on this record tells apart, one list per open direction.
+    pub open: Vec<Vec<Term>>,
+    /// Length of the shortest record from the start whose limit of e is below [`SETTLED_ERROR`], s; `None` where none is.
+    pub shortest_record: Option<f64>,
+}
+
+/// The bound of a law on a record, cut into courses at its gaps, each with an initial state of its own.
+///
+/// # Errors
+/// [`LimitsError`] for a law without positive inertia, for sensors without noise.
+pub fn bound(law: &Law, courses: &[Course], sensors: Sensors) -> Result<Bound, LimitsError> {
+    sensors.check()?;
+    law.check(courses)?;
+    let mut marginal = Marginal::new(law, sensors);
+    let mut shortest = None;
+    let (mut count, mut next_look) = (0_usize, law.sought().len().max(2));
+    let begin = courses.first().and_then(|course| course.t.first()).copied().unwrap_or(0.0);
+    for course in courses.iter().filter(|course| !course.is_empty()) {
+        marginal.begin(course);
+        for k in 0..course.drives.len() {
+            marginal.step(course, k);
+            count += 1;
+            if shortest.is_none() && count >= next_look {
+                next_look = count + 1 + (GROWTH * count as f64) as usize;
+                let error = Bound::of(law, &marginal.information).relative_error;
+                shortest = error.filter(|error| *error < SETTLED_ERROR).map(|_| course.t[k + 1] - begin);
+            }
+        }
+    }
+    Ok(Bound { shortest_record: shortest, ..Bound::of(law, &marginal.information) })
+}
+
+impl Bound {
+    fn of(law: &Law, information: &DMatrix<f64>) -> Bound {
+        let n = law.sought().len();
+        let scale: Vec<f64> = (0..n).map(|row| inverse_root(information[(row, row)])).collect();
+        let scaled = DMatrix::from_fn(n, n, |row, column| {
+            let unknown = row == column && scale[row] == 0.0;
+            if unknown { 0.0 } else { information[(row, column)] * scale[row] * scale[column] }
+        });
+        if !scaled.iter().all(|value| value.is_finite()) {
+            let open = vec![law.sought().iter().map(|index| law.terms()[*index]).collect()];
+            return Bound { std: vec![None; n], relative_error: None, open, shortest_record: None };
+        }
+        let eigen = SymmetricEigen::new(scaled);
+        let touched = |row: usize, direction: usize| eigen.eigenvectors[(row, direction)].abs() > TOUCHED;
+        let is_open = |direction: &usize| eigen.eigenvalues[*direction] < TOLERANCE;
+        let (open, known): (Vec<usize>, Vec<usize>) = (0..n).partition(is_open);
+        let variance = |row: usize| {
+            let part =
+                |direction: &usize| eigen.eigenvectors[(row, *direction)].powi(2) / eigen.eigenvalues[*direction];
+            scale[row] * scale[row] * known.iter().map(part).sum::<f64>()
+        };
+        let determined = |row: usize| !open.iter().any(|direction| touched(row, *direction));
+        let std: Vec<Option<f64>> = (0..n).map(|row| determined(row).then(|| variance(row).sqrt())).collect();
+        let term = |row: usize| law.terms()[law.sought()[row]];
+        let together = |direction: &usize| (0..n).filter(|row| touched(*row, *direction)).map(term).collect();
+        Bound {
+            relative_error: relative_error(&std, law.coefficients()),
+            std,
+            open: open.iter().map(together).collect(),
+            shortest_record: None,
+        }
+    }
+}
+
+fn relative_error(std: &[Option<f64>], coefficients: &[f64]) -> Option<f64> {
+    let trace: f64 = std.iter().map(|std| std.map(|std| std * std)).sum::<Option<f64>>()?;
+    let size: f64 = coefficients.iter().map(|value| value * value).sum();
+    (size > 0.0).then_some(trace / size)
+}
+
+fn inverse_root(diagonal: f64) -> f64 {
+    if diagonal > 0.0 { diagonal.sqrt().recip() } else { 0.0 }
+}
