@@ -12,6 +12,7 @@ mod fmu;
 mod identify;
 mod improve;
 mod input;
+mod limits;
 mod output;
 mod picture;
 mod progress;
@@ -39,6 +40,7 @@ enum Command {
     Improve(improve::Arguments),
     Fmu(fmu::Arguments),
     Identify(identify::Arguments),
+    Limits(limits::Arguments),
     Simulate(simulate::Arguments),
 }
 
@@ -51,6 +53,7 @@ impl Command {
             Command::Improve(arguments) => improve::run(&arguments),
             Command::Fmu(arguments) => fmu::run(&arguments),
             Command::Identify(arguments) => identify::run(&arguments),
+            Command::Limits(arguments) => limits::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
         }
     }

@@ -3,7 +3,7 @@
 use super::LimitsError;
 use super::course::{Course, Sensors};
 use super::law::Law;
-use super::marginal::Marginal;
+use super::marginal::{Marginal, Start};
 use crate::law::Term;
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -33,10 +33,11 @@ pub struct Bound {
 }
 
 /// The bound of a law on a record, cut into courses at its gaps, each with an initial state of its own.
+/// Of a whole record it is unknown; at a switch the law before tells it.
 ///
 /// # Errors
 /// [`LimitsError`] for a law without positive inertia, for sensors without noise.
-pub fn bound(law: &Law, courses: &[Course], sensors: Sensors) -> Result<Bound, LimitsError> {
+pub fn bound(law: &Law, courses: &[Course], sensors: Sensors, start: Start) -> Result<Bound, LimitsError> {
     sensors.check()?;
     law.check(courses)?;
     let mut marginal = Marginal::new(law, sensors);
@@ -44,7 +45,7 @@ pub fn bound(law: &Law, courses: &[Course], sensors: Sensors) -> Result<Bound, L
     let (mut count, mut next_look) = (0_usize, law.sought().len().max(2));
     let begin = courses.first().and_then(|course| course.t.first()).copied().unwrap_or(0.0);
     for course in courses.iter().filter(|course| !course.is_empty()) {
-        marginal.begin(course);
+        marginal.begin(course, start);
         for k in 0..course.drives.len() {
             marginal.step(course, k);
             count += 1;

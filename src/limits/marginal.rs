@@ -14,6 +14,15 @@ use nalgebra::DMatrix;
 /// A quantity that is not measured may at first lie this many times its largest value away.
 const UNKNOWN: f64 = 100.0;
 
+/// What is known of the state at the start of a course.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// Nothing but the first reading.
+    Unknown,
+    /// All: the record begins at a switch, and the law before it is known.
+    Known,
+}
+
 /// Where the filter stands: L, then Ψ, as columns that the motion carries.
 pub struct Marginal<'a> {
     variation: Variation<'a>,
@@ -36,10 +45,13 @@ impl<'a> Marginal<'a> {
     }
 
     /// Takes the first sample of a course: all it tells is where the state is.
-    pub fn begin(&mut self, course: &Course) {
+    pub fn begin(&mut self, course: &Course, start: Start) {
+        self.columns.fill([0.0; 2]);
+        if start == Start::Known {
+            return;
+        }
         let far = course.largest().map(|largest| UNKNOWN * if largest > 0.0 { largest } else { 1.0 });
         let [q, qd] = [0, 1].map(|channel| self.sensors.0[channel].unwrap_or(far[channel]));
-        self.columns.fill([0.0; 2]);
         self.columns[0] = [q, 0.0];
         self.columns[1] = [0.0, qd];
     }
