@@ -2,7 +2,8 @@
 
 use super::error::CommandError;
 use super::output::{self, Pairs};
-use super::progress::Progress;
+use super::progress::{Progress, Waiting};
+use super::stage_limit::{StageLimit, stage_limits};
 use super::trace::Trace;
 use crate::data::{self, Opened};
 use crate::identify::{self, Gap, Identification, Method, Recording, Settings, Stage};
@@ -65,6 +66,8 @@ struct Run {
     /// Who chose the hold.
     hold_from: &'static str,
     found: Identification,
+    /// What any method could reach, stage by stage; none where a stage has no law or no limit.
+    limits: Vec<Option<StageLimit>>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
@@ -72,7 +75,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let opened = data::open_recording(&arguments.data, &model)?;
     let (settings, hold_from) = settings(arguments, &model, &opened.recording)?;
     let found = identify(arguments, &model, settings, &opened.recording)?;
-    let run = Run { opened, settings, hold_from, found };
+    let limits = Waiting::on("looking for the limits", || stage_limits(&found, &opened.recording, &settings));
+    let run = Run { opened, settings, hold_from, found, limits };
     warnings(&run).iter().for_each(|warning| output::complain("warning", warning));
     if arguments.json { output::print_json(&Report::of(&run)) } else { output::print(&text(&run)) }
 }
@@ -159,6 +163,17 @@ struct StageReport {
     /// By term, where known.
     units: BTreeMap<String, String>,
     unidentifiable: Vec<String>,
+    /// What any method could reach on this stage; null where that is not known.
+    limit: Option<LimitReport>,
+}
+
+#[derive(Serialize)]
+struct LimitReport {
+    /// Smallest std by term.
+    coefficient_std: Pairs,
+    relative_error: Option<f64>,
+    /// Stated std ÷ smallest std.
+    std_to_limit: Pairs,
 }
 
 impl Report {
@@ -166,7 +181,7 @@ impl Report {
         let Run { opened, settings, found, .. } = run;
         let forced = settings.channels.excitation;
         Report {
-            stages: found.stages.iter().map(|stage| StageReport::of(stage, forced, &opened.units)).collect(),
+            stages: stages(run).map(|(stage, limit)| StageReport::of(stage, limit, forced, &opened.units)).collect(),
             noise: Pairs(noise(found)),
             hold: settings.hold.id(),
             gaps: opened.recording.gaps().into_iter().map(|gap| [gap.start, gap.end]).collect(),
@@ -176,7 +191,7 @@ impl Report {
 }
 
 impl StageReport {
-    fn of(stage: &Stage, forced: bool, units: &Units) -> StageReport {
+    fn of(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -> StageReport {
         StageReport {
             start: stage.start,
             end: stage.end,
@@ -190,8 +205,26 @@ impl StageReport {
                 .filter_map(|(known, _)| Some((known.term.name(), unit_of(known.term, units)?)))
                 .collect(),
             unidentifiable: stage.unidentifiable.clone(),
+            limit: limit.map(|limit| LimitReport::of(stage, limit)),
         }
     }
+}
+
+impl LimitReport {
+    fn of(stage: &Stage, limit: &StageLimit) -> LimitReport {
+        let smallest =
+            || stage.known().filter_map(|(known, std)| Some((known.term.name(), std, limit.std(known.term)?)));
+        LimitReport {
+            coefficient_std: Pairs(smallest().map(|(name, _, least)| (name, least)).collect()),
+            relative_error: limit.relative_error(),
+            std_to_limit: Pairs(smallest().map(|(name, std, least)| (name, std / least)).collect()),
+        }
+    }
+}
+
+/// Stages with their limits.
+fn stages(run: &Run) -> impl Iterator<Item = (&Stage, Option<&StageLimit>)> {
+    run.found.stages.iter().zip(run.limits.iter().map(Option::as_ref))
 }
 
 fn noise(found: &Identification) -> Vec<(String, f64)> {
@@ -212,9 +245,9 @@ fn text(run: &Run) -> String {
             stage.end
         );
     }
-    for (index, stage) in run.found.stages.iter().enumerate() {
-        let _ =
-            write!(text, "\nstage {}: {}", index + 1, law(stage, run.settings.channels.excitation, &run.opened.units));
+    for (index, (stage, limit)) in stages(run).enumerate() {
+        let law = law(stage, limit, run.settings.channels.excitation, &run.opened.units);
+        let _ = write!(text, "\nstage {}: {law}", index + 1);
     }
     text
 }
@@ -233,13 +266,18 @@ fn head(run: &Run) -> String {
     text
 }
 
-/// The law on one line, its coefficients with their std and units, and what is not known.
-fn law(stage: &Stage, forced: bool, units: &Units) -> String {
+/// The law on one line, its coefficients with their std, units and what any method could reach, and what is not known.
+fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -> String {
     let unknown = "cannot be determined from these data";
     let mut text = stage.law(forced).unwrap_or_else(|| unknown.into()) + "\n";
     for (known, std) in stage.known() {
-        let line =
-            format!("  {:<12} {:>14.6e} ± {std:.1e} {}", known.term.name(), known.value, unit(known.term, units));
+        let line = format!(
+            "  {:<12} {:>14.6e} ± {std:.1e} {}{}",
+            known.term.name(),
+            known.value,
+            unit(known.term, units),
+            times_limit(known.term, std, limit)
+        );
         text = text + line.trim_end() + "\n";
     }
     let open: Vec<String> =
@@ -251,6 +289,12 @@ fn law(stage: &Stage, forced: bool, units: &Units) -> String {
         let _ = writeln!(text, "  no data of this stage determine {combination}");
     }
     text
+}
+
+/// `1.1 times the limit`; empty where the limit is not known.
+fn times_limit(term: Term, std: f64, limit: Option<&StageLimit>) -> String {
+    let least = limit.and_then(|limit| limit.std(term));
+    least.map_or_else(String::new, |least| format!("  ({:.2} times the limit)", std / least))
 }
 
 fn unit(term: Term, units: &Units) -> String {

@@ -17,6 +17,7 @@ mod output;
 mod picture;
 mod progress;
 mod simulate;
+mod stage_limit;
 mod trace;
 mod words;
 

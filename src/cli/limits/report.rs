@@ -115,7 +115,7 @@ fn shortest(found: &Limits) -> String {
     let time =
         |time: Option<f64>| time.map_or_else(|| "never on this record".into(), |time| format!("from {time:.3} s on"));
     format!(
-        "known to 5 %: {}; after a switch from a known law {}",
+        "known to 5 % rms: {}; with the state at the start known, as after a switch, {}",
         time(found.bound.shortest_record),
         time(found.after_switch)
     )
