@@ -172,6 +172,8 @@ struct LimitReport {
     /// Smallest std by term.
     coefficient_std: Pairs,
     relative_error: Option<f64>,
+    /// Whether the law explains the stage down to its sensors' noise.
+    explained: bool,
     /// Stated std ÷ smallest std.
     std_to_limit: Pairs,
 }
@@ -217,6 +219,7 @@ impl LimitReport {
         LimitReport {
             coefficient_std: Pairs(smallest().map(|(name, _, least)| (name, least)).collect()),
             relative_error: limit.relative_error(),
+            explained: limit.explained(),
             std_to_limit: Pairs(smallest().map(|(name, std, least)| (name, std / least)).collect()),
         }
     }
@@ -285,15 +288,18 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
     if !open.is_empty() {
         let _ = writeln!(text, "  not known: {}", open.join(", "));
     }
+    if limit.is_some_and(|limit| !limit.explained()) {
+        text += "  the law leaves more than sensor noise: no comparison with what any method could reach\n";
+    }
     for combination in &stage.unidentifiable {
         let _ = writeln!(text, "  no data of this stage determine {combination}");
     }
     text
 }
 
-/// `1.1 times the limit`; empty where the limit is not known.
+/// `(1.1 times the limit)`; empty where the limit is not known or the law is not complete.
 fn times_limit(term: Term, std: f64, limit: Option<&StageLimit>) -> String {
-    let least = limit.and_then(|limit| limit.std(term));
+    let least = limit.filter(|limit| limit.explained()).and_then(|limit| limit.std(term));
     least.map_or_else(String::new, |least| format!("  ({:.2} times the limit)", std / least))
 }
 

@@ -1,6 +1,6 @@
 //! What any method could have reached on each stage that `identify` found: the Cramér–Rao bound of the stage's law on its samples.
 
-use crate::diagnose::{Evidence, Form, refit};
+use crate::diagnose::{Evidence, Fit, Form, is_evident, refit};
 use crate::evidence::Noise;
 use crate::identify::{Identification, Recording, Settings, Stage};
 use crate::law::Term;
@@ -13,9 +13,15 @@ const LEAST: f64 = 1e-6;
 pub(super) struct StageLimit {
     law: Law,
     bound: Bound,
+    explained: bool,
 }
 
 impl StageLimit {
+    /// Whether the law explains the stage down to its sensors' noise: where it does not, no estimate comes near the limit.
+    pub(super) fn explained(&self) -> bool {
+        self.explained
+    }
+
     /// The smallest std of a coefficient that the stage estimated.
     pub(super) fn std(&self, term: Term) -> Option<f64> {
         let row = self.law.sought().iter().position(|index| self.law.terms()[*index] == term)?;
@@ -66,20 +72,15 @@ fn stage_limit(stage: &Stage, noise: Noise, section: &Recording, settings: &Sett
     let pairs: Vec<(Term, f64)> = kept.iter().map(|(term, value, _)| (*term, *value)).collect();
     let sought: Vec<usize> = (0..kept.len()).filter(|index| kept[*index].2 > 0.0).collect();
     let law = Law::new(&pairs, &sought).ok()?;
-    let (courses, noise) = motion(&pairs, section, settings, noise)?;
+    let (courses, motion) = motion(&pairs, section, settings, noise)?;
     let measured = [section.channels().q, section.channels().qd];
-    let sensors = Sensors([0, 1].map(|channel| measured[channel].then_some(noise.sensor[channel].sqrt())));
+    let sensors = Sensors([0, 1].map(|channel| measured[channel].then_some(motion.noise.sensor[channel].sqrt())));
     let bound = bound(&law, &courses, sensors, Start::Unknown).ok()?;
-    Some(StageLimit { law, bound })
+    Some(StageLimit { law, bound, explained: !is_evident(&motion) })
 }
 
-/// The motion of a stage as its law and its readings together tell it, and its noise.
-fn motion(
-    pairs: &[(Term, f64)],
-    section: &Recording,
-    settings: &Settings,
-    noise: Noise,
-) -> Option<(Vec<Course>, Noise)> {
+/// The motion of a stage as its law and its readings together tell it, and the fit that says so.
+fn motion(pairs: &[(Term, f64)], section: &Recording, settings: &Settings, noise: Noise) -> Option<(Vec<Course>, Fit)> {
     let form = Form {
         terms: pairs.iter().map(|(term, _)| *term).collect(),
         held: pairs.iter().map(|(_, value)| Some(*value)).collect(),
@@ -89,5 +90,6 @@ fn motion(
     let coefficients: Vec<f64> = pairs.iter().map(|(_, value)| *value).collect();
     let motion = refit(&form, &evidence.pieces, &coefficients, noise)?;
     let pairs = evidence.pieces.iter().zip(&motion.states);
-    Some((pairs.map(|(piece, states)| piece.course(states)).collect(), motion.noise))
+    let courses = pairs.map(|(piece, states)| piece.course(states)).collect();
+    Some((courses, motion))
 }

@@ -2,5 +2,6 @@
 
 mod bound;
 mod detection;
+mod friction;
 mod record;
 mod rules;
