@@ -3,7 +3,6 @@
 use crate::data::DataError;
 use crate::fmu::FmuError;
 use crate::identify::BuildError;
-use crate::law::ModelError;
 use crate::limits::LimitsError;
 use crate::simulate::{SimulateError, UnknownBuiltin};
 use thiserror::Error;
@@ -134,14 +133,6 @@ pub(super) enum CommandError {
         reason: String,
         /// How it is written.
         example: &'static str,
-    },
-    /// A change of a term that nobody knows.
-    #[error("--change {text}: {source}")]
-    Change {
-        /// What was written.
-        text: String,
-        /// Why it is no term.
-        source: ModelError,
     },
     /// A file that would be overwritten.
     #[error("{file}: exists already: name another file with -o, or add --force to overwrite it")]

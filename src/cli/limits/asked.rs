@@ -4,7 +4,7 @@ use super::super::error::CommandError;
 use super::Arguments;
 use crate::evidence::Noise;
 use crate::identify::Recording;
-use crate::law::{Model, Term};
+use crate::law::{Model, ModelError, Term};
 use crate::limits::Sensors;
 
 /// Noise std ÷ largest value below which a record counts as free of noise.
@@ -87,9 +87,20 @@ fn change(text: &str, model: &Model) -> Result<(Term, f64), CommandError> {
     let (name, value) = text.rsplit_once('=').ok_or_else(|| refuse("there is no \"=\""))?;
     let value = value.trim().parse().ok().filter(|value: &f64| value.is_finite());
     let value = value.ok_or_else(|| refuse("the new coefficient must be a number"))?;
-    let term = model.named(name.trim()).map_err(|source| CommandError::Change { text: text.into(), source })?.term;
+    let term = match model.named(name.trim()) {
+        Ok(entry) => entry.term,
+        Err(ModelError::Term { source }) => return Err(refuse(&source.to_string())),
+        Err(source) => return Err(refuse(&source.to_string())),
+    };
     let own = model.terms.iter().find(|entry| entry.key == name.trim() || entry.term.name() == term.name());
-    Ok((own.map_or(term, |entry| entry.term), value))
+    match own {
+        Some(entry) => Ok((entry.term, value)),
+        None if model.inner_names(term).is_empty() || !term.is_pointwise() => Ok((term, value)),
+        None => {
+            let inner = model.inner_names(term).join(", ");
+            Err(refuse(&format!("{term} has inner parameters ({inner}): give the model this term with the number 0")))
+        }
+    }
 }
 
 fn named_error(option: &'static str, text: &str, reason: &str) -> CommandError {
