@@ -5,13 +5,13 @@ use super::course::{Course, Sensors};
 use super::law::Law;
 use super::marginal::{Marginal, Start};
 use crate::law::Term;
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{DMatrix, Dyn, SymmetricEigen};
 
 /// Limit of e below which a law counts as known: 5 % rms.
 pub const SETTLED_ERROR: f64 = 0.05 * 0.05;
 
 /// Part by which the record grows between two looks for the shortest one.
-const GROWTH: f64 = 0.005;
+const GROWTH: f64 = 0.01;
 
 /// Eigenvalue of the information, scaled to a unit diagonal, below which it is rounding: nothing is known in that direction.
 const TOLERANCE: f64 = 1e-12;
@@ -62,34 +62,59 @@ pub fn bound(law: &Law, courses: &[Course], sensors: Sensors, start: Start) -> R
 impl Bound {
     fn of(law: &Law, information: &DMatrix<f64>) -> Bound {
         let n = law.sought().len();
-        let scale: Vec<f64> = (0..n).map(|row| inverse_root(information[(row, row)])).collect();
-        let scaled = DMatrix::from_fn(n, n, |row, column| {
-            let unknown = row == column && scale[row] == 0.0;
-            if unknown { 0.0 } else { information[(row, column)] * scale[row] * scale[column] }
-        });
-        if !scaled.iter().all(|value| value.is_finite()) {
-            let open = vec![law.sought().iter().map(|index| law.terms()[*index]).collect()];
+        let terms = |rows: Vec<usize>| rows.into_iter().map(|row| law.terms()[law.sought()[row]]).collect();
+        let Some(directions) = Directions::of(information) else {
+            let open = vec![terms((0..n).collect())];
             return Bound { std: vec![None; n], relative_error: None, open, shortest_record: None };
-        }
-        let eigen = SymmetricEigen::new(scaled);
-        let touched = |row: usize, direction: usize| eigen.eigenvectors[(row, direction)].abs() > TOUCHED;
-        let is_open = |direction: &usize| eigen.eigenvalues[*direction] < TOLERANCE;
-        let (open, known): (Vec<usize>, Vec<usize>) = (0..n).partition(is_open);
-        let variance = |row: usize| {
-            let part =
-                |direction: &usize| eigen.eigenvectors[(row, *direction)].powi(2) / eigen.eigenvalues[*direction];
-            scale[row] * scale[row] * known.iter().map(part).sum::<f64>()
         };
-        let determined = |row: usize| !open.iter().any(|direction| touched(row, *direction));
-        let std: Vec<Option<f64>> = (0..n).map(|row| determined(row).then(|| variance(row).sqrt())).collect();
-        let term = |row: usize| law.terms()[law.sought()[row]];
-        let together = |direction: &usize| (0..n).filter(|row| touched(*row, *direction)).map(term).collect();
+        let std: Vec<Option<f64>> = (0..n).map(|row| directions.std(row)).collect();
         Bound {
             relative_error: relative_error(&std, law.coefficients()),
             std,
-            open: open.iter().map(together).collect(),
+            open: directions.open.iter().map(|direction| terms(directions.touched_by(*direction))).collect(),
             shortest_record: None,
         }
+    }
+}
+
+/// The information scaled to a unit diagonal, along its eigenvectors.
+struct Directions {
+    scale: Vec<f64>,
+    eigen: SymmetricEigen<f64, Dyn>,
+    /// Eigenvectors of which nothing is known …
+    open: Vec<usize>,
+    /// … and the others.
+    known: Vec<usize>,
+}
+
+impl Directions {
+    /// None where the information is beyond all numbers.
+    fn of(information: &DMatrix<f64>) -> Option<Directions> {
+        let n = information.nrows();
+        let scale: Vec<f64> = (0..n).map(|row| inverse_root(information[(row, row)])).collect();
+        let scaled = DMatrix::from_fn(n, n, |row, column| information[(row, column)] * scale[row] * scale[column]);
+        if !scaled.iter().all(|value| value.is_finite()) {
+            return None;
+        }
+        let eigen = SymmetricEigen::new(scaled);
+        let (open, known) = (0..n).partition(|direction| eigen.eigenvalues[*direction] < TOLERANCE);
+        Some(Directions { scale, eigen, open, known })
+    }
+
+    /// The smallest std of a coefficient, none where an open direction touches it.
+    fn std(&self, row: usize) -> Option<f64> {
+        let part =
+            |direction: &usize| self.eigen.eigenvectors[(row, *direction)].powi(2) / self.eigen.eigenvalues[*direction];
+        let determined = self.open.iter().all(|direction| !self.touches(*direction, row));
+        determined.then(|| self.scale[row] * self.known.iter().map(part).sum::<f64>().sqrt())
+    }
+
+    fn touched_by(&self, direction: usize) -> Vec<usize> {
+        (0..self.scale.len()).filter(|row| self.touches(direction, *row)).collect()
+    }
+
+    fn touches(&self, direction: usize, row: usize) -> bool {
+        self.eigen.eigenvectors[(row, direction)].abs() > TOUCHED
     }
 }
 

@@ -8,7 +8,7 @@
 //!   ([`bound`]); it equals the Schur complement of the information of (initial state, θ).
 //! - std of θ_j ≥ √(J⁻¹)_jj; the mean of e, eq. (8), ≥ trace J⁻¹ ÷ Σθ².
 //! - a known change of the law is seen once Σ|old − new motion|²/(2σ²) passes ln(false alarm interval ÷ sample time), the state at the
-//!   switch known ([`detection`]).
+//!   switch known ([`detection()`]).
 
 mod bound;
 mod course;

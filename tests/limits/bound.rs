@@ -45,7 +45,7 @@ fn a_shorter_record_than_the_shortest_does_not_settle_and_the_shortest_does() {
     let law = law(&DUFFING);
     let shortest = of(&law, &duffing(12.0), both(0.01)).shortest_record.unwrap();
     let error = |seconds: f64| of(&law, &duffing(seconds), both(0.01)).relative_error.unwrap();
-    assert!(error(shortest) < 0.05_f64.powi(2) && error(0.98 * shortest) > 0.05_f64.powi(2));
+    assert!(error(shortest) < 0.05_f64.powi(2) && error(0.97 * shortest) > 0.05_f64.powi(2));
     assert_eq!(of(&law, &duffing(0.9 * shortest), both(0.01)).shortest_record, None);
 }
 
@@ -112,8 +112,8 @@ fn the_std_are_those_of_differences_of_whole_motions() {
 /// Through its reversals: a block on a spring with dry friction has a motion in closed form.
 #[test]
 fn dry_friction_has_the_std_of_the_exact_motion_through_its_reversals() {
-    let block = Block { stiffness: 4.0, friction: 0.15 };
-    let (start, dt, count) = (State { q: 2.0, qd: 0.3 }, 5e-3, 1600);
+    let block = Block { stiffness: 4.0, friction: 1.2 };
+    let (start, dt, count) = (State { q: 3.0, qd: 0.3 }, 5e-3, 1400);
     let motion = |unknowns: &[f64]| {
         let start = State { q: unknowns[0], qd: unknowns[1] };
         Block { stiffness: unknowns[2], friction: unknowns[3] }.motion(start, dt, count)

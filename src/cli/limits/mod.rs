@@ -75,36 +75,27 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
 
 fn limits<'a>(input: &'a Input, asked: &'a Asked) -> Result<Limits<'a>, CommandError> {
     let refused = |source: LimitsError| CommandError::Limits { model: input.file.clone(), source };
+    pointwise(input).map_err(refused)?;
     let recordings = input.recordings();
     let (recording, hold) = recordings[0];
-    let known = |given: Given| matches!(given, Given::Known(_));
-    let numbers_only = input.model.terms.iter().all(|entry| known(entry.given));
-    pointwise(input).map_err(refused)?;
     let evidence = Evidence::new(&recordings);
     let fit = best_as_given(&input.model, &evidence).ok_or_else(|| input.undetermined())?;
-    let forced = recording.channels().excitation;
-    let law = law(&fit, numbers_only, forced).map_err(refused)?;
+    let numbers_only = input.model.terms.iter().all(|entry| matches!(entry.given, Given::Known(_)));
+    let law = law(&fit, numbers_only, recording.channels().excitation).map_err(refused)?;
     let sensors = asked.sensors(recording, &fit.noise)?;
     let pairs = evidence.pieces.iter().zip(&fit.states);
     let courses: Vec<Course> = pairs.map(|(piece, states)| piece.course(states)).collect();
     let bound_of = |start| bound(&law, &courses, sensors, start).map_err(refused);
     let level = level(asked.false_alarm_interval, recording.sample_time());
-    let changed = (!asked.change.is_empty()).then(|| law.changed(&asked.change)).transpose().map_err(refused)?;
-    let seen = changed.map(|changed| detection(&law, &changed, &courses, sensors, level));
-    Ok(Limits {
-        bound: bound_of(Start::Unknown)?,
-        after_switch: bound_of(Start::Known)?.shortest_record,
-        detection: seen.transpose().map_err(refused)?,
-        level,
-        input,
-        asked,
-        recording,
-        hold,
-        fit,
-        law,
-        sensors,
-        numbers_only,
-    })
+    let detection = match asked.change.as_slice() {
+        [] => None,
+        change => {
+            let seen = law.changed(change).and_then(|changed| detection(&law, &changed, &courses, sensors, level));
+            Some(seen.map_err(refused)?)
+        }
+    };
+    let (bound, after_switch) = (bound_of(Start::Unknown)?, bound_of(Start::Known)?.shortest_record);
+    Ok(Limits { input, asked, recording, hold, fit, law, sensors, numbers_only, bound, after_switch, level, detection })
 }
 
 /// Refuses a model with a term that one instant does not give, before anything is fitted.

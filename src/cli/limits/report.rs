@@ -144,18 +144,19 @@ fn switch(found: &Limits, detection: &Detection) -> String {
 
 fn table(found: &Limits) -> String {
     let forced = found.recording.channels().excitation;
-    let pairs = found.law.terms().iter().zip(found.law.coefficients());
-    let law: Vec<_> = pairs.map(|(term, value)| (*term, *value, None)).collect();
+    let pairs: Vec<(Term, f64)> =
+        found.law.terms().iter().copied().zip(found.law.coefficients().iter().copied()).collect();
+    let law: Vec<_> = pairs.iter().map(|(term, value)| (*term, *value, None)).collect();
     let mut text = format!("law: {}\n", equation(&law, forced));
-    for (index, (term, value)) in found.law.terms().iter().zip(found.law.coefficients()).enumerate() {
-        let line = match found.law.sought().iter().position(|sought| *sought == index) {
+    for (index, (term, value)) in pairs.into_iter().enumerate() {
+        let row = found.law.sought().iter().position(|sought| *sought == index);
+        let line = match row.map(|row| found.bound.std[row]) {
             None => format!("{value:.6e} (known)"),
-            Some(row) => match found.bound.std[row] {
-                None => "not determined".into(),
-                Some(std) => {
-                    format!("{}{}  {}", number(*value, std), found.input.unit(*term), percent((std / value).abs()))
-                }
-            },
+            Some(None) => "not determined".into(),
+            Some(Some(std)) => {
+                let (number, unit) = (number(value, std), found.input.unit(term));
+                format!("{number}{unit}  {}", percent((std / value).abs()))
+            }
         };
         let _ = writeln!(text, "  {:<20} {line}", term.name());
     }
