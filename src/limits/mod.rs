@@ -5,7 +5,7 @@
 //! (Cramér, *Mathematical Methods of Statistics*, 32.3; Rao 1945):
 //!
 //! - J = Σ ψψᵀ/s over the innovations of a Kalman filter of the state, s their variances, ψ their sensitivities to θ
-//!   ([`bound`]); it equals the Schur complement of the information of (initial state, θ).
+//!   ([`bound()`]); it equals the Schur complement of the information of (initial state, θ).
 //! - std of θ_j ≥ √(J⁻¹)_jj; the mean of e, eq. (8), ≥ trace J⁻¹ ÷ Σθ².
 //! - a known change of the law is seen once Σ|old − new motion|²/(2σ²) passes ln(false alarm interval ÷ sample time), the state at the
 //!   switch known ([`detection()`]).
