@@ -37,3 +37,12 @@ pub fn both(std: f64) -> Sensors {
 pub fn of(law: &Law, course: &Course, sensors: Sensors) -> Bound {
     bound(law, std::slice::from_ref(course), sensors, Start::Unknown).unwrap()
 }
+
+/// The samples of a range.
+pub fn part(whole: &Course, range: std::ops::Range<usize>) -> Course {
+    Course {
+        t: whole.t[range.clone()].to_vec(),
+        drives: whole.drives[range.start..range.end - 1].to_vec(),
+        states: whole.states[range].to_vec(),
+    }
+}
