@@ -1,7 +1,8 @@
 //! `switchid identify`: the streaming identifier over a recording.
 
 use super::error::CommandError;
-use super::output::{self, Pairs};
+use super::identify_report::Report;
+use super::output;
 use super::progress::{Progress, Waiting};
 use super::stage_limit::{StageLimit, stage_limits};
 use super::trace::Trace;
@@ -10,8 +11,6 @@ use crate::identify::{self, Gap, Identification, Method, Recording, Settings, St
 use crate::law::{Hold, Model, Term, Units, unit_of};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use serde::Serialize;
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -60,12 +59,12 @@ pub(super) struct Arguments {
 }
 
 /// What the run rested on.
-struct Run {
-    opened: Opened,
-    settings: Settings,
+pub(super) struct Run {
+    pub(super) opened: Opened,
+    pub(super) settings: Settings,
     /// Who chose the hold.
     hold_from: &'static str,
-    found: Identification,
+    pub(super) found: Identification,
     /// What any method could reach, stage by stage; none where a stage has no law or no limit.
     limits: Vec<Option<StageLimit>>,
 }
@@ -142,95 +141,13 @@ fn warnings(run: &Run) -> Vec<String> {
     warnings
 }
 
-#[derive(Serialize)]
-struct Report {
-    stages: Vec<StageReport>,
-    noise: Pairs,
-    hold: &'static str,
-    gaps: Vec<[f64; 2]>,
-    skipped: usize,
-}
-
-#[derive(Serialize)]
-struct StageReport {
-    start: f64,
-    end: f64,
-    detected: Option<f64>,
-    identified: Option<f64>,
-    law: Option<String>,
-    coefficients: Pairs,
-    std: Pairs,
-    /// By term, where known.
-    units: BTreeMap<String, String>,
-    unidentifiable: Vec<String>,
-    /// What any method could reach on this stage; null where that is not known.
-    limit: Option<LimitReport>,
-}
-
-#[derive(Serialize)]
-struct LimitReport {
-    /// Smallest std by term.
-    coefficient_std: Pairs,
-    relative_error: Option<f64>,
-    /// Whether the law explains the stage down to its sensors' noise.
-    explained: bool,
-    /// Stated std ÷ smallest std.
-    std_to_limit: Pairs,
-}
-
-impl Report {
-    fn of(run: &Run) -> Report {
-        let Run { opened, settings, found, .. } = run;
-        let forced = settings.channels.excitation;
-        Report {
-            stages: stages(run).map(|(stage, limit)| StageReport::of(stage, limit, forced, &opened.units)).collect(),
-            noise: Pairs(noise(found)),
-            hold: settings.hold.id(),
-            gaps: opened.recording.gaps().into_iter().map(|gap| [gap.start, gap.end]).collect(),
-            skipped: found.skipped.len(),
-        }
-    }
-}
-
-impl StageReport {
-    fn of(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -> StageReport {
-        StageReport {
-            start: stage.start,
-            end: stage.end,
-            detected: stage.detected,
-            identified: stage.identified,
-            law: stage.law(forced),
-            coefficients: Pairs(stage.known().map(|(known, _)| (known.term.name(), known.value)).collect()),
-            std: Pairs(stage.known().map(|(known, std)| (known.term.name(), std)).collect()),
-            units: stage
-                .known()
-                .filter_map(|(known, _)| Some((known.term.name(), unit_of(known.term, units)?)))
-                .collect(),
-            unidentifiable: stage.unidentifiable.clone(),
-            limit: limit.map(|limit| LimitReport::of(stage, limit)),
-        }
-    }
-}
-
-impl LimitReport {
-    fn of(stage: &Stage, limit: &StageLimit) -> LimitReport {
-        let smallest =
-            || stage.known().filter_map(|(known, std)| Some((known.term.name(), std, limit.std(known.term)?)));
-        LimitReport {
-            coefficient_std: Pairs(smallest().map(|(name, _, least)| (name, least)).collect()),
-            relative_error: limit.relative_error(),
-            explained: limit.explained(),
-            std_to_limit: Pairs(smallest().map(|(name, std, least)| (name, std / least)).collect()),
-        }
-    }
-}
-
 /// Stages with their limits.
-fn stages(run: &Run) -> impl Iterator<Item = (&Stage, Option<&StageLimit>)> {
+pub(super) fn stages(run: &Run) -> impl Iterator<Item = (&Stage, Option<&StageLimit>)> {
     run.found.stages.iter().zip(run.limits.iter().map(Option::as_ref))
 }
 
-fn noise(found: &Identification) -> Vec<(String, f64)> {
+/// Estimated std of the sensors' noise by channel.
+pub(super) fn noise(found: &Identification) -> Vec<(String, f64)> {
     let channels = [("q", found.noise_q), ("qd", found.noise_qd)];
     channels.into_iter().filter_map(|(channel, std)| Some((channel.to_string(), std?))).collect()
 }

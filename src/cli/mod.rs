@@ -10,6 +10,7 @@ mod diagnose;
 mod error;
 mod fmu;
 mod identify;
+mod identify_report;
 mod improve;
 mod input;
 mod limits;
