@@ -18,6 +18,7 @@ pub mod evidence;
 pub mod fmu;
 pub mod identify;
 pub mod law;
+pub mod limits;
 pub mod simulate;
 pub mod weak;
 

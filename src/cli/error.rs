@@ -3,6 +3,7 @@
 use crate::data::DataError;
 use crate::fmu::FmuError;
 use crate::identify::BuildError;
+use crate::limits::LimitsError;
 use crate::simulate::{SimulateError, UnknownBuiltin};
 use thiserror::Error;
 
@@ -112,6 +113,26 @@ pub(super) enum CommandError {
         data: String,
         /// The effect.
         effect: String,
+    },
+    /// A law that has no limits.
+    #[error("{model}: {source}")]
+    Limits {
+        /// The model's file.
+        model: String,
+        /// Why.
+        source: LimitsError,
+    },
+    /// Numbers by name that cannot be read.
+    #[error("--{option} {text}: {reason}; write {example}")]
+    Named {
+        /// The option.
+        option: &'static str,
+        /// What was written.
+        text: String,
+        /// What is wrong.
+        reason: String,
+        /// How it is written.
+        example: &'static str,
     },
     /// A file that would be overwritten.
     #[error("{file}: exists already: name another file with -o, or add --force to overwrite it")]

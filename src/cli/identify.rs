@@ -1,16 +1,16 @@
 //! `switchid identify`: the streaming identifier over a recording.
 
 use super::error::CommandError;
-use super::output::{self, Pairs};
-use super::progress::Progress;
+use super::identify_report::Report;
+use super::output;
+use super::progress::{Progress, Waiting};
+use super::stage_limit::{StageLimit, stage_limits};
 use super::trace::Trace;
 use crate::data::{self, Opened};
 use crate::identify::{self, Gap, Identification, Method, Recording, Settings, Stage};
 use crate::law::{Hold, Model, Term, Units, unit_of};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use serde::Serialize;
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
@@ -59,12 +59,14 @@ pub(super) struct Arguments {
 }
 
 /// What the run rested on.
-struct Run {
-    opened: Opened,
-    settings: Settings,
+pub(super) struct Run {
+    pub(super) opened: Opened,
+    pub(super) settings: Settings,
     /// Who chose the hold.
     hold_from: &'static str,
-    found: Identification,
+    pub(super) found: Identification,
+    /// What any method could reach, stage by stage; none where a stage has no law or no limit.
+    limits: Vec<Option<StageLimit>>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
@@ -72,7 +74,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let opened = data::open_recording(&arguments.data, &model)?;
     let (settings, hold_from) = settings(arguments, &model, &opened.recording)?;
     let found = identify(arguments, &model, settings, &opened.recording)?;
-    let run = Run { opened, settings, hold_from, found };
+    let limits = Waiting::on("looking for the limits", || stage_limits(&found, &opened.recording, &settings));
+    let run = Run { opened, settings, hold_from, found, limits };
     warnings(&run).iter().for_each(|warning| output::complain("warning", warning));
     if arguments.json { output::print_json(&Report::of(&run)) } else { output::print(&text(&run)) }
 }
@@ -138,63 +141,13 @@ fn warnings(run: &Run) -> Vec<String> {
     warnings
 }
 
-#[derive(Serialize)]
-struct Report {
-    stages: Vec<StageReport>,
-    noise: Pairs,
-    hold: &'static str,
-    gaps: Vec<[f64; 2]>,
-    skipped: usize,
+/// Stages with their limits.
+pub(super) fn stages(run: &Run) -> impl Iterator<Item = (&Stage, Option<&StageLimit>)> {
+    run.found.stages.iter().zip(run.limits.iter().map(Option::as_ref))
 }
 
-#[derive(Serialize)]
-struct StageReport {
-    start: f64,
-    end: f64,
-    detected: Option<f64>,
-    identified: Option<f64>,
-    law: Option<String>,
-    coefficients: Pairs,
-    std: Pairs,
-    /// By term, where known.
-    units: BTreeMap<String, String>,
-    unidentifiable: Vec<String>,
-}
-
-impl Report {
-    fn of(run: &Run) -> Report {
-        let Run { opened, settings, found, .. } = run;
-        let forced = settings.channels.excitation;
-        Report {
-            stages: found.stages.iter().map(|stage| StageReport::of(stage, forced, &opened.units)).collect(),
-            noise: Pairs(noise(found)),
-            hold: settings.hold.id(),
-            gaps: opened.recording.gaps().into_iter().map(|gap| [gap.start, gap.end]).collect(),
-            skipped: found.skipped.len(),
-        }
-    }
-}
-
-impl StageReport {
-    fn of(stage: &Stage, forced: bool, units: &Units) -> StageReport {
-        StageReport {
-            start: stage.start,
-            end: stage.end,
-            detected: stage.detected,
-            identified: stage.identified,
-            law: stage.law(forced),
-            coefficients: Pairs(stage.known().map(|(known, _)| (known.term.name(), known.value)).collect()),
-            std: Pairs(stage.known().map(|(known, std)| (known.term.name(), std)).collect()),
-            units: stage
-                .known()
-                .filter_map(|(known, _)| Some((known.term.name(), unit_of(known.term, units)?)))
-                .collect(),
-            unidentifiable: stage.unidentifiable.clone(),
-        }
-    }
-}
-
-fn noise(found: &Identification) -> Vec<(String, f64)> {
+/// Estimated std of the sensors' noise by channel.
+pub(super) fn noise(found: &Identification) -> Vec<(String, f64)> {
     let channels = [("q", found.noise_q), ("qd", found.noise_qd)];
     channels.into_iter().filter_map(|(channel, std)| Some((channel.to_string(), std?))).collect()
 }
@@ -212,9 +165,9 @@ fn text(run: &Run) -> String {
             stage.end
         );
     }
-    for (index, stage) in run.found.stages.iter().enumerate() {
-        let _ =
-            write!(text, "\nstage {}: {}", index + 1, law(stage, run.settings.channels.excitation, &run.opened.units));
+    for (index, (stage, limit)) in stages(run).enumerate() {
+        let law = law(stage, limit, run.settings.channels.excitation, &run.opened.units);
+        let _ = write!(text, "\nstage {}: {law}", index + 1);
     }
     text
 }
@@ -233,13 +186,18 @@ fn head(run: &Run) -> String {
     text
 }
 
-/// The law on one line, its coefficients with their std and units, and what is not known.
-fn law(stage: &Stage, forced: bool, units: &Units) -> String {
+/// The law on one line, its coefficients with their std, units and what any method could reach, and what is not known.
+fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -> String {
     let unknown = "cannot be determined from these data";
     let mut text = stage.law(forced).unwrap_or_else(|| unknown.into()) + "\n";
     for (known, std) in stage.known() {
-        let line =
-            format!("  {:<12} {:>14.6e} ± {std:.1e} {}", known.term.name(), known.value, unit(known.term, units));
+        let line = format!(
+            "  {:<12} {:>14.6e} ± {std:.1e} {}{}",
+            known.term.name(),
+            known.value,
+            unit(known.term, units),
+            times_limit(known.term, std, limit)
+        );
         text = text + line.trim_end() + "\n";
     }
     let open: Vec<String> =
@@ -247,10 +205,19 @@ fn law(stage: &Stage, forced: bool, units: &Units) -> String {
     if !open.is_empty() {
         let _ = writeln!(text, "  not known: {}", open.join(", "));
     }
+    if limit.is_some_and(|limit| !limit.explained()) {
+        text += "  the law leaves more than sensor noise: no comparison with what any method could reach\n";
+    }
     for combination in &stage.unidentifiable {
         let _ = writeln!(text, "  no data of this stage determine {combination}");
     }
     text
+}
+
+/// `(1.1 times the limit)`; empty where the limit is not known or the law is not complete.
+fn times_limit(term: Term, std: f64, limit: Option<&StageLimit>) -> String {
+    let least = limit.filter(|limit| limit.explained()).and_then(|limit| limit.std(term));
+    least.map_or_else(String::new, |least| format!("  ({:.2} times the limit)", std / least))
 }
 
 fn unit(term: Term, units: &Units) -> String {

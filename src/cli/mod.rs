@@ -10,8 +10,10 @@ mod diagnose;
 mod error;
 mod fmu;
 mod identify;
+mod identify_report;
 mod improve;
 mod input;
+mod limits;
 mod output;
 #[cfg(feature = "pictures")]
 mod picture;
@@ -20,6 +22,7 @@ mod picture;
 mod picture;
 mod progress;
 mod simulate;
+mod stage_limit;
 mod trace;
 mod words;
 
@@ -43,6 +46,7 @@ enum Command {
     Improve(improve::Arguments),
     Fmu(fmu::Arguments),
     Identify(identify::Arguments),
+    Limits(limits::Arguments),
     Simulate(simulate::Arguments),
 }
 
@@ -55,6 +59,7 @@ impl Command {
             Command::Improve(arguments) => improve::run(&arguments),
             Command::Fmu(arguments) => fmu::run(&arguments),
             Command::Identify(arguments) => identify::run(&arguments),
+            Command::Limits(arguments) => limits::run(&arguments),
             Command::Simulate(arguments) => simulate::run(&arguments),
         }
     }

@@ -118,11 +118,23 @@ impl<'a> Evidence<'a> {
 ///
 /// None where the record determines no law: too short, no motion.
 pub fn best_of_form(model: &Model, evidence: &Evidence) -> Option<Fit> {
+    best(model, evidence, |_| None)
+}
+
+/// The same with the model's numbers held.
+pub fn best_as_given(model: &Model, evidence: &Evidence) -> Option<Fit> {
+    best(model, evidence, |given| match given {
+        Given::Known(value) => Some(value),
+        _ => None,
+    })
+}
+
+fn best(model: &Model, evidence: &Evidence, held: impl Fn(Given) -> Option<f64>) -> Option<Fit> {
     let forced = evidence.forced();
     let held = |term: Term, given: Given| match (term, given) {
         (Term::Inertia, Given::Known(value)) if !forced => Some(value),
         (Term::Inertia, _) if !forced => Some(1.0),
-        _ => None,
+        _ => held(given),
     };
     let form = Form {
         terms: model.terms.iter().map(|entry| entry.term).collect(),

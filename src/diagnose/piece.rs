@@ -2,7 +2,8 @@
 
 use crate::evidence::Observation;
 use crate::identify::Recording;
-use crate::law::{BandLimited, Drive, Hold, REACH};
+use crate::law::{BandLimited, Drive, Hold, REACH, State};
+use crate::limits::Course;
 use std::ops::Range;
 
 /// Parts that are taken of a long record.
@@ -59,6 +60,12 @@ impl Piece {
             hold: self.hold,
             observations: self.observations[range.start..range.end - 1].to_vec(),
         }
+    }
+
+    /// What a law runs through that moved so, one state per sample.
+    pub fn course(&self, states: &[State]) -> Course {
+        let drives = self.observations.iter().map(|observation| observation.drive).collect();
+        Course { t: self.t.clone(), drives, states: states.to_vec() }
     }
 
     /// Number of samples.

@@ -40,6 +40,19 @@ impl Drive {
         }
     }
 
+    /// The value at a share of the interval, 0 … 1; straight between nodes.
+    pub fn at(&self, share: f64) -> f64 {
+        match self {
+            Drive::Held(value) => *value,
+            Drive::Line(from, to) => from + (to - from) * share,
+            Drive::Nodes(nodes) => {
+                let position = (share * NODES as f64).clamp(0.0, NODES as f64);
+                let index = (position as usize).min(NODES - 1);
+                nodes[index] + (nodes[index + 1] - nodes[index]) * (position - index as f64)
+            }
+        }
+    }
+
     /// How many parts a drive of this hold needs at least for `parts` to be wanted.
     #[inline]
     pub fn parts(&self, wanted: usize) -> usize {
@@ -120,5 +133,15 @@ mod tests {
         let drive = Drive::Line(1.0, 3.0);
         assert_eq!(drive.part(0, 2), [1.0, 1.5, 2.0]);
         assert_eq!(drive.part(1, 2), [2.0, 2.5, 3.0]);
+    }
+
+    #[test]
+    fn a_drive_at_a_share_meets_its_parts() {
+        let nodes = Drive::Nodes(std::array::from_fn(|node| (node * node) as f64));
+        for drive in [Drive::Held(0.7), Drive::Line(1.0, 3.0), nodes] {
+            for (index, value) in drive.part(1, 4).into_iter().enumerate() {
+                assert_eq!(drive.at(0.25 + 0.125 * index as f64), value, "{drive:?}");
+            }
+        }
     }
 }

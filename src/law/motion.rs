@@ -48,6 +48,19 @@ impl Motion<'_> {
         (excitation - force) / self.mass(state.q)
     }
 
+    /// (∂q̈/∂q, ∂q̈/∂q̇) at (q, q̇) under excitation F.
+    pub fn acceleration_gradient(&self, state: State, excitation: f64) -> [f64; 2] {
+        let acceleration = self.acceleration(state, excitation);
+        let mut sums = [0.0; 2];
+        for (term, coefficient) in self.pairs() {
+            let (by_q, by_qd) = term.gradient(state.q, state.qd, excitation);
+            sums[0] += coefficient * (by_q + term.mass_gradient(state.q) * acceleration);
+            sums[1] += coefficient * by_qd;
+        }
+        let mass = self.mass(state.q);
+        sums.map(|sum| -sum / mass)
+    }
+
     /// The state `dt` later under an excitation that stays at `excitation`.
     pub fn step_held(&self, state: State, dt: f64, excitation: f64) -> State {
         self.step_linear(state, dt, excitation, excitation)
@@ -114,6 +127,20 @@ mod tests {
         let phase = frequency * 3.0;
         let expected = 0.5 * (1.0 - (-decay * 3.0).exp() * (phase.cos() + decay / frequency * phase.sin()));
         assert!((state.q - expected).abs() < 1e-12, "{} against {expected}", state.q);
+    }
+
+    #[test]
+    fn the_gradient_of_the_acceleration_is_that_of_its_differences() {
+        let terms =
+            [Term::Inertia, Term::Effect(Effect::PositionDependentInertia), Term::power(1, 0), Term::power(2, 1)];
+        let motion = Motion { terms: &terms, coefficients: &[1.0, 0.5, 4.0, 0.7] };
+        let at = |q: f64, qd: f64| motion.acceleration(State { q: 0.8 + q, qd: -0.3 + qd }, 1.2);
+        let eps = 1e-6;
+        let differences = [at(eps, 0.0) - at(-eps, 0.0), at(0.0, eps) - at(0.0, -eps)];
+        let gradient = motion.acceleration_gradient(State { q: 0.8, qd: -0.3 }, 1.2);
+        for (slope, difference) in gradient.into_iter().zip(differences) {
+            assert!((slope - difference / (2.0 * eps)).abs() < 1e-8, "{slope}");
+        }
     }
 
     #[test]

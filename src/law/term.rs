@@ -180,6 +180,15 @@ impl Term {
         }
     }
 
+    /// ∂/∂q of [`Term::mass`].
+    #[inline]
+    pub fn mass_gradient(self, q: f64) -> f64 {
+        match self {
+            Term::Effect(Effect::PositionDependentInertia) => 2.0 * q,
+            _ => 0.0,
+        }
+    }
+
     /// The named effect that the term is, if it is one.
     #[inline]
     pub fn effect(self) -> Option<Effect> {

@@ -6,4 +6,5 @@ mod compare;
 mod diagnose;
 mod fmu;
 mod good_input;
+mod limits;
 mod units;

@@ -1,0 +1,93 @@
+//! The JSON document of `switchid identify`.
+
+use super::identify::{Run, noise, stages};
+use super::output::Pairs;
+use super::stage_limit::StageLimit;
+use crate::identify::Stage;
+use crate::law::{Units, unit_of};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The JSON document of `switchid identify`.
+#[derive(Serialize)]
+pub(super) struct Report {
+    stages: Vec<StageReport>,
+    noise: Pairs,
+    hold: &'static str,
+    gaps: Vec<[f64; 2]>,
+    skipped: usize,
+}
+
+#[derive(Serialize)]
+struct StageReport {
+    start: f64,
+    end: f64,
+    detected: Option<f64>,
+    identified: Option<f64>,
+    law: Option<String>,
+    coefficients: Pairs,
+    std: Pairs,
+    /// By term, where known.
+    units: BTreeMap<String, String>,
+    unidentifiable: Vec<String>,
+    /// What any method could reach on this stage; null where that is not known.
+    limit: Option<LimitReport>,
+}
+
+#[derive(Serialize)]
+struct LimitReport {
+    /// Smallest std by term.
+    coefficient_std: Pairs,
+    relative_error: Option<f64>,
+    /// Whether the law explains the stage down to its sensors' noise.
+    explained: bool,
+    /// Stated std ÷ smallest std.
+    std_to_limit: Pairs,
+}
+
+impl Report {
+    pub(super) fn of(run: &Run) -> Report {
+        let Run { opened, settings, found, .. } = run;
+        let forced = settings.channels.excitation;
+        Report {
+            stages: stages(run).map(|(stage, limit)| StageReport::of(stage, limit, forced, &opened.units)).collect(),
+            noise: Pairs(noise(found)),
+            hold: settings.hold.id(),
+            gaps: opened.recording.gaps().into_iter().map(|gap| [gap.start, gap.end]).collect(),
+            skipped: found.skipped.len(),
+        }
+    }
+}
+
+impl StageReport {
+    fn of(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -> StageReport {
+        StageReport {
+            start: stage.start,
+            end: stage.end,
+            detected: stage.detected,
+            identified: stage.identified,
+            law: stage.law(forced),
+            coefficients: Pairs(stage.known().map(|(known, _)| (known.term.name(), known.value)).collect()),
+            std: Pairs(stage.known().map(|(known, std)| (known.term.name(), std)).collect()),
+            units: stage
+                .known()
+                .filter_map(|(known, _)| Some((known.term.name(), unit_of(known.term, units)?)))
+                .collect(),
+            unidentifiable: stage.unidentifiable.clone(),
+            limit: limit.map(|limit| LimitReport::of(stage, limit)),
+        }
+    }
+}
+
+impl LimitReport {
+    fn of(stage: &Stage, limit: &StageLimit) -> LimitReport {
+        let smallest =
+            || stage.known().filter_map(|(known, std)| Some((known.term.name(), std, limit.std(known.term)?)));
+        LimitReport {
+            coefficient_std: Pairs(smallest().map(|(name, _, least)| (name, least)).collect()),
+            relative_error: limit.relative_error(),
+            explained: limit.explained(),
+            std_to_limit: Pairs(smallest().map(|(name, std, least)| (name, std / least)).collect()),
+        }
+    }
+}

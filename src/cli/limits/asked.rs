@@ -1,0 +1,112 @@
+//! What the user asked for: noise and changes by name.
+
+use super::super::error::CommandError;
+use super::Arguments;
+use crate::evidence::Noise;
+use crate::identify::Recording;
+use crate::law::{Model, ModelError, Term};
+use crate::limits::Sensors;
+
+/// Noise std ÷ largest value below which a record counts as free of noise.
+const NOISELESS: f64 = 1e-6;
+
+/// Options, read.
+pub(super) struct Asked {
+    /// Std of the noise of q and q̇ where named.
+    noise: [Option<f64>; 2],
+    /// New coefficients.
+    pub(super) change: Vec<(Term, f64)>,
+    /// Mean time between two false alarms, s.
+    pub(super) false_alarm_interval: f64,
+}
+
+impl Asked {
+    /// Reads the options.
+    ///
+    /// # Errors
+    /// What cannot be read, by option and text.
+    pub(super) fn read(arguments: &Arguments, model: &Model) -> Result<Asked, CommandError> {
+        let interval = arguments.false_alarm_interval;
+        if !(interval > 0.0 && interval.is_finite()) {
+            let (option, range) = ("false-alarm-interval", "a positive number of seconds");
+            return Err(CommandError::Option { option, value: interval, range });
+        }
+        let mut noise = [None; 2];
+        for text in &arguments.noise {
+            let (channel, std) = std_of(text)?;
+            noise[channel] = Some(std);
+        }
+        let change = arguments.change.iter().map(|text| change(text, model)).collect::<Result<_, _>>()?;
+        Ok(Asked { noise, change, false_alarm_interval: interval })
+    }
+
+    /// The sensors of a recording: as named, else as estimated.
+    ///
+    /// # Errors
+    /// Noise of a quantity that is not measured.
+    pub(super) fn sensors(&self, recording: &Recording, estimated: &Noise) -> Result<Sensors, CommandError> {
+        let measured = [recording.channels().q, recording.channels().qd];
+        let std = [0, 1].map(|channel| {
+            let std = self.noise[channel].unwrap_or_else(|| estimated.sensor[channel].sqrt());
+            measured[channel].then_some(std)
+        });
+        for (channel, name) in ["q", "qd"].into_iter().enumerate() {
+            if let (Some(named), false) = (self.noise[channel], measured[channel]) {
+                let reason = format!("{} has no {name}", recording.source());
+                return Err(named_error("noise", &format!("{name}={named}"), &reason));
+            }
+        }
+        Ok(Sensors(std))
+    }
+
+    /// Whether noise that was not named is estimated as none.
+    pub(super) fn noise_is_too_small(&self, sensors: &Sensors, recording: &Recording) -> bool {
+        let samples = || (0..recording.count()).map(|index| recording.sample(index));
+        let largest = [
+            samples().map(|sample| sample.q.abs()).fold(0.0, f64::max),
+            samples().map(|sample| sample.qd.abs()).fold(0.0, f64::max),
+        ];
+        let small = |channel: usize| sensors.0[channel].is_some_and(|std| std < NOISELESS * largest[channel]);
+        (0..2).any(|channel| self.noise[channel].is_none() && small(channel))
+    }
+}
+
+/// `q=0.001`: the channel and its std.
+fn std_of(text: &str) -> Result<(usize, f64), CommandError> {
+    let refuse = |reason: &str| named_error("noise", text, reason);
+    let (name, value) = text.split_once('=').ok_or_else(|| refuse("there is no \"=\""))?;
+    let channel = ["q", "qd"].iter().position(|channel| *channel == name.trim());
+    let channel = channel.ok_or_else(|| refuse(&format!("there is no sensor \"{}\"", name.trim())))?;
+    let std = value.trim().parse().ok().filter(|std: &f64| *std > 0.0 && std.is_finite());
+    Ok((channel, std.ok_or_else(|| refuse("the std must be a positive number"))?))
+}
+
+/// `q^3=4`: the term and its new coefficient.
+fn change(text: &str, model: &Model) -> Result<(Term, f64), CommandError> {
+    let refuse = |reason: &str| named_error("change", text, reason);
+    let (name, value) = text.rsplit_once('=').ok_or_else(|| refuse("there is no \"=\""))?;
+    let value = value.trim().parse().ok().filter(|value: &f64| value.is_finite());
+    let value = value.ok_or_else(|| refuse("the new coefficient must be a number"))?;
+    let term = match model.named(name.trim()) {
+        Ok(entry) => entry.term,
+        Err(ModelError::Term { source }) => return Err(refuse(&source.to_string())),
+        Err(source) => return Err(refuse(&source.to_string())),
+    };
+    let own = model.terms.iter().find(|entry| entry.key == name.trim() || entry.term.name() == term.name());
+    match own {
+        Some(entry) => Ok((entry.term, value)),
+        None if model.inner_names(term).is_empty() || !term.is_pointwise() => Ok((term, value)),
+        None => {
+            let inner = model.inner_names(term).join(", ");
+            Err(refuse(&format!("{term} has inner parameters ({inner}): give the model this term with the number 0")))
+        }
+    }
+}
+
+fn named_error(option: &'static str, text: &str, reason: &str) -> CommandError {
+    let example = match option {
+        "noise" => "--noise q=0.001,qd=0.01 with the std of what is measured",
+        _ => "--change TERM=VALUE, as in --change linear_damping=0.6 or --change q^3=4",
+    };
+    CommandError::Named { option, text: text.into(), reason: reason.into(), example }
+}
