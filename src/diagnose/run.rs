@@ -7,11 +7,8 @@
 
 use super::piece::Piece;
 use crate::evidence::{Channel, Filter, Innovation, Noise, Observation, Pass, gains};
-use crate::law::{Drive, Effect, Motion, State, Term};
+use crate::law::{Drive, Motion, State, Term};
 use nalgebra::{DMatrix, DVector};
-
-/// Parts into which an interval is cut under a law whose force jumps: the instant of a jump is known to within one.
-const PARTS_OF_A_JUMP: usize = 4;
 
 /// The law that runs: terms of the state, and series beside them.
 #[derive(Clone, Copy, Debug)]
@@ -170,9 +167,6 @@ pub fn run(
     let (mut carried, mut tried) = (Carried::new(extra), Carried::new(kinds));
     let mut unknowns = vec![0.0; n + extra];
     pass.begin(first_state(piece, &law.noise));
-    if law.terms.iter().any(|term| jumps(*term)) {
-        pass.parts = pass.parts.max(PARTS_OF_A_JUMP);
-    }
     for (k, observation) in piece.observations.iter().enumerate() {
         let observation = beside(observation, law.series, series.get(k));
         let innovations = pass.step(&motion, &free, &law.noise, &observation);
@@ -213,11 +207,6 @@ impl Outcome {
             finite: true,
         }
     }
-}
-
-/// Whether the term's force jumps where the velocity reverses.
-fn jumps(term: Term) -> bool {
-    matches!(term, Term::Effect(Effect::CoulombFriction | Effect::StribeckFriction { .. }))
 }
 
 /// The observation with the series' forces taken off its excitation.

@@ -3,7 +3,7 @@
 use super::filter::{Channel, Filter, Innovation, Noise};
 use super::information::Information;
 use super::symmetric::{Lane, LogSum, WIDTH};
-use crate::law::{Compiled, Drive, Linearized, Motion, State, Term};
+use crate::law::{Compiled, Drive, Linearized, Motion, Sliding, State, Term};
 use serde::{Deserialize, Serialize};
 
 /// Ratio by which the process noise of the two rival filters differs from the one in use.
@@ -213,21 +213,38 @@ impl Pass {
     fn advance(&mut self, noise: &Noise, observation: &Observation) {
         let parts = observation.drive.parts(self.parts);
         let dt = observation.dt / parts as f64;
+        let mut first = true;
         for part in 0..parts {
             let excitation = observation.drive.part(part, parts);
-            let step = self.compiled.linearized_step(self.filter.state, dt, excitation, &mut self.slopes);
-            self.fastest = self.fastest.max(step.rate * (parts * parts) as f64);
-            match part {
-                0 => self.map.set(&step, &self.slopes),
-                _ => self.map.append(&step, &self.slopes),
+            if self.compiled.is_dry() {
+                let mut sliding = Sliding::new(&self.compiled, self.filter.state, dt, excitation);
+                while let Some((step, duration)) = sliding.next(&self.compiled, &mut self.slopes) {
+                    self.take(&step, duration, noise, first);
+                    first = false;
+                    self.fastest = self.fastest.max(step.rate * (parts * parts) as f64);
+                }
+            } else {
+                let step = self.compiled.linearized_step(self.filter.state, dt, excitation, &mut self.slopes);
+                self.take(&step, dt, noise, first);
+                first = false;
+                self.fastest = self.fastest.max(step.rate * (parts * parts) as f64);
             }
-            for (rival, ratio) in self.rival_filters.iter_mut().zip(RIVALS) {
-                rival.state = beside(&step, self.filter.state, rival.state);
-                rival.predict(&step, dt, noise.process * ratio);
-            }
-            self.filter.state = step.state;
-            self.filter.predict(&step, dt, noise.process);
         }
+    }
+
+    /// Goes a smooth step, `dt` long, the first of its interval or another.
+    #[inline]
+    fn take(&mut self, step: &Linearized, dt: f64, noise: &Noise, first: bool) {
+        match first {
+            true => self.map.set(step, &self.slopes),
+            false => self.map.append(step, &self.slopes),
+        }
+        for (rival, ratio) in self.rival_filters.iter_mut().zip(RIVALS) {
+            rival.state = beside(step, self.filter.state, rival.state);
+            rival.predict(step, dt, noise.process * ratio);
+        }
+        self.filter.state = step.state;
+        self.filter.predict(step, dt, noise.process);
     }
 
     #[inline]
