@@ -4,8 +4,9 @@
 //! likelihood, sensor noise from the innovations, process noise from two rival filters, from much of it down to what the data want.
 //! Terms that no state gives (memory, delay, expressions of time) are series along the smoothed motion, renewed with it.
 
+use super::beside::Beside;
 use super::diagnosis::effect_name;
-use super::means::{self, is_series};
+use super::means::is_series;
 use super::piece::Piece;
 use super::run::{self, Law, Outcome, Sums};
 use super::smooth::smooth;
@@ -71,6 +72,8 @@ pub struct Fit {
     pub measurements: f64,
     /// Smoothed states at every sample, one list per piece.
     pub states: Vec<Vec<State>>,
+    /// How far from rest the memories of its effects began, piece by piece.
+    pub beginnings: Vec<f64>,
 }
 
 impl Form {
@@ -148,8 +151,8 @@ struct Descent<'a> {
     parts: Parts,
     coefficients: Vec<f64>,
     noise: Noise,
-    /// Mean forces of the series, by piece and interval.
-    series: Vec<Vec<Vec<f64>>>,
+    /// The series.
+    beside: Beside,
 }
 
 /// The terms of a form by the way they enter a run.
@@ -201,11 +204,11 @@ pub fn fit(form: &Form, pieces: &[Piece]) -> Option<Fit> {
 /// Fits the form from coefficients and noise that are near already. The likelihood may have two maxima, one that leaves error to the law
 /// and one that leaves it all to the sensors: both are tried.
 pub fn refit(form: &Form, pieces: &[Piece], coefficients: &[f64], noise: Noise) -> Option<Fit> {
-    let series = vec![Vec::new(); pieces.len()];
     let parts = Parts::of(form);
     let mut pass = Pass::new(parts.free.len());
-    let mut descent = Descent { form, pieces, parts, coefficients: coefficients.to_vec(), noise, series };
-    descent.begin_series(&mut pass);
+    let beside = Beside::none(form, &parts, pieces);
+    let mut descent = Descent { form, pieces, parts, coefficients: coefficients.to_vec(), noise, beside };
+    descent.renew_series(&mut pass);
     let mut loud = descent.descend(&mut pass)?;
     loud.log_likelihood_if_right = descent.quieten(&mut pass, loud.log_likelihood);
     if loud.log_likelihood_if_right <= loud.log_likelihood {
@@ -226,25 +229,26 @@ impl Descent<'_> {
             if outcomes.iter().any(|outcome| !outcome.finite) {
                 self.noise.process *= 100.0;
                 self.coefficients.clone_from(&best.as_ref()?.coefficients);
+                self.beside.set(&best.as_ref()?.beginnings);
                 calm = 0;
                 continue;
             }
-            let sums = total(&outcomes);
+            let mut sums = total(&outcomes);
+            let log_likelihood = self.log_likelihood(&outcomes, &sums);
+            self.beside.add_prior(&mut sums);
             let solved = solve(&sums.information, &sums.score)?;
             let decrement = solved.step.dot(&sums.score) / self.parts.unknowns.len().max(1) as f64;
-            best = Some(self.summary(&outcomes, solved.covariance, sums.count));
+            best = Some(self.summary(log_likelihood, solved.covariance, sums.count));
             let steady = move_noise(&mut self.noise, &outcomes, start::largest(self.pieces));
             calm = if steady && decrement < SETTLED.max(1e-9 * sums.count) { calm + 1 } else { 0 };
             if calm >= 2 {
                 break;
             }
             self.take(&solved.step);
-            if !self.parts.series.is_empty() {
-                let states = self.smoothed(&outcomes);
-                self.take_series(&states);
-            }
+            self.take_series(&outcomes);
         }
         let mut best = best?;
+        self.beside.set(&best.beginnings);
         (self.coefficients, self.noise) = (best.coefficients.clone(), best.noise);
         best.states = self.smoothed(&self.run(pass));
         Some(best)
@@ -261,16 +265,18 @@ impl Descent<'_> {
             if outcomes.iter().any(|outcome| !outcome.finite) {
                 return reached;
             }
-            let log_likelihood = outcomes.iter().map(|outcome| outcome.log_likelihood).sum::<f64>();
+            let mut sums = total(&outcomes);
+            let log_likelihood = self.log_likelihood(&outcomes, &sums);
+            self.beside.add_prior(&mut sums);
             let gained = log_likelihood - reached;
             reached = reached.max(log_likelihood);
-            let sums = total(&outcomes);
             let Some(solved) = solve(&sums.information, &sums.score) else { return reached };
             move_noise(&mut self.noise, &outcomes, largest);
             if gained.abs() < GAIN || loud - reached > HOPELESS * gained {
                 return reached;
             }
             self.take(&solved.step);
+            self.take_series(&outcomes);
         }
         reached
     }
@@ -278,7 +284,7 @@ impl Descent<'_> {
     fn run(&self, pass: &mut Pass) -> Vec<Outcome> {
         let terms: Vec<Term> = self.parts.of_state.iter().map(|index| self.form.terms[*index]).collect();
         let coefficients: Vec<f64> = self.parts.of_state.iter().map(|index| self.coefficients[*index]).collect();
-        let series: Vec<f64> = self.parts.series.iter().map(|index| self.coefficients[*index]).collect();
+        let series = self.beside.weights(&self.parts, &self.coefficients);
         let law = Law {
             terms: &terms,
             coefficients: &coefficients,
@@ -286,44 +292,47 @@ impl Descent<'_> {
             series: &series,
             noise: self.noise,
         };
-        let pairs = self.pieces.iter().zip(&self.series);
-        pairs.map(|(piece, series)| run::run(&law, piece, pass, series, &[], &[])).collect()
+        let pairs = self.pieces.iter().zip(&self.beside.rows);
+        pairs.map(|(piece, rows)| run::run(&law, piece, pass, rows, &[], &[])).collect()
     }
 
     /// Series need a motion before there is one: that of the law without them.
-    fn begin_series(&mut self, pass: &mut Pass) {
-        if self.parts.series.is_empty() {
-            return;
+    fn renew_series(&mut self, pass: &mut Pass) {
+        if !self.parts.series.is_empty() {
+            let outcomes = self.run(pass);
+            self.take_series(&outcomes);
         }
-        let zeros = vec![0.0; self.parts.series.len()];
-        self.series = self.pieces.iter().map(|piece| vec![zeros.clone(); piece.len() - 1]).collect();
-        let states = self.smoothed(&self.run(pass));
-        self.take_series(&states);
     }
 
-    fn take_series(&mut self, states: &[Vec<State>]) {
-        let terms: Vec<Term> = self.parts.series.iter().map(|index| self.form.terms[*index]).collect();
-        let columns = |piece: &Piece, states: &[State]| -> Vec<Vec<f64>> {
-            terms.iter().map(|term| means::means(*term, &self.form.expressions, piece, states)).collect()
-        };
-        let pairs = self.pieces.iter().zip(states);
-        self.series = pairs.map(|(piece, states)| means::rows(&columns(piece, states))).collect();
+    fn take_series(&mut self, outcomes: &[Outcome]) {
+        if !self.parts.series.is_empty() {
+            let states = self.smoothed(outcomes);
+            let beginnings = self.beside.beginnings(self.form, &self.parts);
+            self.beside = Beside::along(self.form, &self.coefficients, self.pieces, &states, &beginnings);
+        }
+    }
+
+    /// Of all pieces, the price of unknown beginnings taken off; `sums` without their prior.
+    fn log_likelihood(&self, outcomes: &[Outcome], sums: &Sums) -> f64 {
+        outcomes.iter().map(|outcome| outcome.log_likelihood).sum::<f64>() - self.beside.price(sums)
     }
 
     fn smoothed(&self, outcomes: &[Outcome]) -> Vec<Vec<State>> {
         self.pieces.iter().zip(outcomes).map(|(piece, outcome)| smooth(piece, &outcome.steps)).collect()
     }
 
-    fn summary(&self, outcomes: &[Outcome], covariance: DMatrix<f64>, measurements: f64) -> Fit {
+    fn summary(&self, log_likelihood: f64, covariance: DMatrix<f64>, measurements: f64) -> Fit {
+        let sought = self.parts.unknowns.len();
         Fit {
             form: self.form.clone(),
             coefficients: self.coefficients.clone(),
-            covariance,
+            covariance: covariance.view((0, 0), (sought, sought)).into_owned(),
             noise: self.noise,
-            log_likelihood: outcomes.iter().map(|outcome| outcome.log_likelihood).sum(),
+            log_likelihood,
             log_likelihood_if_right: f64::NEG_INFINITY,
             measurements,
             states: Vec::new(),
+            beginnings: self.beside.beginnings(self.form, &self.parts),
         }
     }
 
@@ -341,6 +350,7 @@ impl Descent<'_> {
         for (index, change) in self.parts.unknowns.iter().zip(step.iter()) {
             self.coefficients[*index] += fraction * change;
         }
+        self.beside.take(step.as_slice(), fraction);
     }
 }
 

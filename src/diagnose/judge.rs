@@ -89,9 +89,10 @@ impl Trial {
         self.fit.std(self.fit.coefficients.len() - 1)
     }
 
-    /// Probability of a gain this large by chance, were the candidate not there and `tried` of them looked at.
+    /// Probability of a gain this large by chance, were the candidate not there and `tried` of them looked at; what its inner
+    /// parameters would gain by chance is no gain.
     pub fn p_value(&self, tried: usize) -> f64 {
-        (tried as f64 * chance(2.0 * self.gain)).min(1.0)
+        (tried as f64 * chance(2.0 * self.merit())).min(1.0)
     }
 
     /// Whether this one is better than the other beyond what the record can tell.

@@ -3,6 +3,7 @@
 //! The score test (Rao 1948): with M and g the information and score of the unknowns, c, i and s those of a candidate beside them,
 //! the candidate's own information is i − cᵀM⁻¹c, its own score s − cᵀM⁻¹g, and its gain in log-likelihood ½ score² ÷ information.
 
+use super::beside::Beside;
 use super::fit::{Fit, Parts, solve};
 use super::means;
 use super::piece::Piece;
@@ -53,25 +54,26 @@ pub(super) fn sums(fit: &Fit, pieces: &[Piece], candidates: &Columns) -> Vec<Sum
     let parts = Parts::of(&fit.form);
     let pick = |positions: &[usize]| -> Vec<f64> { positions.iter().map(|index| fit.coefficients[*index]).collect() };
     let terms: Vec<Term> = parts.of_state.iter().map(|index| fit.form.terms[*index]).collect();
-    let beside: Vec<Term> = parts.series.iter().map(|index| fit.form.terms[*index]).collect();
-    let (of_state, of_series) = (pick(&parts.of_state), pick(&parts.series));
+    let beside = Beside::along(&fit.form, &fit.coefficients, pieces, &fit.states, &fit.beginnings);
+    let (of_state, of_series) = (pick(&parts.of_state), beside.weights(&parts, &fit.coefficients));
     let law = Law { terms: &terms, coefficients: &of_state, free: &parts.free, series: &of_series, noise: fit.noise };
+    let unknowns = parts.free.len() + of_series.len();
     let samples: usize = pieces.iter().map(|piece| piece.len() - 1).sum();
     let mut all: Vec<Sums> = Vec::new();
     let mut before = 0;
     let mut pass = Pass::new(parts.free.len());
-    for (piece, states) in pieces.iter().zip(&fit.states) {
-        let rows = [columns(&beside, &fit.form.expressions, piece, states), candidates(piece, states)]
-            .map(|columns| means::rows(&columns));
+    for ((piece, states), series) in pieces.iter().zip(&fit.states).zip(&beside.rows) {
+        let rows = means::rows(&candidates(piece, states));
         let stretch = |k: usize| (before + k) * STRETCHES / samples.max(1);
         let stretches: Vec<usize> = (0..piece.len() - 1).map(stretch).collect();
         before += piece.len() - 1;
-        let outcome = run::run(&law, piece, &mut pass, &rows[0], &rows[1], &stretches);
+        let outcome = run::run(&law, piece, &mut pass, series, &rows, &stretches);
         if all.is_empty() {
-            all = vec![Sums::none(parts.unknowns.len(), rows[1].first().map_or(0, Vec::len)); STRETCHES];
+            all = vec![Sums::none(unknowns, rows.first().map_or(0, Vec::len)); STRETCHES];
         }
         all.iter_mut().zip(&outcome.sums).for_each(|(sum, other)| sum.merge(other));
     }
+    all.first_mut().into_iter().for_each(|sums| beside.add_prior(sums));
     all
 }
 

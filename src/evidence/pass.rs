@@ -3,7 +3,7 @@
 use super::filter::{Channel, Filter, Innovation, Noise};
 use super::information::Information;
 use super::symmetric::{Lane, LogSum, WIDTH};
-use crate::law::{Compiled, Drive, Linearized, Motion, Sliding, State, Term};
+use crate::law::{Compiled, Drive, Linearized, Motion, State, Term};
 use serde::{Deserialize, Serialize};
 
 /// Ratio by which the process noise of the two rival filters differs from the one in use.
@@ -216,35 +216,22 @@ impl Pass {
         let mut first = true;
         for part in 0..parts {
             let excitation = observation.drive.part(part, parts);
-            if self.compiled.is_dry() {
-                let mut sliding = Sliding::new(&self.compiled, self.filter.state, dt, excitation);
-                while let Some((step, duration)) = sliding.next(&self.compiled, &mut self.slopes) {
-                    self.take(&step, duration, noise, first);
-                    first = false;
-                    self.fastest = self.fastest.max(step.rate * (parts * parts) as f64);
+            let Pass { compiled, slopes, map, rival_filters, filter, fastest, .. } = self;
+            compiled.steps(filter.state, dt, excitation, slopes, |step, dt, slopes| {
+                match first {
+                    true => map.set(step, slopes),
+                    false => map.append(step, slopes),
                 }
-            } else {
-                let step = self.compiled.linearized_step(self.filter.state, dt, excitation, &mut self.slopes);
-                self.take(&step, dt, noise, first);
                 first = false;
-                self.fastest = self.fastest.max(step.rate * (parts * parts) as f64);
-            }
+                *fastest = fastest.max(step.rate * (parts * parts) as f64);
+                for (rival, ratio) in rival_filters.iter_mut().zip(RIVALS) {
+                    rival.state = beside(step, filter.state, rival.state);
+                    rival.predict(step, dt, noise.process * ratio);
+                }
+                filter.state = step.state;
+                filter.predict(step, dt, noise.process);
+            });
         }
-    }
-
-    /// Goes a smooth step, `dt` long, the first of its interval or another.
-    #[inline]
-    fn take(&mut self, step: &Linearized, dt: f64, noise: &Noise, first: bool) {
-        match first {
-            true => self.map.set(step, &self.slopes),
-            false => self.map.append(step, &self.slopes),
-        }
-        for (rival, ratio) in self.rival_filters.iter_mut().zip(RIVALS) {
-            rival.state = beside(step, self.filter.state, rival.state);
-            rival.predict(step, dt, noise.process * ratio);
-        }
-        self.filter.state = step.state;
-        self.filter.predict(step, dt, noise.process);
     }
 
     #[inline]

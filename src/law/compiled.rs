@@ -220,9 +220,9 @@ impl Compiled {
         self.inverse_mass = self.mass[0].recip();
     }
 
-    /// Whether the law has dry friction, so that a step is to be cut where the velocity reverses: by [`super::Sliding`].
+    /// Whether the law has dry friction, so that a step is to be cut where the velocity reverses.
     #[inline]
-    pub fn is_dry(&self) -> bool {
+    pub(super) fn is_dry(&self) -> bool {
         self.dry
     }
 

@@ -24,7 +24,7 @@ impl<'a> Trajectory<'a> {
         Samples { t: self.t, excitation: self.excitation, hold: self.hold }
     }
 
-    fn state(&self, index: usize) -> State {
+    pub(super) fn state(&self, index: usize) -> State {
         State { q: self.q[index], qd: self.qd[index] }
     }
 
@@ -104,7 +104,7 @@ fn follow(effect: Effect, trajectory: &Trajectory, k: usize, memory: [f64; LARGE
     })
 }
 
-fn runge_kutta(effect: Effect, states: [State; 3], memory: [f64; LARGEST], dt: f64) -> [f64; LARGEST] {
+pub(super) fn runge_kutta(effect: Effect, states: [State; 3], memory: [f64; LARGEST], dt: f64) -> [f64; LARGEST] {
     let moved = |slope: &[f64; LARGEST], dt: f64| std::array::from_fn(|index| memory[index] + dt * slope[index]);
     let at = |state: usize, memory: [f64; LARGEST]| effect.memory_slope(states[state], &memory);
     let first = at(0, memory);

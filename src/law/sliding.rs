@@ -17,9 +17,32 @@ const NEGLIGIBLE: f64 = 1e-13;
 /// Largest factor by which a reversal may change δq̇: friction makes it smaller, a force that pushes could make it anything.
 const LARGEST_RATIO: f64 = 10.0;
 
+impl Compiled {
+    /// The step `dt` long under an excitation with these values at its start, middle and end, cut where dry friction reverses. `take` gets
+    /// every smooth piece, its duration, s, and ∂q̈/∂θ of the free terms, which are as many as `slopes`.
+    #[inline]
+    pub fn steps(
+        &self,
+        state: State,
+        dt: f64,
+        excitation: [f64; 3],
+        slopes: &mut [f64],
+        mut take: impl FnMut(&Linearized, f64, &[f64]),
+    ) {
+        if !self.is_dry() {
+            let step = self.linearized_step(state, dt, excitation, slopes);
+            return take(&step, dt, slopes);
+        }
+        let mut sliding = Sliding::new(self, state, dt, excitation);
+        while let Some((step, duration)) = sliding.next(self, slopes) {
+            take(&step, duration, slopes);
+        }
+    }
+}
+
 /// Where a step under dry friction stands. Its pieces are smooth steps, and jumps of no duration between them.
 #[derive(Clone, Copy, Debug)]
-pub struct Sliding {
+struct Sliding {
     state: State,
     dt: f64,
     excitation: [f64; 3],
@@ -33,7 +56,7 @@ pub struct Sliding {
 
 impl Sliding {
     /// A step `dt` long under an excitation with these values at its start, middle and end.
-    pub fn new(law: &Compiled, state: State, dt: f64, excitation: [f64; 3]) -> Sliding {
+    fn new(law: &Compiled, state: State, dt: f64, excitation: [f64; 3]) -> Sliding {
         let start = Sliding { state, dt, excitation, done: 0.0, direction: state.qd.signum(), jump: None, cuts: 0 };
         match state.qd {
             0.0 => Sliding { direction: start.direction_at(law, 0.0), ..start },
@@ -42,8 +65,7 @@ impl Sliding {
     }
 
     /// The next piece and its duration, s; none at the end of the step. Writes ∂q̈/∂θ of the free terms into `slopes`.
-    #[inline]
-    pub fn next(&mut self, law: &Compiled, slopes: &mut [f64]) -> Option<(Linearized, f64)> {
+    fn next(&mut self, law: &Compiled, slopes: &mut [f64]) -> Option<(Linearized, f64)> {
         if let Some(ratio) = self.jump.take() {
             return Some((self.standing([1.0, ratio]), 0.0));
         }
@@ -220,7 +242,8 @@ mod tests {
         for (coefficients, duration) in [(SLIPS, 0.2), (STICKS, 0.9)] {
             let found = end(&coefficients, START, duration, 512);
             let eps = 1e-6;
-            let difference = |plus: State, minus: State| [plus.q - minus.q, plus.qd - minus.qd].map(|d| d / (2.0 * eps));
+            let difference =
+                |plus: State, minus: State| [plus.q - minus.q, plus.qd - minus.qd].map(|d| d / (2.0 * eps));
             for (column, (q, qd)) in [(eps, 0.0), (0.0, eps)].into_iter().enumerate() {
                 let moved = |sign: f64| State { q: START.q + sign * q, qd: START.qd + sign * qd };
                 let [plus, minus] = [1.0, -1.0].map(|sign| end(&coefficients, moved(sign), duration, 512).state);
