@@ -81,11 +81,8 @@ fn stage_limit(stage: &Stage, noise: Noise, section: &Recording, settings: &Sett
 
 /// The motion of a stage as its law and its readings together tell it, and the fit that says so.
 fn motion(pairs: &[(Term, f64)], section: &Recording, settings: &Settings, noise: Noise) -> Option<(Vec<Course>, Fit)> {
-    let form = Form {
-        terms: pairs.iter().map(|(term, _)| *term).collect(),
-        held: pairs.iter().map(|(_, value)| Some(*value)).collect(),
-        expressions: Vec::new(),
-    };
+    let (terms, held) = pairs.iter().map(|(term, value)| (*term, Some(*value))).unzip();
+    let form = Form::new(terms, held, Vec::new());
     let evidence = Evidence::new(&[(section, settings.hold)]);
     let coefficients: Vec<f64> = pairs.iter().map(|(_, value)| *value).collect();
     let motion = refit(&form, &evidence.pieces, &coefficients, noise)?;

@@ -4,9 +4,10 @@
 //! likelihood, sensor noise from the innovations, process noise from two rival filters, from much of it down to what the data want.
 //! Terms that no state gives (memory, delay, expressions of time) are series along the smoothed motion, renewed with it.
 
+use super::beside::Beside;
 use super::diagnosis::effect_name;
 use super::inner_slopes::{self, Sought};
-use super::means::{self, is_series};
+use super::means::is_series;
 use super::piece::Piece;
 use super::run::{self, Law, Outcome, Sums};
 use super::smooth::smooth;
@@ -75,9 +76,16 @@ pub struct Fit {
     pub measurements: f64,
     /// Smoothed states at every sample, one list per piece.
     pub states: Vec<Vec<State>>,
+    /// How far from rest the memories of its effects began, piece by piece.
+    pub beginnings: Vec<f64>,
 }
 
 impl Form {
+    /// A form of these terms, inner parameters as they are; `held` says which coefficients are known.
+    pub fn new(terms: Vec<Term>, held: Vec<Option<f64>>, expressions: Vec<Expression>) -> Form {
+        Form { open: vec![Vec::new(); terms.len()], terms, held, expressions }
+    }
+
     /// Positions of the terms that the state gives and whose coefficients are sought.
     pub(super) fn free(&self) -> Vec<usize> {
         let parts = Parts::of(self);
@@ -155,8 +163,8 @@ struct Descent<'a> {
     inner: Vec<Sought>,
     coefficients: Vec<f64>,
     noise: Noise,
-    /// Mean forces of the series, then the slopes of the inner parameters, by piece and interval.
-    series: Vec<Vec<Vec<f64>>>,
+    /// The series.
+    beside: Beside,
 }
 
 /// The terms of a form by the way they enter a run.
@@ -208,13 +216,13 @@ pub fn fit(form: &Form, pieces: &[Piece]) -> Option<Fit> {
 /// Fits the form from coefficients and noise that are near already. The likelihood may have two maxima, one that leaves error to the law
 /// and one that leaves it all to the sensors: both are tried.
 pub fn refit(form: &Form, pieces: &[Piece], coefficients: &[f64], noise: Noise) -> Option<Fit> {
-    let series = vec![Vec::new(); pieces.len()];
     let parts = Parts::of(form);
     let mut pass = Pass::new(parts.free.len());
     let inner = inner_slopes::sought(form);
+    let beside = Beside::none(form, &parts, &inner, pieces);
     let mut descent =
-        Descent { form: form.clone(), pieces, parts, inner, coefficients: coefficients.to_vec(), noise, series };
-    descent.begin_series(&mut pass);
+        Descent { form: form.clone(), pieces, parts, inner, coefficients: coefficients.to_vec(), noise, beside };
+    descent.renew_series(&mut pass);
     let mut loud = descent.descend(&mut pass)?;
     if loud.noise.process <= start::negligible(&loud.noise) {
         loud.log_likelihood_if_right = loud.log_likelihood;
@@ -241,13 +249,16 @@ impl Descent<'_> {
                 let last = best.as_ref()?;
                 self.coefficients.clone_from(&last.coefficients);
                 self.form.clone_from(&last.form);
+                self.beside.set(&last.beginnings);
                 calm = 0;
                 continue;
             }
-            let sums = total(&outcomes);
+            let mut sums = total(&outcomes);
+            let log_likelihood = self.log_likelihood(&outcomes, &sums);
+            self.beside.add_prior(&mut sums);
             let solved = solve(&sums.information, &sums.score)?;
             let decrement = solved.step.dot(&sums.score) / solved.step.len().max(1) as f64;
-            let present = self.summary(&outcomes, solved.covariance, sums.count);
+            let present = self.summary(log_likelihood, solved.covariance, sums.count);
             if best.as_ref().is_none_or(|best| present.log_likelihood >= best.log_likelihood) {
                 best = Some(present);
             }
@@ -257,9 +268,10 @@ impl Descent<'_> {
                 break;
             }
             self.take(&solved.step);
-            self.renew_series(&outcomes);
+            self.take_series(&outcomes);
         }
         let mut best = best?;
+        self.beside.set(&best.beginnings);
         (self.coefficients, self.noise) = (best.coefficients.clone(), best.noise);
         self.form.clone_from(&best.form);
         best.states = self.smoothed(&self.run(pass));
@@ -277,17 +289,18 @@ impl Descent<'_> {
             if outcomes.iter().any(|outcome| !outcome.finite) {
                 return reached;
             }
-            let log_likelihood = outcomes.iter().map(|outcome| outcome.log_likelihood).sum::<f64>();
+            let mut sums = total(&outcomes);
+            let log_likelihood = self.log_likelihood(&outcomes, &sums);
+            self.beside.add_prior(&mut sums);
             let gained = log_likelihood - reached;
             reached = reached.max(log_likelihood);
-            let sums = total(&outcomes);
             let Some(solved) = solve(&sums.information, &sums.score) else { return reached };
             move_noise(&mut self.noise, &outcomes, largest);
             if gained.abs() < GAIN || loud - reached > HOPELESS * gained {
                 return reached;
             }
             self.take(&solved.step);
-            self.renew_series(&outcomes);
+            self.take_series(&outcomes);
         }
         reached
     }
@@ -295,8 +308,7 @@ impl Descent<'_> {
     fn run(&self, pass: &mut Pass) -> Vec<Outcome> {
         let terms: Vec<Term> = self.parts.of_state.iter().map(|index| self.form.terms[*index]).collect();
         let coefficients: Vec<f64> = self.parts.of_state.iter().map(|index| self.coefficients[*index]).collect();
-        let mut series: Vec<f64> = self.parts.series.iter().map(|index| self.coefficients[*index]).collect();
-        series.resize(series.len() + self.inner.len(), 0.0);
+        let series = self.beside.weights(&self.parts, &self.coefficients);
         let law = Law {
             terms: &terms,
             coefficients: &coefficients,
@@ -304,25 +316,15 @@ impl Descent<'_> {
             series: &series,
             noise: self.noise,
         };
-        let pairs = self.pieces.iter().zip(&self.series);
-        pairs.map(|(piece, series)| run::run(&law, piece, pass, series, &[], &[], None)).collect()
+        let pairs = self.pieces.iter().zip(&self.beside.rows);
+        pairs.map(|(piece, rows)| run::run(&law, piece, pass, rows, &[], &[], None)).collect()
     }
 
     /// Series need a motion before there is one: that of the law without them.
-    fn begin_series(&mut self, pass: &mut Pass) {
-        if !self.has_series() {
-            return;
-        }
-        let zeros = vec![0.0; self.parts.series.len() + self.inner.len()];
-        self.series = self.pieces.iter().map(|piece| vec![zeros.clone(); piece.len() - 1]).collect();
-        let states = self.smoothed(&self.run(pass));
-        self.take_series(&states);
-    }
-
-    fn renew_series(&mut self, outcomes: &[Outcome]) {
+    fn renew_series(&mut self, pass: &mut Pass) {
         if self.has_series() {
-            let states = self.smoothed(outcomes);
-            self.take_series(&states);
+            let outcomes = self.run(pass);
+            self.take_series(&outcomes);
         }
     }
 
@@ -330,30 +332,36 @@ impl Descent<'_> {
         !self.parts.series.is_empty() || !self.inner.is_empty()
     }
 
-    fn take_series(&mut self, states: &[Vec<State>]) {
-        let terms: Vec<Term> = self.parts.series.iter().map(|index| self.form.terms[*index]).collect();
-        let columns = |piece: &Piece, states: &[State]| -> Vec<Vec<f64>> {
-            let series = terms.iter().map(|term| means::means(*term, &self.form.expressions, piece, states));
-            series.chain(inner_slopes::slopes(&self.form, &self.coefficients, &self.inner, piece, states)).collect()
-        };
-        let pairs = self.pieces.iter().zip(states);
-        self.series = pairs.map(|(piece, states)| means::rows(&columns(piece, states))).collect();
+    fn take_series(&mut self, outcomes: &[Outcome]) {
+        if self.has_series() {
+            let states = self.smoothed(outcomes);
+            let beginnings = self.beside.beginnings(&self.form, &self.parts);
+            let law = (&self.form, self.coefficients.as_slice());
+            self.beside = Beside::along(law, &self.inner, self.pieces, &states, &beginnings);
+        }
+    }
+
+    /// Of all pieces, the price of unknown beginnings taken off; `sums` without their prior.
+    fn log_likelihood(&self, outcomes: &[Outcome], sums: &Sums) -> f64 {
+        outcomes.iter().map(|outcome| outcome.log_likelihood).sum::<f64>() - self.beside.price(sums)
     }
 
     fn smoothed(&self, outcomes: &[Outcome]) -> Vec<Vec<State>> {
         self.pieces.iter().zip(outcomes).map(|(piece, outcome)| smooth(piece, &outcome.steps)).collect()
     }
 
-    fn summary(&self, outcomes: &[Outcome], covariance: DMatrix<f64>, measurements: f64) -> Fit {
+    fn summary(&self, log_likelihood: f64, covariance: DMatrix<f64>, measurements: f64) -> Fit {
+        let sought = self.parts.unknowns.len() + self.inner.len();
         Fit {
             form: self.form.clone(),
             coefficients: self.coefficients.clone(),
-            covariance,
+            covariance: covariance.view((0, 0), (sought, sought)).into_owned(),
             noise: self.noise,
-            log_likelihood: outcomes.iter().map(|outcome| outcome.log_likelihood).sum(),
+            log_likelihood,
             log_likelihood_if_right: f64::NEG_INFINITY,
             measurements,
             states: Vec::new(),
+            beginnings: self.beside.beginnings(&self.form, &self.parts),
         }
     }
 
@@ -373,6 +381,7 @@ impl Descent<'_> {
         }
         let inner: Vec<f64> = step.iter().skip(self.parts.unknowns.len()).map(|change| fraction * change).collect();
         inner_slopes::take(&mut self.form, &self.inner, &inner);
+        self.beside.take(step.as_slice(), fraction);
     }
 }
 

@@ -140,10 +140,11 @@ impl<'a> FreeRun<'a> {
             rate = 0.0;
             for part in 0..parts {
                 let excitation = observation.drive.part(part, parts);
-                let step = self.law.linearized_step(state, observation.dt / parts as f64, excitation, &mut []);
-                state = step.state;
-                carried = product(step.transition, carried);
-                rate = f64::max(rate, step.rate * (parts * parts) as f64);
+                self.law.steps(state, observation.dt / parts as f64, excitation, &mut [], |step, _, _| {
+                    state = step.state;
+                    carried = product(step.transition, carried);
+                    rate = f64::max(rate, step.rate * (parts * parts) as f64);
+                });
             }
             if !(state.q.abs() <= self.bounds[0] && state.qd.abs() <= self.bounds[1]) {
                 return Err(piece.t[k + 1]);

@@ -1,9 +1,10 @@
 //! Inner parameters as unknowns of a fit: what their logarithms do to the force, and how they move.
 
+use super::beside::Course;
 use super::fit::Form;
 use super::means;
 use super::piece::Piece;
-use crate::law::{Effect, InnerRange, State, Term};
+use crate::law::{Effect, InnerRange, Line, State, Term, interval_forces};
 
 /// Relative change of an inner parameter from which its slope is taken.
 const DIFFERENCE: f64 = 0.01;
@@ -38,27 +39,31 @@ fn effect_at(form: &Form, index: usize) -> Option<Effect> {
     form.terms[index].effect()
 }
 
-/// Change of the law's mean force over every interval with the logarithm of each, along a smoothed motion.
-pub(super) fn slopes(
-    form: &Form,
-    coefficients: &[f64],
-    sought: &[Sought],
-    piece: &Piece,
-    states: &[State],
-) -> Vec<Vec<f64>> {
-    let slope = |one: &Sought| -> Option<Vec<f64>> {
-        let present = form.terms[one.term].effect()?;
-        let side = |factor: f64| moved(present, one.parameter, factor).unwrap_or(present);
-        let (above, below) = (side(DIFFERENCE.exp()), side((-DIFFERENCE).exp()));
-        let value = |effect: Effect| effect.inner_values()[one.parameter];
-        let apart = (value(above) / value(below)).ln();
-        let [above, below] = [above, below].map(|effect| means::means(Term::Effect(effect), &[], piece, states));
-        let factor = coefficients[one.term] / apart;
-        Some(above.iter().zip(&below).map(|(above, below)| factor * (above - below)).collect())
+/// Change of the law's force over every interval with the logarithm of an inner parameter, along a smoothed motion, its memory beginning
+/// there.
+pub(super) fn slope(
+    (form, coefficients): (&Form, &[f64]),
+    one: Sought,
+    (piece, states): (&Piece, &[State]),
+    begin: &[f64],
+) -> Vec<Line> {
+    let flat = || vec![[0.0; 2]; piece.len() - 1];
+    let Some(present) = form.terms[one.term].effect() else { return flat() };
+    let side = |factor: f64| moved(present, one.parameter, factor).unwrap_or(present);
+    let (above, below) = (side(DIFFERENCE.exp()), side((-DIFFERENCE).exp()));
+    let value = |effect: Effect| effect.inner_values()[one.parameter];
+    let factor = coefficients[one.term] / (value(above) / value(below)).ln();
+    let course = Course::of(piece, states);
+    let forces = |effect: Effect| -> Vec<Line> {
+        let term = Term::Effect(effect);
+        match effect.is_pointwise() {
+            true => means::means(term, &[], piece, states).into_iter().map(|mean| [mean; 2]).collect(),
+            false => interval_forces(term, &[], &course.trajectory(), begin),
+        }
     };
-    let flat = || vec![0.0; piece.len() - 1];
-    let finite = |slope: Vec<f64>| if slope.iter().all(|value| value.is_finite()) { slope } else { flat() };
-    sought.iter().map(|one| slope(one).map_or_else(flat, finite)).collect()
+    let pairs = forces(above).into_iter().zip(forces(below));
+    let slope: Vec<Line> = pairs.map(|(above, below)| [0, 1].map(|end| factor * (above[end] - below[end]))).collect();
+    if slope.iter().flatten().all(|value| value.is_finite()) { slope } else { flat() }
 }
 
 /// Moves each by a step of its logarithm, within its range.

@@ -1,5 +1,6 @@
 //! Which physical effect a model lacks, and where it fails.
 
+mod beside;
 mod coefficients;
 mod compare;
 mod conclude;

@@ -1,18 +1,16 @@
 //! One run of the filter over a piece, with forces given as series beside the law's own terms.
 //!
 //! A term whose force cannot be computed from the state alone (it remembers, it looks back, it is a candidate that the law does not
-//! have) enters as a series: its mean over every interval between samples along the smoothed motion. Its sensitivity is carried
+//! have) enters as a series: of the law's own terms the line that stands for it over every interval between samples, of a candidate its
+//! mean, along the smoothed motion. Its sensitivity is carried
 //! through the filter like that of any term, so that its coefficient, its information and what it would gain are those of the
 //! likelihood, with the noise of all samples accounted for.
 
 use super::piece::Piece;
 use super::tableau::Gram;
 use crate::evidence::{Channel, Filter, Innovation, Noise, Observation, Pass, gains};
-use crate::law::{Drive, Effect, Motion, State, Term};
+use crate::law::{Drive, Line, Motion, NODES, State, Term};
 use nalgebra::{DMatrix, DVector};
-
-/// Parts into which an interval is cut under a law whose force jumps: the instant of a jump is known to within one.
-const PARTS_OF_A_JUMP: usize = 4;
 
 /// The law that runs: terms of the state, and series beside them.
 #[derive(Clone, Copy, Debug)]
@@ -23,7 +21,7 @@ pub struct Law<'a> {
     pub coefficients: &'a [f64],
     /// Positions of the terms whose coefficients are sought.
     pub free: &'a [usize],
-    /// Coefficients of the series.
+    /// What multiplies the series.
     pub series: &'a [f64],
     /// Variances of the noise.
     pub noise: Noise,
@@ -144,7 +142,7 @@ impl Carried {
     }
 
     /// Over an interval in which the forces have these means, and through its measurements.
-    fn step(&mut self, forces: &[f64], pass: &Pass, inverse_mass: f64, gains: [[f64; 2]; 2]) {
+    fn step(&mut self, forces: impl Iterator<Item = f64>, pass: &Pass, inverse_mass: f64, gains: [[f64; 2]; 2]) {
         let [q_rows, qd_rows] = &mut self.rows;
         for (((state, force), q_row), qd_row) in self.state.iter_mut().zip(forces).zip(q_rows).zip(qd_rows) {
             ([*q_row, *qd_row], *state) = pass.carry(*state, -force * inverse_mass, gains);
@@ -152,13 +150,13 @@ impl Carried {
     }
 }
 
-/// Runs the filter over a piece. `series` and `candidates` hold the mean force of every interval, one row per interval;
+/// Runs the filter over a piece. `series` holds the lines and `candidates` the mean forces of every interval, one row per interval;
 /// `stretches[k]` says to which sum interval k belongs. With `joint`, the candidates go there, one beside the other.
 pub fn run(
     law: &Law,
     piece: &Piece,
     pass: &mut Pass,
-    series: &[Vec<f64>],
+    series: &[Vec<Line>],
     candidates: &[Vec<f64>],
     stretches: &[usize],
     mut joint: Option<&mut Gram>,
@@ -173,19 +171,16 @@ pub fn run(
     let (mut carried, mut tried) = (Carried::new(extra), Carried::new(kinds));
     let mut unknowns = vec![0.0; n + extra];
     pass.begin(first_state(piece, &law.noise));
-    if law.terms.iter().any(|term| jumps(*term)) {
-        pass.parts = pass.parts.max(PARTS_OF_A_JUMP);
-    }
     for (k, observation) in piece.observations.iter().enumerate() {
         let observation = beside(observation, law.series, series.get(k));
         let innovations = pass.step(&motion, &free, &law.noise, &observation);
         let inverse_mass = motion.mass(pass.filter.state.q).recip();
         let gains = gains(&innovations);
         if let Some(forces) = series.get(k) {
-            carried.step(forces, pass, inverse_mass, gains);
+            carried.step(forces.iter().map(|[from, to]| 0.5 * (from + to)), pass, inverse_mass, gains);
         }
         if let Some(forces) = candidates.get(k) {
-            tried.step(forces, pass, inverse_mass, gains);
+            tried.step(forces.iter().copied(), pass, inverse_mass, gains);
         }
         let sums = &mut outcome.sums[stretches.get(k).copied().unwrap_or(0)];
         for channel in Channel::ALL {
@@ -222,19 +217,18 @@ impl Outcome {
     }
 }
 
-/// Whether the term's force jumps where the velocity reverses.
-fn jumps(term: Term) -> bool {
-    matches!(term, Term::Effect(Effect::CoulombFriction | Effect::StribeckFriction { .. }))
-}
-
 /// The observation with the series' forces taken off its excitation.
-fn beside(observation: &Observation, coefficients: &[f64], forces: Option<&Vec<f64>>) -> Observation {
+fn beside(observation: &Observation, coefficients: &[f64], forces: Option<&Vec<Line>>) -> Observation {
     let Some(forces) = forces.filter(|_| !coefficients.is_empty()) else { return *observation };
-    let force: f64 = coefficients.iter().zip(forces).map(|(coefficient, force)| coefficient * force).sum();
+    let sum = |end: usize| coefficients.iter().zip(forces).map(|(coefficient, line)| coefficient * line[end]).sum();
+    let [start, end]: Line = [sum(0), sum(1)];
     let drive = match observation.drive {
-        Drive::Held(value) => Drive::Held(value - force),
-        Drive::Line(from, to) => Drive::Line(from - force, to - force),
-        Drive::Nodes(nodes) => Drive::Nodes(nodes.map(|value| value - force)),
+        Drive::Held(value) => Drive::Line(value - start, value - end),
+        Drive::Line(from, to) => Drive::Line(from - start, to - end),
+        Drive::Nodes(nodes) => {
+            let at = |node: usize| nodes[node] - start - (end - start) * node as f64 / NODES as f64;
+            Drive::Nodes(std::array::from_fn(at))
+        }
     };
     Observation { drive, ..*observation }
 }

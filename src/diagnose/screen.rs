@@ -3,6 +3,7 @@
 //! The score test (Rao 1948): with M and g the information and score of the unknowns, c, i and s those of a candidate beside them,
 //! the candidate's own information is i − cᵀM⁻¹c, its own score s − cᵀM⁻¹g, and its gain in log-likelihood ½ score² ÷ information.
 
+use super::beside::Beside;
 use super::fit::{Fit, Parts, solve};
 use super::means;
 use super::piece::Piece;
@@ -52,7 +53,9 @@ fn merged(sums: &[Sums]) -> Sums {
 /// Every candidate beside every other; none where a run leaves no numbers.
 pub(super) fn tableau(fit: &Fit, pieces: &[Piece], candidates: &[Term]) -> Option<Tableau> {
     let expressions = &fit.form.expressions;
-    let mut gram = Gram::none(Parts::of(&fit.form).unknowns.len(), candidates.len());
+    let parts = Parts::of(&fit.form);
+    let beginnings = Beside::count(&fit.form, &parts, pieces);
+    let mut gram = Gram::none(parts.unknowns.len() + beginnings, candidates.len());
     let columns = |piece: &Piece, states: &[State]| columns(candidates, expressions, piece, states);
     run_all(fit, pieces, &columns, Some(&mut gram));
     gram.swept()
@@ -67,25 +70,29 @@ fn run_all(fit: &Fit, pieces: &[Piece], candidates: &Columns, mut joint: Option<
     let parts = Parts::of(&fit.form);
     let pick = |positions: &[usize]| -> Vec<f64> { positions.iter().map(|index| fit.coefficients[*index]).collect() };
     let terms: Vec<Term> = parts.of_state.iter().map(|index| fit.form.terms[*index]).collect();
-    let beside: Vec<Term> = parts.series.iter().map(|index| fit.form.terms[*index]).collect();
-    let (of_state, of_series) = (pick(&parts.of_state), pick(&parts.series));
+    let beside = Beside::along((&fit.form, &fit.coefficients), &[], pieces, &fit.states, &fit.beginnings);
+    let (of_state, of_series) = (pick(&parts.of_state), beside.weights(&parts, &fit.coefficients));
     let law = Law { terms: &terms, coefficients: &of_state, free: &parts.free, series: &of_series, noise: fit.noise };
+    let unknowns = parts.free.len() + of_series.len();
     let samples: usize = pieces.iter().map(|piece| piece.len() - 1).sum();
     let mut all: Vec<Sums> = Vec::new();
     let mut before = 0;
     let mut pass = Pass::new(parts.free.len());
-    for (piece, states) in pieces.iter().zip(&fit.states) {
-        let rows = [columns(&beside, &fit.form.expressions, piece, states), candidates(piece, states)]
-            .map(|columns| means::rows(&columns));
+    for ((piece, states), series) in pieces.iter().zip(&fit.states).zip(&beside.rows) {
+        let rows = means::rows(&candidates(piece, states));
         let stretch = |k: usize| (before + k) * STRETCHES / samples.max(1);
         let stretches: Vec<usize> = (0..piece.len() - 1).map(stretch).collect();
         before += piece.len() - 1;
-        let outcome = run::run(&law, piece, &mut pass, &rows[0], &rows[1], &stretches, joint.as_deref_mut());
+        let outcome = run::run(&law, piece, &mut pass, series, &rows, &stretches, joint.as_deref_mut());
         if all.is_empty() {
             let kinds = outcome.sums[0].own.len();
-            all = vec![Sums::none(parts.unknowns.len(), kinds); STRETCHES];
+            all = vec![Sums::none(unknowns, kinds); STRETCHES];
         }
         all.iter_mut().zip(&outcome.sums).for_each(|(sum, other)| sum.merge(other));
+    }
+    all.first_mut().into_iter().for_each(|sums| beside.add_prior(sums));
+    if let Some(joint) = joint {
+        joint.add_prior(beside.prior());
     }
     all
 }

@@ -41,6 +41,18 @@ impl Gram {
         }
     }
 
+    /// Adds information and score that the last unknowns have from elsewhere.
+    pub(super) fn add_prior(&mut self, prior: impl Iterator<Item = (f64, f64)>) {
+        self.flush();
+        let prior: Vec<(f64, f64)> = prior.collect();
+        let (first, last) = (self.unknowns - prior.len(), self.sum.ncols() - 1);
+        for (index, (weight, score)) in (first..).zip(prior) {
+            self.sum[(index, index)] += weight;
+            self.sum[(index, last)] += score;
+            self.sum[(last, index)] += score;
+        }
+    }
+
     fn flush(&mut self) {
         let seen = self.block.columns(0, self.filled);
         self.sum.gemm(1.0, &seen, &seen.transpose(), 1.0);

@@ -213,20 +213,24 @@ impl Pass {
     fn advance(&mut self, noise: &Noise, observation: &Observation) {
         let parts = observation.drive.parts(self.parts);
         let dt = observation.dt / parts as f64;
+        let mut first = true;
         for part in 0..parts {
             let excitation = observation.drive.part(part, parts);
-            let step = self.compiled.linearized_step(self.filter.state, dt, excitation, &mut self.slopes);
-            self.fastest = self.fastest.max(step.rate * (parts * parts) as f64);
-            match part {
-                0 => self.map.set(&step, &self.slopes),
-                _ => self.map.append(&step, &self.slopes),
-            }
-            for (rival, ratio) in self.rival_filters.iter_mut().zip(RIVALS) {
-                rival.state = beside(&step, self.filter.state, rival.state);
-                rival.predict(&step, dt, noise.process * ratio);
-            }
-            self.filter.state = step.state;
-            self.filter.predict(&step, dt, noise.process);
+            let Pass { compiled, slopes, map, rival_filters, filter, fastest, .. } = self;
+            compiled.steps(filter.state, dt, excitation, slopes, |step, dt, slopes| {
+                match first {
+                    true => map.set(step, slopes),
+                    false => map.append(step, slopes),
+                }
+                first = false;
+                *fastest = fastest.max(step.rate * (parts * parts) as f64);
+                for (rival, ratio) in rival_filters.iter_mut().zip(RIVALS) {
+                    rival.state = beside(step, filter.state, rival.state);
+                    rival.predict(step, dt, noise.process * ratio);
+                }
+                filter.state = step.state;
+                filter.predict(step, dt, noise.process);
+            });
         }
     }
 

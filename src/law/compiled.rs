@@ -129,6 +129,8 @@ pub struct Compiled {
     mass: [f64; 2],
     /// 1 ÷ `mass[0]`.
     inverse_mass: f64,
+    /// Whether the law has dry friction.
+    dry: bool,
 }
 
 impl Default for Compiled {
@@ -143,6 +145,7 @@ impl Default for Compiled {
             free_reach: Reach::default(),
             mass: [0.0; 2],
             inverse_mass: 0.0,
+            dry: false,
         }
     }
 }
@@ -198,6 +201,7 @@ impl Compiled {
         self.count = 0;
         self.mass = [0.0; 2];
         self.reach = Reach::default();
+        self.dry = false;
         for ((term, coefficient), kept) in motion.terms.iter().zip(motion.coefficients).zip(&mut self.coefficients) {
             *kept = *coefficient;
             let at_zero = term.mass(0.0);
@@ -209,10 +213,25 @@ impl Compiled {
                     None => Part { places: Places::default(), coefficient: f64::NAN },
                 };
                 self.reach.include(self.parts[self.count].places);
+                self.dry |= term.effect().is_some_and(Effect::is_dry);
                 self.count += 1;
             }
         }
         self.inverse_mass = self.mass[0].recip();
+    }
+
+    /// Whether the law has dry friction, so that a step is to be cut where the velocity reverses.
+    #[inline]
+    pub(super) fn is_dry(&self) -> bool {
+        self.dry
+    }
+
+    /// Overwrites the factors of dry friction by those of a motion that slides in a direction.
+    #[inline]
+    pub(super) fn slide(&self, table: &mut Table, qd: f64, direction: f64) {
+        table.qd[usize::from(EFFECTS)] = direction;
+        let slots = &mut table.qd[usize::from(SHAPED_QD)..];
+        fill_shapes(&self.shapes.qd, slots, |effect| effect.sliding(qd, direction).unwrap_or_default());
     }
 
     /// Writes the law's factors at a point.

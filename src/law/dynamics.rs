@@ -1,9 +1,11 @@
 //! Integration in time of a law with any terms: effects with memory, delayed excitation, expressions.
 //!
 //! The coordinate's (q, q̇) and the internal states of the effects are integrated jointly by the classical Runge–Kutta method (order 4). A
-//! step within which an internal state changes much is cut into parts. Laws without such terms are faster by [`Motion`].
+//! step within which an internal state changes much is cut into parts, and one within which the velocity reverses under dry friction is cut
+//! there. Laws without such terms are faster by [`Motion`].
 
 use super::memory::{LARGEST, parts};
+use super::reversal::{MOST_CUTS, direction_from_rest, release, rest_within};
 use super::{Effect, Expression, History, Motion, State, Term};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -24,6 +26,10 @@ impl Phase {
     /// Whether all values are finite numbers.
     pub fn is_finite(&self) -> bool {
         self.state.is_finite() && self.memory.iter().all(|value| value.is_finite())
+    }
+
+    fn at_rest(self) -> Phase {
+        Phase { state: State { qd: 0.0, ..self.state }, ..self }
     }
 
     fn moved(&self, slope: &Phase, dt: f64) -> Phase {
@@ -111,34 +117,110 @@ impl<'a> Dynamics<'a> {
         let parts = parts(rate, dt);
         let width = dt / parts as f64;
         let start = |part: usize| t + width * part as f64;
-        (0..parts).fold(*phase, |phase, part| self.runge_kutta(&phase, start(part), start(part + 1), excitation))
+        let dry = self.is_dry();
+        (0..parts).fold(*phase, |phase, part| match dry {
+            true => self.slide_through(phase, start(part), start(part + 1), excitation),
+            false => self.runge_kutta(&phase, [start(part), start(part + 1)], excitation, None),
+        })
     }
 
-    fn runge_kutta<H: History>(&self, phase: &Phase, from: f64, to: f64, history: &H) -> Phase {
+    fn is_dry(&self) -> bool {
+        let mut acting = self.motion.terms.iter().zip(self.motion.coefficients).filter(|(_, value)| **value != 0.0);
+        acting.any(|(term, _)| term.effect().is_some_and(Effect::is_dry))
+    }
+
+    /// A step under dry friction, cut where the velocity comes to rest and where friction lets go.
+    fn slide_through<H: History>(&self, mut phase: Phase, mut from: f64, to: f64, history: &H) -> Phase {
+        let mut direction = match phase.state.qd {
+            0.0 => self.direction(&phase, from, history),
+            qd => qd.signum(),
+        };
+        for _ in 1..MOST_CUTS {
+            let until = |share: f64| from + share * (to - from);
+            let go = |share: f64| self.runge_kutta(&phase, [from, until(share)], history, Some(direction));
+            if direction == 0.0 {
+                let pulls = |share: f64| self.pulls(&go(share), until(share), history);
+                let Some((share, slides)) = release(0.0, pulls) else { return go(1.0) };
+                (phase, from, direction) = (go(share), until(share), slides);
+                continue;
+            }
+            let end = go(1.0);
+            let Some(share) = self.rest_within(&phase, &end, [from, to], history, direction) else { return end };
+            let share = refined(share, |share| {
+                let (end, t) = (go(share), until(share));
+                end.state.qd / (self.acceleration(&end, t, history, direction) * (to - from))
+            });
+            (phase, from) = (go(share).at_rest(), until(share));
+            direction = self.direction(&phase, from, history);
+        }
+        self.runge_kutta(&phase, [from, to], history, Some(direction))
+    }
+
+    fn rest_within<H: History>(
+        &self,
+        start: &Phase,
+        end: &Phase,
+        times: [f64; 2],
+        history: &H,
+        direction: f64,
+    ) -> Option<f64> {
+        let rate = |phase: &Phase, t: f64| (times[1] - times[0]) * self.acceleration(phase, t, history, direction);
+        rest_within(direction, [start.state.qd, end.state.qd], [rate(start, times[0]), rate(end, times[1])])
+    }
+
+    /// q̈ of a motion that slides in a direction.
+    fn acceleration<H: History>(&self, phase: &Phase, t: f64, history: &H, direction: f64) -> f64 {
+        let instant = Instant { history, from: t, to: t, which: 0, excitation: history.over(t, t)[0] };
+        self.slope(phase, instant, Some(direction)).state.qd
+    }
+
+    /// q̈ from rest if it slid forward and if it slid backward.
+    fn pulls<H: History>(&self, phase: &Phase, t: f64, history: &H) -> [f64; 2] {
+        [1.0, -1.0].map(|direction| self.acceleration(&phase.at_rest(), t, history, direction))
+    }
+
+    fn direction<H: History>(&self, phase: &Phase, t: f64, history: &H) -> f64 {
+        let [forward, backward] = self.pulls(phase, t, history);
+        direction_from_rest(forward, backward)
+    }
+
+    /// `direction`: none where dry friction follows the velocity; +1 or −1 where it slides that way; 0 where it sticks.
+    fn runge_kutta<H: History>(
+        &self,
+        phase: &Phase,
+        [from, to]: [f64; 2],
+        history: &H,
+        direction: Option<f64>,
+    ) -> Phase {
         let values = history.over(from, to);
         let at = |which: usize| Instant { history, from, to, which, excitation: values[which] };
         let dt = to - from;
-        let first = self.slope(phase, at(0));
-        let second = self.slope(&phase.moved(&first, 0.5 * dt), at(1));
-        let third = self.slope(&phase.moved(&second, 0.5 * dt), at(1));
-        let fourth = self.slope(&phase.moved(&third, dt), at(2));
+        let first = self.slope(phase, at(0), direction);
+        let second = self.slope(&phase.moved(&first, 0.5 * dt), at(1), direction);
+        let third = self.slope(&phase.moved(&second, 0.5 * dt), at(1), direction);
+        let fourth = self.slope(&phase.moved(&third, dt), at(2), direction);
         let outer = phase.moved(&first, dt / 6.0).moved(&fourth, dt / 6.0);
         outer.moved(&second, dt / 3.0).moved(&third, dt / 3.0)
     }
 
-    fn slope<H: History>(&self, phase: &Phase, instant: Instant<H>) -> Phase {
+    fn slope<H: History>(&self, phase: &Phase, instant: Instant<H>, direction: Option<f64>) -> Phase {
         let mut slope = Phase::default();
         let mut force = 0.0;
         let mut first = 0;
         for (term, coefficient) in self.motion.terms.iter().zip(self.motion.coefficients) {
             let memory = &phase.memory[first..];
-            force += coefficient * self.force(*term, phase.state, memory, &instant);
+            let sliding = direction.and_then(|direction| term.effect()?.sliding(phase.state.qd, direction));
+            let own = sliding.unwrap_or_else(|| self.force(*term, phase.state, memory, &instant));
+            force += coefficient * own;
             if let Some(effect) = term.effect().filter(|effect| effect.memory_length() > 0) {
                 let length = effect.memory_length();
                 let rates: [f64; LARGEST] = effect.memory_slope(phase.state, memory);
                 slope.memory[first..first + length].copy_from_slice(&rates[..length]);
                 first += length;
             }
+        }
+        if direction == Some(0.0) {
+            return slope;
         }
         let acceleration = (instant.excitation - force) / self.motion.mass(phase.state.q);
         slope.state = State { q: phase.state.qd, qd: acceleration };
@@ -166,6 +248,18 @@ impl<'a> Dynamics<'a> {
             Some((effect, first))
         })
     }
+}
+
+/// A share of a step after Newton's steps `by` of it.
+fn refined(mut share: f64, by: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..4 {
+        let step = by(share);
+        if step.is_nan() || step.abs() < 1e-13 {
+            break;
+        }
+        share = (share - step).clamp(1e-13, 1.0);
+    }
+    share
 }
 
 #[cfg(test)]
@@ -218,6 +312,22 @@ mod tests {
         let moved = dynamics.step(&dynamics.rest(state), 0.0, 0.01, &|t: f64| 0.4 + 3.0 * t).state;
         let expected = motion.step_linear(state, 0.01, 0.4, 0.43);
         assert!((moved.q - expected.q).abs() < 1e-15 && (moved.qd - expected.qd).abs() < 1e-14);
+    }
+
+    #[test]
+    fn reversals_under_dry_friction_are_met_with_order_four_and_sticking_is_seen() {
+        let friction = [Term::Effect(Effect::CoulombFriction), effect("hidden_resonator", &[3.0, 0.05])];
+        let terms = terms(&friction);
+        for (force, sticks) in [(0.15, false), (1.4, true)] {
+            let coefficients = [1.3, 0.3, 4.0, 0.7, force, 0.2];
+            let exact = end(&terms, &coefficients, 4096);
+            let error = |steps| {
+                let phase = end(&terms, &coefficients, steps);
+                (phase.state.q - exact.state.q).abs() + (phase.memory[1] - exact.memory[1]).abs()
+            };
+            let [coarse, fine] = [64, 256].map(error);
+            assert!(coarse < 1e-5 && fine < coarse / 100.0, "sticks: {sticks}; {coarse:e}, {fine:e}");
+        }
     }
 
     #[test]

@@ -18,6 +18,8 @@ pub struct Linearized {
     pub input: [f64; 2],
     /// |∂q̈/∂q| dt² + |∂q̈/∂q̇| dt: how much happens within the step.
     pub rate: f64,
+    /// q̈ at the start, and to order 3 at the end of the step.
+    pub acceleration: [f64; 2],
 }
 
 impl Compiled {
@@ -25,11 +27,38 @@ impl Compiled {
     /// at the middle of the step into `slopes`; a mass that varies with q counts as constant in the transition.
     #[inline]
     pub fn linearized_step(&self, state: State, dt: f64, excitation: [f64; 3], slopes: &mut [f64]) -> Linearized {
+        self.step_with(state, dt, excitation, slopes, |_, _| {})
+    }
+
+    /// The same step of a motion that slides in `direction` all along, whichever sign its velocity takes.
+    #[inline]
+    pub(super) fn sliding_step(
+        &self,
+        state: State,
+        dt: f64,
+        excitation: [f64; 3],
+        direction: f64,
+        slopes: &mut [f64],
+    ) -> Linearized {
+        self.step_with(state, dt, excitation, slopes, |table, state| self.slide(table, state.qd, direction))
+    }
+
+    /// `amend` changes the factors at a point.
+    #[inline]
+    fn step_with(
+        &self,
+        state: State,
+        dt: f64,
+        excitation: [f64; 3],
+        slopes: &mut [f64],
+        amend: impl Fn(&mut Table, State),
+    ) -> Linearized {
         let half = 0.5 * dt;
         let [from, middle, to] = excitation;
         let mut table = Table::EMPTY;
         let mut at = |state: State, excitation: f64| {
             self.fill(&mut table, state, excitation);
+            amend(&mut table, state);
             self.acceleration(&table, excitation).0
         };
         let a1 = at(state, from);
@@ -37,11 +66,13 @@ impl Compiled {
         let a2 = at(s2, middle);
         let s3 = State { q: state.q + half * s2.qd, qd: state.qd + half * a2 };
         self.fill_all(&mut table, s3, middle);
+        amend(&mut table, s3);
         let (a3, inverse_mass) = self.acceleration(&table, middle);
         self.slopes(&table, a3, inverse_mass, slopes);
         let [by_q, by_qd] = self.gradient(&table, s3).map(|slope| -slope * inverse_mass);
         let s4 = State { q: state.q + dt * s3.qd, qd: state.qd + dt * a3 };
         self.fill(&mut table, s4, to);
+        amend(&mut table, s4);
         let a4 = self.acceleration(&table, to).0;
         let half2 = half * dt;
         Linearized {
@@ -55,6 +86,7 @@ impl Compiled {
             ],
             input: [half2, dt + half2 * by_qd],
             rate: by_q.abs() * dt * dt + by_qd.abs() * dt,
+            acceleration: [a1, a4],
         }
     }
 }

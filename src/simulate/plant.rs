@@ -8,7 +8,7 @@ use super::check::ScenarioError;
 use super::excitation::ExcitationKind;
 use super::noise::{Stream, standard_normal};
 use super::scenario::Scenario;
-use crate::law::{Dynamics, History, MAX_MEMORY, Motion, Phase, State, Term};
+use crate::law::{Dynamics, Effect, History, MAX_MEMORY, Motion, Phase, State, Term};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -84,8 +84,8 @@ pub struct Plant {
 struct Law {
     terms: Vec<Term>,
     coefficients: Vec<Vec<f64>>,
-    /// Whether the state and the excitation alone determine the force.
-    pointwise: bool,
+    /// Whether the state and the excitation alone determine the force, which does not jump.
+    smooth: bool,
 }
 
 impl Law {
@@ -93,7 +93,8 @@ impl Law {
         let Scenario { terms, hidden, stages, .. } = scenario;
         let terms: Vec<Term> = terms.iter().copied().chain(hidden.terms()).collect();
         let all = stages.iter().map(|stage| stage.coefficients.iter().copied().chain(hidden.coefficients()).collect());
-        Law { pointwise: terms.iter().all(|term| term.is_pointwise()), coefficients: all.collect(), terms }
+        let smooth = |term: &Term| term.is_pointwise() && !term.effect().is_some_and(Effect::is_dry);
+        Law { smooth: terms.iter().all(smooth), coefficients: all.collect(), terms }
     }
 
     fn motion(&self, stage: usize) -> Motion<'_> {
@@ -231,7 +232,7 @@ impl Plant {
     /// From one time to another, within which neither law nor excitation changes.
     fn step(&self, stage: usize, phase: &Phase, from: f64, to: f64, excitation: f64) -> Phase {
         let motion = self.law.motion(stage);
-        if self.law.pointwise {
+        if self.law.smooth {
             return Phase { state: motion.step_held(phase.state, to - from, excitation), ..*phase };
         }
         let held = HeldFrom { plant: self, from, excitation };

@@ -133,8 +133,8 @@ fn complete(problem: &Problem, wanted: &dyn Fn(usize) -> bool, noise: Noise, evi
     let all = problem.model.iter().chain(&problem.lacking).zip(&problem.coefficients).enumerate();
     let chosen = all.filter(|(index, _)| *index < own || wanted(index - own));
     let (terms, coefficients): (Vec<Term>, Vec<f64>) = chosen.map(|(_, (term, value))| (*term, *value)).unzip();
-    let (held, open) = (vec![None; terms.len()], vec![Vec::new(); terms.len()]);
-    let form = Form { terms, held, open, expressions: Vec::new() };
+    let held = vec![None; terms.len()];
+    let form = Form::new(terms, held, Vec::new());
     refit(&form, &evidence.pieces, &coefficients, noise)
 }
 

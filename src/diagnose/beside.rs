@@ -1,0 +1,198 @@
+//! The forces that a run takes from outside: terms that no state gives, along a smoothed motion.
+//!
+//! Each is a straight line over every interval. Where its memory stood when the record began nobody knows: how far from rest is an unknown of its
+//! own, for each piece, beside the coefficients. It has a prior as wide as the motion lets one expect; its price, the logarithm of how
+//! much the record narrows it, is taken off the likelihood (Laplace's approximation of what is left when it is integrated out).
+
+use super::fit::{Form, Parts};
+use super::inner_slopes::{self, Sought};
+use super::piece::Piece;
+use super::run::Sums;
+use crate::law::{Effect, Line, State, Term, Trajectory, interval_forces};
+use nalgebra::DMatrix;
+
+/// Part of a beginning's spread by which it is moved to see what it does.
+const NUDGE: f64 = 1e-3;
+
+/// The series of a form over all pieces.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Beside {
+    /// By piece and interval: the force of every series per unit of its coefficient, of every inner parameter that is sought per unit of its
+    /// logarithm, then of every beginning per unit of it.
+    pub(super) rows: Vec<Vec<Vec<Line>>>,
+    /// By how much each beginning may be expected to differ from rest.
+    spreads: Vec<f64>,
+    /// Number of inner parameters.
+    inner: usize,
+    /// How far from rest the memories began when the rows were made, piece by piece …
+    beginnings: Vec<f64>,
+    /// … and by how much they changed since.
+    changes: Vec<f64>,
+}
+
+impl Beside {
+    /// Numbers that say where the memories begin, of all pieces.
+    pub(super) fn count(form: &Form, parts: &Parts, pieces: &[Piece]) -> usize {
+        effects(form, parts).map(Effect::beginning_length).sum::<usize>() * pieces.len()
+    }
+
+    /// Forces of 0, as long as there is no motion.
+    pub(super) fn none(form: &Form, parts: &Parts, inner: &[Sought], pieces: &[Piece]) -> Beside {
+        let count = Beside::count(form, parts, pieces);
+        let columns = parts.series.len() + inner.len() + count;
+        let rows = |piece: &Piece| vec![vec![[0.0; 2]; columns]; if columns > 0 { piece.len() - 1 } else { 0 }];
+        Beside {
+            rows: pieces.iter().map(rows).collect(),
+            inner: inner.len(),
+            spreads: vec![1.0; count],
+            beginnings: vec![0.0; count],
+            changes: vec![0.0; count],
+        }
+    }
+
+    /// Along these motions, from these beginnings.
+    pub(super) fn along(
+        (form, coefficients): (&Form, &[f64]),
+        inner: &[Sought],
+        pieces: &[Piece],
+        states: &[Vec<State>],
+        beginnings: &[f64],
+    ) -> Beside {
+        let parts = Parts::of(form);
+        let mut all = Beside::none(form, &parts, inner, pieces);
+        let (mut column, mut first) = (parts.series.len() + inner.len(), 0);
+        for (number, (piece, states)) in pieces.iter().zip(states).enumerate() {
+            let course = Course::of(piece, states);
+            let begin = |term: usize| own_beginnings(form, &parts, term, &beginnings[first..]);
+            for (position, one) in inner.iter().enumerate() {
+                let slope = inner_slopes::slope((form, coefficients), *one, (piece, states), begin(one.term));
+                put(&mut all.rows[number], parts.series.len() + position, &slope, |line| *line);
+            }
+            for (position, index) in parts.series.iter().enumerate() {
+                let (term, coefficient) = (form.terms[*index], coefficients[*index]);
+                let length = term.effect().map_or(0, Effect::beginning_length);
+                let begin = &beginnings[first..first + length];
+                let force = |begin: &[f64]| interval_forces(term, &form.expressions, &course.trajectory(), begin);
+                let own = force(begin);
+                let spreads = spreads(term, &own, &piece.excitation);
+                put(&mut all.rows[number], position, &own, |line| *line);
+                for (offset, spread) in spreads.iter().enumerate() {
+                    let mut moved = begin.to_vec();
+                    moved[offset] += NUDGE * spread;
+                    let change = force(&moved);
+                    let pairs: Vec<(Line, Line)> = own.iter().copied().zip(change).collect();
+                    let scale = coefficient / (NUDGE * spread);
+                    put(&mut all.rows[number], column, &pairs, |(from, to)| {
+                        [scale * (to[0] - from[0]), scale * (to[1] - from[1])]
+                    });
+                    all.spreads[first + offset] = *spread;
+                    column += 1;
+                }
+                first += length;
+            }
+        }
+        all.beginnings.copy_from_slice(beginnings);
+        all
+    }
+
+    /// What multiplies the columns of the rows under these coefficients of the form.
+    pub(super) fn weights(&self, parts: &Parts, coefficients: &[f64]) -> Vec<f64> {
+        let own = parts.series.iter().map(|index| coefficients[*index]);
+        own.chain(std::iter::repeat_n(0.0, self.inner)).chain(self.changes.iter().copied()).collect()
+    }
+
+    /// Changes the beginnings by a fraction of the last unknowns of a step.
+    pub(super) fn take(&mut self, step: &[f64], fraction: f64) {
+        let own = &step[step.len() - self.changes.len()..];
+        self.changes.iter_mut().zip(own).for_each(|(change, step)| *change += fraction * step);
+    }
+
+    /// Sets the beginnings back, or forth.
+    pub(super) fn set(&mut self, beginnings: &[f64]) {
+        let pairs = self.beginnings.iter().zip(beginnings);
+        self.changes.iter_mut().zip(pairs).for_each(|(change, (from, to))| *change = to - from);
+    }
+
+    /// Where the memories begin, as far as they can.
+    pub(super) fn beginnings(&self, form: &Form, parts: &Parts) -> Vec<f64> {
+        let own = |effect: Effect| std::iter::repeat_n(effect, effect.beginning_length());
+        let owners: Vec<Effect> = effects(form, parts).flat_map(own).collect();
+        let values = self.beginnings.iter().zip(&self.changes).map(|(value, change)| value + change);
+        owners.iter().cycle().zip(values).map(|(effect, value)| effect.possible_beginning(value)).collect()
+    }
+
+    /// Adds what the prior says of the beginnings, the last unknowns of the sums.
+    pub(super) fn add_prior(&self, sums: &mut Sums) {
+        let before = sums.score.len() - self.spreads.len();
+        for (offset, (weight, score)) in self.prior().enumerate() {
+            sums.information[(before + offset, before + offset)] += weight;
+            sums.score[before + offset] += score;
+        }
+    }
+
+    /// Information and score of each beginning by its prior.
+    pub(super) fn prior(&self) -> impl Iterator<Item = (f64, f64)> {
+        let weights = self.spreads.iter().map(|spread| (spread * spread).recip());
+        weights.zip(self.present()).map(|(weight, value)| (weight, -weight * value))
+    }
+
+    fn present(&self) -> impl Iterator<Item = f64> {
+        self.beginnings.iter().zip(&self.changes).map(|(value, change)| value + change)
+    }
+
+    /// What the beginnings cost in log-likelihood; `sums` without their prior.
+    pub(super) fn price(&self, sums: &Sums) -> f64 {
+        let (count, before) = (self.spreads.len(), sums.score.len() - self.spreads.len());
+        let narrowed = DMatrix::from_fn(count, count, |row, column| {
+            let scaled = self.spreads[row] * self.spreads[column] * sums.information[(before + row, before + column)];
+            scaled + if row == column { 1.0 } else { 0.0 }
+        });
+        let distance: f64 = self.present().zip(&self.spreads).map(|(value, spread)| (value / spread).powi(2)).sum();
+        let logarithm = narrowed.cholesky().map_or(0.0, |root| root.l().diagonal().map(f64::ln).sum());
+        logarithm + 0.5 * distance
+    }
+}
+
+/// Where the memory of a form's term begins, `beginnings` being those of its piece; empty where it has none.
+fn own_beginnings<'a>(form: &Form, parts: &Parts, term: usize, beginnings: &'a [f64]) -> &'a [f64] {
+    let length = |index: usize| form.terms[index].effect().map_or(0, Effect::beginning_length);
+    let before: usize = parts.series.iter().take_while(|index| **index != term).map(|index| length(*index)).sum();
+    if parts.series.contains(&term) { &beginnings[before..before + length(term)] } else { &[] }
+}
+
+fn effects<'a>(form: &'a Form, parts: &'a Parts) -> impl Iterator<Item = Effect> + 'a {
+    parts.series.iter().filter_map(|index| form.terms[*index].effect())
+}
+
+fn put<T>(rows: &mut [Vec<Line>], column: usize, values: &[T], line: impl Fn(&T) -> Line) {
+    rows.iter_mut().zip(values).for_each(|(row, value)| row[column] = line(value));
+}
+
+/// Spreads of a term's beginnings; 1 where the motion is none.
+fn spreads(term: Term, forces: &[Line], excitation: &[f64]) -> Vec<f64> {
+    let Some(effect) = term.effect() else { return Vec::new() };
+    let rms = |squares: f64, count: usize| (squares / count.max(1) as f64).sqrt();
+    let feature = rms(forces.iter().map(|line| (0.5 * (line[0] + line[1])).powi(2)).sum(), forces.len());
+    let force = rms(excitation.iter().map(|value| value * value).sum(), excitation.len());
+    let positive = |spread: f64| if spread > 0.0 && spread.is_finite() { spread } else { 1.0 };
+    effect.beginning_spread(feature, force).into_iter().map(positive).collect()
+}
+
+/// A smoothed motion by channel.
+pub(super) struct Course<'a> {
+    piece: &'a Piece,
+    q: Vec<f64>,
+    qd: Vec<f64>,
+}
+
+impl Course<'_> {
+    pub(super) fn of<'a>(piece: &'a Piece, states: &[State]) -> Course<'a> {
+        let q = states.iter().map(|state| state.q).collect();
+        Course { piece, q, qd: states.iter().map(|state| state.qd).collect() }
+    }
+
+    pub(super) fn trajectory(&self) -> Trajectory<'_> {
+        let Piece { t, excitation, hold, .. } = self.piece;
+        Trajectory { t, q: &self.q, qd: &self.qd, excitation, hold: *hold }
+    }
+}

@@ -1,0 +1,315 @@
+//! What a term does between the samples of a motion that is known at them: the straight line with its mean and its first moment.
+//!
+//! The motion follows the cubic that has the displacements and velocities of both ends (Hermite); internal states are integrated along it on a
+//! grid [`PANELS`] times finer than the samples, or finer yet where they are fast. A force f(s), s from 0 to 1 over the interval, becomes the
+//! line whose mean is ∫ f ds and whose moment about the middle is ∫ f (s − ½) ds: what acts on a coordinate that hardly moves
+//! within the interval is exact to second order.
+
+use super::hysteresis_loop::Loop;
+use super::memory::{LARGEST, parts};
+use super::series::runge_kutta;
+use super::{Effect, Expression, Hold, State, Term, Trajectory};
+
+/// A force over an interval as a straight line: its values at the start and at the end.
+pub type Line = [f64; 2];
+
+/// Panels of the quadrature in an interval at least; even.
+const PANELS: usize = 4;
+
+/// Points and weights of Gauss and Legendre's rule of three points on 0 … 1.
+const GAUSS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+
+impl Effect {
+    /// Numbers that say where the effect's memory begins, as differences from nothing stored: its internal states, or the excitation
+    /// before the first sample.
+    pub fn beginning_length(self) -> usize {
+        match self {
+            Effect::ExcitationDelay { .. } => 1,
+            _ => self.memory_length(),
+        }
+    }
+
+    /// How large those numbers may be expected, given RMS values of the feature and of the excitation.
+    pub fn beginning_spread(self, feature: f64, excitation: f64) -> Vec<f64> {
+        match self {
+            Effect::ExcitationDelay { .. } => vec![excitation],
+            Effect::Hysteresis { yield_displacement, .. } => vec![yield_displacement.value() / f64::sqrt(3.0)],
+            Effect::HiddenResonator { frequency, .. } => {
+                let omega = frequency.value();
+                vec![feature / (omega * omega), feature / omega]
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The nearest numbers that the beginning can have.
+    pub fn possible_beginning(self, beginning: f64) -> f64 {
+        match self {
+            Effect::Hysteresis { yield_displacement, .. } => {
+                beginning.clamp(-yield_displacement.value(), yield_displacement.value())
+            }
+            _ => beginning,
+        }
+    }
+}
+
+/// The force of a term with memory, a delay or a formula over every interval, per unit of its coefficient; NaN for an expression that is not
+/// there, and for a term that has a pointwise force. `beginning` has [`Effect::beginning_length`] numbers.
+pub fn interval_forces(
+    term: Term,
+    expressions: &[Expression],
+    trajectory: &Trajectory,
+    beginning: &[f64],
+) -> Vec<Line> {
+    let count = trajectory.t.len().saturating_sub(1);
+    match term {
+        Term::Effect(Effect::ExcitationDelay { delay }) => {
+            let offset = beginning.first().copied().unwrap_or_default();
+            (0..count).map(|k| delayed(trajectory, k, delay.value(), offset)).collect()
+        }
+        Term::Effect(effect) if effect.memory_length() > 0 => remembered(effect, trajectory, beginning),
+        Term::Expression(index) => match expressions.get(usize::from(index)) {
+            Some(expression) => (0..count).map(|k| expressed(expression, trajectory, k)).collect(),
+            None => vec![[f64::NAN; 2]; count],
+        },
+        _ => vec![[f64::NAN; 2]; count],
+    }
+}
+
+/// Mean and first moment as a line.
+fn line(mean: f64, moment: f64) -> Line {
+    [mean - 6.0 * moment, mean + 6.0 * moment]
+}
+
+/// Sums of Simpson's rule.
+#[derive(Default)]
+struct Simpson {
+    mean: f64,
+    moment: f64,
+}
+
+impl Simpson {
+    /// Takes the value at node `index` of `panels`.
+    fn add(&mut self, index: usize, panels: usize, value: f64) {
+        let weight = if index == 0 || index == panels {
+            1.0
+        } else if index % 2 == 1 {
+            4.0
+        } else {
+            2.0
+        } / (3.0 * panels as f64);
+        self.mean += weight * value;
+        self.moment += weight * value * (index as f64 / panels as f64 - 0.5);
+    }
+
+    fn line(&self) -> Line {
+        line(self.mean, self.moment)
+    }
+}
+
+/// The state at a share of the way from a sample to the next.
+fn between(trajectory: &Trajectory, index: usize, share: f64) -> State {
+    let (from, to) = (trajectory.state(index), trajectory.state(index + 1));
+    let width = trajectory.t[index + 1] - trajectory.t[index];
+    let slope = (to.q - from.q) / width;
+    let (before, after) = (from.qd - slope, to.qd - slope);
+    let bend = share * (1.0 - share);
+    State {
+        q: from.q + width * (share * slope + bend * ((1.0 - share) * before - share * after)),
+        qd: slope + before * (1.0 - share) * (1.0 - 3.0 * share) + after * share * (3.0 * share - 2.0),
+    }
+}
+
+fn expressed(expression: &Expression, trajectory: &Trajectory, k: usize) -> Line {
+    let (from, to) = (trajectory.t[k], trajectory.t[k + 1]);
+    let samples = trajectory.samples();
+    let mut sums = Simpson::default();
+    for node in 0..=PANELS {
+        let share = node as f64 / PANELS as f64;
+        let (t, State { q, qd }) = (from + share * (to - from), between(trajectory, k, share));
+        let excitation = if trajectory.hold == Hold::Zero { trajectory.excitation[k] } else { samples.at(t) };
+        sums.add(node, PANELS, expression.value(q, qd, excitation, t));
+    }
+    sums.line()
+}
+
+fn remembered(effect: Effect, trajectory: &Trajectory, beginning: &[f64]) -> Vec<Line> {
+    let Some(last) = trajectory.t.len().checked_sub(1) else { return Vec::new() };
+    let mut memory = effect.rest(trajectory.state(0));
+    memory.iter_mut().zip(beginning).for_each(|(value, offset)| *value += offset);
+    if let Some(shape) = Loop::of(effect) {
+        return looped(&shape, trajectory, memory[0]);
+    }
+    (0..last)
+        .map(|k| {
+            let line;
+            (line, memory) = followed(effect, trajectory, k, memory);
+            line
+        })
+        .collect()
+}
+
+/// z along a motion that begins with it.
+fn looped(shape: &Loop, trajectory: &Trajectory, z: f64) -> Vec<Line> {
+    let mut place = shape.place(z, trajectory.qd[0]);
+    let interval = |k: usize| {
+        let mut sums = Simpson::default();
+        sums.add(0, PANELS, shape.z(place));
+        for panel in 0..PANELS {
+            let share = |part: f64| (panel as f64 + part) / PANELS as f64;
+            let states = [0.0, 1.0].map(|part| between(trajectory, k, share(part)));
+            place = shape.followed(place, states, |part| between(trajectory, k, share(part)).q);
+            sums.add(panel + 1, PANELS, shape.z(place));
+        }
+        sums.line()
+    };
+    (0..trajectory.t.len() - 1).map(interval).collect()
+}
+
+/// The force over an interval, and the internal states at its end.
+fn followed(effect: Effect, trajectory: &Trajectory, k: usize, memory: [f64; LARGEST]) -> (Line, [f64; LARGEST]) {
+    let dt = trajectory.t[k + 1] - trajectory.t[k];
+    let speed = trajectory.qd[k].abs().max(trajectory.qd[k + 1].abs());
+    let panels = parts(effect.memory_rate(speed), dt).max(PANELS).next_multiple_of(2);
+    let state = |half: usize| between(trajectory, k, 0.5 * half as f64 / panels as f64);
+    let mut sums = Simpson::default();
+    let mut memory = memory;
+    sums.add(0, panels, effect.feature(state(0), &memory));
+    for panel in 0..panels {
+        let states = [state(2 * panel), state(2 * panel + 1), state(2 * panel + 2)];
+        memory = runge_kutta(effect, states, memory, dt / panels as f64);
+        sums.add(panel + 1, panels, effect.feature(states[2], &memory));
+    }
+    (sums.line(), memory)
+}
+
+/// F(t) − F(t − τ); before the first sample F was the first value and `offset` beside.
+fn delayed(trajectory: &Trajectory, k: usize, delay: f64, offset: f64) -> Line {
+    let (from, to) = (trajectory.t[k], trajectory.t[k + 1]);
+    let now = integrated(trajectory, [from, to], 0.0, 0.0);
+    let before = integrated(trajectory, [from, to], delay, offset);
+    line(now[0] - before[0], now[1] - before[1])
+}
+
+/// Mean and first moment of F(t − shift), exact between the instants at which it jumps or bends.
+fn integrated(trajectory: &Trajectory, [from, to]: [f64; 2], shift: f64, offset: f64) -> [f64; 2] {
+    let samples = trajectory.samples();
+    let (first, dt) = (trajectory.t[0], to - from);
+    let mut sums = [0.0; 2];
+    let mut start = from;
+    let mut next = trajectory.t.partition_point(|t| *t + shift <= from + 1e-9 * dt);
+    while start < to {
+        let end = trajectory.t.get(next).map_or(to, |t| (t + shift).min(to)).max(start);
+        let end = if to - end < 1e-9 * dt { to } else { end };
+        for (point, weight) in GAUSS {
+            let t = start + point * (end - start);
+            let past = t - shift;
+            let value = samples.at(past) + if past < first { offset } else { 0.0 };
+            let share = weight * (end - start) / dt;
+            sums[0] += share * value;
+            sums[1] += share * value * ((t - from) / dt - 0.5);
+        }
+        (start, next) = (end, next + 1);
+    }
+    sums
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::{Dynamics, Motion, Phase};
+
+    struct Record {
+        t: Vec<f64>,
+        phases: Vec<Phase>,
+        excitation: Vec<f64>,
+    }
+
+    fn drive(t: f64) -> f64 {
+        2.0 * (1.1 * t).sin() + 0.8 * (3.7 * t + 0.4).cos()
+    }
+
+    /// The motion under a law with the effect, from a memory in mid-motion.
+    fn simulated(effect: Effect, beginning: &[f64], dt: f64) -> Record {
+        let terms = [Term::Inertia, Term::power(0, 1), Term::power(1, 0), Term::Effect(effect)];
+        let motion = Motion { terms: &terms, coefficients: &[1.0, 0.2, 3.0, 0.3] };
+        let dynamics = Dynamics::new(motion, &[]).unwrap();
+        let t: Vec<f64> = (0..=(8.0 / dt) as usize).map(|k| k as f64 * dt).collect();
+        let mut start = dynamics.rest(State { q: 0.2, qd: 0.1 });
+        start.memory.iter_mut().zip(beginning).for_each(|(value, offset)| *value += offset);
+        let mut phases = vec![start];
+        for pair in t.windows(2) {
+            let width = (pair[1] - pair[0]) / 32.0;
+            let step = |phase, part| dynamics.step(&phase, pair[0] + width * f64::from(part), width, &drive);
+            phases.push((0..32).fold(phases[phases.len() - 1], step));
+        }
+        let excitation = t.iter().map(|t| drive(*t)).collect();
+        Record { t, phases, excitation }
+    }
+
+    fn lines(record: &Record, term: Term, hold: Hold, beginning: &[f64]) -> Vec<Line> {
+        let q: Vec<f64> = record.phases.iter().map(|phase| phase.state.q).collect();
+        let qd: Vec<f64> = record.phases.iter().map(|phase| phase.state.qd).collect();
+        let trajectory = Trajectory { t: &record.t, q: &q, qd: &qd, excitation: &record.excitation, hold };
+        interval_forces(term, &[], &trajectory, beginning)
+    }
+
+    fn effect(id: &str, inner: &[f64]) -> Effect {
+        Effect::prototype(id).unwrap().with_inner(inner).unwrap()
+    }
+
+    /// Largest error of the velocity that the lines' impulses give, which is that of all means before.
+    fn error(effect: Effect, beginning: &[f64], dt: f64) -> f64 {
+        let record = simulated(effect, beginning, dt);
+        let lines = lines(&record, Term::Effect(effect), Hold::Linear, beginning);
+        let fine = simulated(effect, beginning, dt / 8.0);
+        let features: Vec<f64> = fine.phases.iter().map(|p| effect.feature(p.state, &p.memory)).collect();
+        let mean = |k: usize| {
+            let nodes = &features[8 * k..8 * k + 9];
+            let inner: f64 = (1..8).map(|n| if n % 2 == 1 { 4.0 } else { 2.0 } * nodes[n]).sum();
+            (nodes[0] + nodes[8] + inner) / 24.0
+        };
+        let errors = lines.iter().enumerate().map(|(k, line)| (0.5 * (line[0] + line[1]) - mean(k)).abs());
+        errors.fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_memory_in_mid_motion_is_followed_between_samples() {
+        let resonator = effect("hidden_resonator", &[6.0, 0.03]);
+        let [coarse, fine] = [0.04, 0.02].map(|dt| error(resonator, &[0.3, -0.8], dt));
+        assert!(coarse < 2e-4 && fine < coarse / 10.0, "{coarse:e}, {fine:e}");
+        let hysteresis = effect("hysteresis", &[0.15, 0.8, 1.4]);
+        let [coarse, fine] = [0.04, 0.02].map(|dt| error(hysteresis, &[0.1], dt));
+        assert!(coarse < 1e-4 && fine < coarse / 4.0, "{coarse:e}, {fine:e}");
+    }
+
+    #[test]
+    fn a_line_has_mean_and_moment_of_what_it_stands_for() {
+        let record = simulated(effect("excitation_delay", &[0.013]), &[], 0.01);
+        let delay = Term::Effect(effect("excitation_delay", &[0.013]));
+        let held = lines(&record, delay, Hold::Zero, &[0.5]);
+        let force = |k: usize| record.excitation[k];
+        let k = 40;
+        let jump = force(k - 1) - force(k - 2);
+        let mean = force(k) - (force(k - 2) * 0.3 + force(k - 1) * 0.7);
+        let moment = -jump * 0.5 * (0.25 - 0.04);
+        let expected = [mean - 6.0 * moment, mean + 6.0 * moment];
+        assert!(held[k].iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-10), "{:?}, {expected:?}", held[k]);
+        let first = held[0];
+        assert!((0.5 * (first[0] + first[1]) + 0.5).abs() < 1e-10, "before the record {first:?}");
+        let second = 0.5 * (held[1][0] + held[1][1]);
+        assert!((second - (force(1) - force(0) - 0.3 * 0.5)).abs() < 1e-10, "{second}");
+    }
+
+    #[test]
+    fn a_formula_is_integrated_along_the_motion() {
+        let (t, q, qd, excitation) = ([0.0, 0.1], [1.0, 1.2], [1.0, 3.0], [5.0, 6.0]);
+        let trajectory = Trajectory { t: &t, q: &q, qd: &qd, excitation: &excitation, hold: Hold::Zero };
+        let expression = Expression::parse("x", "qd + F + t").unwrap();
+        let [line] = interval_forces(Term::Expression(0), &[expression], &trajectory, &[])[..] else { panic!() };
+        let mean = 2.0 + 5.0 + 0.05;
+        assert!((0.5 * (line[0] + line[1]) - mean).abs() < 1e-12, "{line:?}");
+        assert!((line[1] - line[0] - 2.1).abs() < 1e-12, "{line:?}");
+    }
+}
