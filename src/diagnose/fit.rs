@@ -347,7 +347,7 @@ impl Descent<'_> {
     }
 
     fn smoothed(&self, outcomes: &[Outcome]) -> Vec<Vec<State>> {
-        self.pieces.iter().zip(outcomes).map(|(piece, outcome)| smooth(piece, &outcome.steps)).collect()
+        outcomes.iter().map(|outcome| smooth(&outcome.first, &outcome.steps)).collect()
     }
 
     fn summary(&self, log_likelihood: f64, covariance: DMatrix<f64>, measurements: f64) -> Fit {

@@ -2,9 +2,10 @@
 //!
 //! A candidate joins the law, all coefficients and the noise are fitted anew, and the log-likelihood gained is its evidence: twice that
 //! gain is χ² distributed where it is not there (Wilks 1938), the level being shared among all that were tried (Bonferroni). Two that
-//! gain the same cannot be told apart on this record: the difference must exceed [`TIE`] nats, and by a multiple of the scatter with
-//! which it comes from one stretch of the record to the next (Vuong 1989).
+//! gain the same cannot be told apart on this record: the difference must exceed [`TIE`] nats, and where error of the law is left by a
+//! multiple of the scatter with which it comes from one stretch of the record to the next (Vuong 1989).
 
+use super::diagnosis::is_evident;
 use super::fit::{Fit, refit};
 use super::piece::Piece;
 use super::proposal::Proposal;
@@ -95,9 +96,13 @@ impl Trial {
         p_value(self.gain, self.inner_count(), self.fit.measurements, tried)
     }
 
-    /// Whether this one is better than the other beyond what the record can tell.
+    /// Whether this one is better than the other beyond what the record can tell. Where it explains the record its likelihood can be
+    /// trusted; where it does not, errors of the law may decide, which come and go along the record.
     pub fn is_clearly_better_than(&self, other: &Trial) -> bool {
-        let difference = self.gain - other.gain;
+        let difference = self.merit() - other.merit();
+        if !is_evident(&self.fit) {
+            return difference > TIE;
+        }
         let parts: Vec<f64> = self.by_stretch.iter().zip(&other.by_stretch).map(|(a, b)| a - b).collect();
         let count = parts.len() as f64;
         let mean = parts.iter().sum::<f64>() / count;

@@ -51,9 +51,9 @@ pub struct Sums {
 /// A sample as the filter saw it, for the smoother.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// Before the measurement.
-    pub predicted: Filter,
-    /// After it.
+    /// What the measurements said that the filter did not expect, by channel.
+    pub innovations: [Option<Innovation>; 2],
+    /// After them.
     pub filtered: Filter,
     /// ∂x⁺/∂x of the interval before.
     pub transition: [[f64; 2]; 2],
@@ -64,7 +64,9 @@ pub struct Step {
 pub struct Outcome {
     /// One per stretch.
     pub sums: Vec<Sums>,
-    /// One per sample after the first.
+    /// At the first sample.
+    pub first: Filter,
+    /// One per sample after it.
     pub steps: Vec<Step>,
     /// Log-likelihood, and what the rival levels of process noise would make of it.
     pub log_likelihood: f64,
@@ -166,11 +168,12 @@ pub fn run(
     let kinds = candidates.first().map_or(0, Vec::len);
     let stretch_count = stretches.iter().max().map_or(1, |last| last + 1);
     let summed = if joint.is_some() { 0 } else { kinds };
-    let mut outcome = Outcome::none(stretch_count, n + extra, summed, piece.len());
+    let first = first_state(piece, &law.noise);
+    let mut outcome = Outcome::none(first, stretch_count, [n + extra, summed], piece.len());
     let motion = Motion { terms: law.terms, coefficients: law.coefficients };
     let (mut carried, mut tried) = (Carried::new(extra), Carried::new(kinds));
     let mut unknowns = vec![0.0; n + extra];
-    pass.begin(first_state(piece, &law.noise));
+    pass.begin(first);
     for (k, observation) in piece.observations.iter().enumerate() {
         let observation = beside(observation, law.series, series.get(k));
         let innovations = pass.step(&motion, &free, &law.noise, &observation);
@@ -194,7 +197,7 @@ pub fn run(
                 }
             }
         }
-        outcome.steps.push(Step { predicted: pass.predicted, filtered: pass.filter, transition: pass.map.transition });
+        outcome.steps.push(Step { innovations, filtered: pass.filter, transition: pass.map.transition });
         outcome.finite &= pass.filter.state.is_finite();
     }
     outcome.log_likelihood = pass.track.log_likelihood();
@@ -204,9 +207,10 @@ pub fn run(
 }
 
 impl Outcome {
-    fn none(stretches: usize, unknowns: usize, candidates: usize, samples: usize) -> Outcome {
+    fn none(first: Filter, stretches: usize, [unknowns, candidates]: [usize; 2], samples: usize) -> Outcome {
         Outcome {
             sums: vec![Sums::none(unknowns, candidates); stretches],
+            first,
             steps: Vec::with_capacity(samples),
             log_likelihood: 0.0,
             rivals: [0.0; 2],

@@ -1,47 +1,42 @@
-//! The motion as all samples together tell it: the Rauch–Tung–Striebel smoother over a run of the filter.
+//! The motion as all samples together tell it: the Bryson–Frazier smoother over a run of the filter.
 //!
-//! Rauch, Tung and Striebel, AIAA Journal 3 (1965), 1445: backward from the last sample, the smoothed state at k is the filtered one
-//! plus G (smoothed − predicted at k + 1), G = P Aᵀ (P⁻)⁻¹.
+//! Bierman, International Journal of Control 18 (1973), 65: the smoothed state at k is x − P λ with the filtered x and P, and λ goes backward
+//! through the measurements, λ ← (I − K H)ᵀ λ − Hᵀ ε ÷ s, and through the intervals, λ ← Aᵀ λ. Nothing is inverted: where a law
+//! explains its record the covariance is all but singular, and a smoother that divides by it goes back along the law without the
+//! measurements, which a damped motion does not bear.
 
-use super::piece::Piece;
 use super::run::Step;
+use crate::evidence::{Channel, Filter, Innovation};
 use crate::law::State;
 
-/// States at every sample of a piece, the first taken from the second back by the first interval.
-pub fn smooth(piece: &Piece, steps: &[Step]) -> Vec<State> {
-    let mut states: Vec<State> = steps.iter().map(|step| step.filtered.state).collect();
-    for k in (0..steps.len().saturating_sub(1)).rev() {
-        let next = &steps[k + 1];
-        let correction = [states[k + 1].q - next.predicted.state.q, states[k + 1].qd - next.predicted.state.qd];
-        let gain = backward_gain(&steps[k], next);
-        let state = steps[k].filtered.state;
-        states[k] = State {
-            q: state.q + gain[0][0] * correction[0] + gain[0][1] * correction[1],
-            qd: state.qd + gain[1][0] * correction[0] + gain[1][1] * correction[1],
-        };
+/// States at every sample of a piece that begins with `first`, one step for each sample after.
+pub fn smooth(first: &Filter, steps: &[Step]) -> Vec<State> {
+    let mut states = vec![first.state; steps.len() + 1];
+    let mut adjoint = [0.0; 2];
+    for (k, step) in steps.iter().enumerate().rev() {
+        states[k + 1] = moved(&step.filtered, adjoint);
+        for channel in [Channel::Qd, Channel::Q] {
+            if let Some(innovation) = &step.innovations[channel as usize] {
+                adjoint = before_measurement(channel, innovation, adjoint);
+            }
+        }
+        let [[a, b], [c, d]] = step.transition;
+        adjoint = [a * adjoint[0] + c * adjoint[1], b * adjoint[0] + d * adjoint[1]];
     }
-    let first = before(piece, &states);
-    states.insert(0, first);
+    states[0] = moved(first, adjoint);
     states
 }
 
-/// P Aᵀ (P⁻)⁻¹; the identity of a deterministic interval, A⁻¹, where P⁻ is singular.
-fn backward_gain(now: &Step, next: &Step) -> [[f64; 2]; 2] {
-    let [qq, qv, vv] = now.filtered.covariance;
-    let [[a, b], [c, d]] = next.transition;
-    let cross = [[qq * a + qv * b, qq * c + qv * d], [qv * a + vv * b, qv * c + vv * d]];
-    let [pqq, pqv, pvv] = next.predicted.covariance;
-    let determinant = pqq * pvv - pqv * pqv;
-    if determinant <= 1e-14 * pqq * pvv {
-        let inverse = (a * d - b * c).recip();
-        return [[d * inverse, -b * inverse], [-c * inverse, a * inverse]];
-    }
-    cross.map(|[x, y]| [(x * pvv - y * pqv) / determinant, (y * pqq - x * pqv) / determinant])
+/// x − P λ.
+fn moved(filter: &Filter, [q, qd]: [f64; 2]) -> State {
+    let [qq, qv, vv] = filter.covariance;
+    State { q: filter.state.q - qq * q - qv * qd, qd: filter.state.qd - qv * q - vv * qd }
 }
 
-fn before(piece: &Piece, states: &[State]) -> State {
-    let dt = piece.t[1] - piece.t[0];
-    let next = states[0];
-    let slope = states.get(1).map_or(0.0, |after| (after.qd - next.qd) / (piece.t[2] - piece.t[1]));
-    State { q: next.q - dt * next.qd + 0.5 * dt * dt * slope, qd: next.qd - dt * slope }
+fn before_measurement(channel: Channel, innovation: &Innovation, adjoint: [f64; 2]) -> [f64; 2] {
+    let [gain_q, gain_qd] = innovation.gain;
+    let taken = gain_q * adjoint[0] + gain_qd * adjoint[1] + innovation.residual * innovation.precision;
+    let mut before = adjoint;
+    before[channel as usize] -= taken;
+    before
 }

@@ -114,8 +114,6 @@ impl IntervalMap {
 pub struct Pass {
     /// The filter in use.
     pub filter: Filter,
-    /// The same before the last sample was taken.
-    pub predicted: Filter,
     /// Its likelihood.
     pub track: Track,
     /// Likelihoods under the process noise times [`RIVALS`].
@@ -145,7 +143,6 @@ impl Pass {
         let filter = Filter { state: State::default(), covariance: [0.0; 3] };
         Pass {
             filter,
-            predicted: filter,
             track: Track::default(),
             rivals: [Track::default(); 2],
             information: Information::none(n),
@@ -190,7 +187,6 @@ impl Pass {
         }
         self.compiled.follow(motion);
         self.advance(noise, observation);
-        self.predicted = self.filter;
         let innovations = Channel::ALL.map(|channel| self.correct(channel, noise, observation));
         self.inform(&innovations);
         innovations
