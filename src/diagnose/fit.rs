@@ -238,8 +238,9 @@ impl Descent<'_> {
             self.beside.add_prior(&mut sums);
             let solved = solve(&sums.information, &sums.score)?;
             let decrement = solved.step.dot(&sums.score) / self.parts.unknowns.len().max(1) as f64;
+            let followed = self.is_followed(best.as_ref(), log_likelihood);
             best = Some(self.summary(log_likelihood, solved.covariance, sums.count));
-            let steady = move_noise(&mut self.noise, &outcomes, start::largest(self.pieces));
+            let steady = move_noise(&mut self.noise, &outcomes, start::largest(self.pieces)) && followed;
             calm = if steady && decrement < SETTLED.max(1e-9 * sums.count) { calm + 1 } else { 0 };
             if calm >= 2 {
                 break;
@@ -276,7 +277,6 @@ impl Descent<'_> {
                 return reached;
             }
             self.take(&solved.step);
-            self.take_series(&outcomes);
         }
         reached
     }
@@ -294,6 +294,12 @@ impl Descent<'_> {
         };
         let pairs = self.pieces.iter().zip(&self.beside.rows);
         pairs.map(|(piece, rows)| run::run(&law, piece, pass, rows, &[], &[])).collect()
+    }
+
+    /// Whether the series have followed the motion that they are part of: they are renewed pass by pass.
+    fn is_followed(&self, before: Option<&Fit>, log_likelihood: f64) -> bool {
+        let gained = before.map_or(f64::INFINITY, |before| (log_likelihood - before.log_likelihood).abs());
+        self.parts.series.is_empty() || gained < GAIN
     }
 
     /// Series need a motion before there is one: that of the law without them.
