@@ -11,6 +11,7 @@ use super::piece::Piece;
 use super::run::{self, Law, Outcome, Sums};
 use super::smooth::smooth;
 use super::start;
+use super::variants::Scale;
 use crate::evidence::{Noise, Pass, RIVALS};
 use crate::law::{Expression, State, Term};
 use nalgebra::{DMatrix, DVector};
@@ -32,6 +33,9 @@ const HOPELESS: f64 = 5.0;
 
 /// Passes in which the sensors alone take all error.
 const QUIET_PASSES: usize = 8;
+
+/// Rate at which the measurements hold the motion of the series, relative to the motion's own angular frequency.
+const HELD: f64 = 1.0;
 
 /// Factor by which a step may change the inertia.
 const LARGEST_RATIO: f64 = 2.5;
@@ -246,7 +250,7 @@ impl Descent<'_> {
                 break;
             }
             self.take(&solved.step);
-            self.take_series(&outcomes);
+            self.follow(&outcomes, pass);
         }
         let mut best = best?;
         self.beside.set(&best.beginnings);
@@ -308,6 +312,27 @@ impl Descent<'_> {
             let outcomes = self.run(pass);
             self.take_series(&outcomes);
         }
+    }
+
+    /// Renews the series along a motion that the measurements hold: one that the law alone carries from end to end would follow its own errors,
+    /// growing from pass to pass where a memory resonates.
+    fn follow(&mut self, outcomes: &[Outcome], pass: &mut Pass) {
+        if self.parts.series.is_empty() {
+            return;
+        }
+        let scale = Scale::of(self.pieces, &self.smoothed(outcomes));
+        let rate = HELD * scale.frequency[0];
+        let [q, qd] = self.noise.sensor;
+        let displaced = self.pieces.iter().all(|piece| piece.q.is_some());
+        let process = if displaced { rate.powi(4) * q } else { rate.powi(2) * qd } * scale.sample_time;
+        let own = self.noise.process;
+        if own >= process {
+            return self.take_series(outcomes);
+        }
+        self.noise.process = process;
+        let held = self.run(pass);
+        self.noise.process = own;
+        self.take_series(&held);
     }
 
     fn take_series(&mut self, outcomes: &[Outcome]) {
