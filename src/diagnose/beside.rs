@@ -5,10 +5,10 @@
 //! much the record narrows it, is taken off the likelihood (Laplace's approximation of what is left when it is integrated out).
 
 use super::fit::{Form, Parts};
-use super::inner_slopes::{self, Sought};
+use super::inner_slopes::{self, Along, Sought};
 use super::piece::Piece;
 use super::run::Sums;
-use crate::law::{Effect, Line, State, Term, Trajectory, interval_forces};
+use crate::law::{Effect, Hold, Line, Motion, State, Term, Trajectory, interval_forces};
 use nalgebra::DMatrix;
 
 /// Part of a beginning's spread by which it is moved to see what it does.
@@ -60,19 +60,23 @@ impl Beside {
     ) -> Beside {
         let parts = Parts::of(form);
         let mut all = Beside::none(form, &parts, inner, pieces);
+        let smooth = Smooth::of(form, &parts, coefficients);
         let (mut column, mut first) = (parts.series.len() + inner.len(), 0);
         for (number, (piece, states)) in pieces.iter().zip(states).enumerate() {
             let course = Course::of(piece, states);
+            let bends = smooth.bends(piece, states);
             let begin = |term: usize| own_beginnings(form, &parts, term, &beginnings[first..]);
             for (position, one) in inner.iter().enumerate() {
-                let slope = inner_slopes::slope((form, coefficients), *one, (piece, states), begin(one.term));
+                let along = Along { piece, states, bends: &bends, begin: begin(one.term) };
+                let slope = inner_slopes::slope((form, coefficients), *one, along);
                 put(&mut all.rows[number], parts.series.len() + position, &slope, |line| *line);
             }
             for (position, index) in parts.series.iter().enumerate() {
                 let (term, coefficient) = (form.terms[*index], coefficients[*index]);
                 let length = term.effect().map_or(0, Effect::beginning_length);
                 let begin = &beginnings[first..first + length];
-                let force = |begin: &[f64]| interval_forces(term, &form.expressions, &course.trajectory(), begin);
+                let force =
+                    |begin: &[f64]| interval_forces(term, &form.expressions, &course.trajectory(), &bends, begin);
                 let own = force(begin);
                 let spreads = spreads(term, &own, &piece.excitation);
                 put(&mut all.rows[number], position, &own, |line| *line);
@@ -176,6 +180,32 @@ fn spreads(term: Term, forces: &[Line], excitation: &[f64]) -> Vec<f64> {
     let force = rms(excitation.iter().map(|value| value * value).sum(), excitation.len());
     let positive = |spread: f64| if spread > 0.0 && spread.is_finite() { spread } else { 1.0 };
     effect.beginning_spread(feature, force).into_iter().map(positive).collect()
+}
+
+/// The part of a law that tells how the acceleration changes between samples: what the state gives without a jump.
+struct Smooth {
+    terms: Vec<Term>,
+    coefficients: Vec<f64>,
+}
+
+impl Smooth {
+    fn of(form: &Form, parts: &Parts, coefficients: &[f64]) -> Smooth {
+        let dry = |index: &&usize| form.terms[**index].effect().is_some_and(Effect::is_dry);
+        let kept: Vec<usize> = parts.of_state.iter().filter(|index| !dry(index)).copied().collect();
+        let terms = kept.iter().map(|index| form.terms[*index]).collect();
+        Smooth { terms, coefficients: kept.iter().map(|index| coefficients[*index]).collect() }
+    }
+
+    /// Change of q̈ over every interval.
+    fn bends(&self, piece: &Piece, states: &[State]) -> Vec<f64> {
+        let motion = Motion { terms: &self.terms, coefficients: &self.coefficients };
+        let bend = |k: usize| {
+            let last = if piece.hold == Hold::Zero { k } else { k + 1 };
+            motion.acceleration(states[k + 1], piece.excitation[last])
+                - motion.acceleration(states[k], piece.excitation[k])
+        };
+        (0..states.len().saturating_sub(1)).map(bend).collect()
+    }
 }
 
 /// A smoothed motion by channel.

@@ -12,6 +12,7 @@ use super::piece::Piece;
 use super::run::{self, Law, Outcome, Sums};
 use super::smooth::smooth;
 use super::start;
+use super::variants::Scale;
 use crate::evidence::{Noise, Pass, RIVALS};
 use crate::law::{Expression, State, Term};
 use nalgebra::{DMatrix, DVector};
@@ -33,6 +34,9 @@ const HOPELESS: f64 = 5.0;
 
 /// Passes in which the sensors alone take all error.
 const QUIET_PASSES: usize = 8;
+
+/// Rate at which the measurements hold the motion of the series, relative to the motion's own angular frequency.
+const HELD: f64 = 1.0;
 
 /// Factor by which a step may change the inertia.
 const LARGEST_RATIO: f64 = 2.5;
@@ -258,17 +262,18 @@ impl Descent<'_> {
             self.beside.add_prior(&mut sums);
             let solved = solve(&sums.information, &sums.score)?;
             let decrement = solved.step.dot(&sums.score) / solved.step.len().max(1) as f64;
+            let followed = self.is_followed(best.as_ref(), log_likelihood);
             let present = self.summary(log_likelihood, solved.covariance, sums.count);
             if best.as_ref().is_none_or(|best| present.log_likelihood >= best.log_likelihood) {
                 best = Some(present);
             }
-            let steady = move_noise(&mut self.noise, &outcomes, start::largest(self.pieces));
+            let steady = move_noise(&mut self.noise, &outcomes, start::largest(self.pieces)) && followed;
             calm = if steady && decrement < SETTLED.max(1e-9 * sums.count) { calm + 1 } else { 0 };
             if calm >= 2 {
                 break;
             }
             self.take(&solved.step);
-            self.take_series(&outcomes);
+            self.follow(&outcomes, pass);
         }
         let mut best = best?;
         self.beside.set(&best.beginnings);
@@ -300,7 +305,6 @@ impl Descent<'_> {
                 return reached;
             }
             self.take(&solved.step);
-            self.take_series(&outcomes);
         }
         reached
     }
@@ -320,6 +324,12 @@ impl Descent<'_> {
         pairs.map(|(piece, rows)| run::run(&law, piece, pass, rows, &[], &[], None)).collect()
     }
 
+    /// Whether the series have followed the motion that they are part of: they are renewed pass by pass.
+    fn is_followed(&self, before: Option<&Fit>, log_likelihood: f64) -> bool {
+        let gained = before.map_or(f64::INFINITY, |before| (log_likelihood - before.log_likelihood).abs());
+        self.parts.series.is_empty() || gained < GAIN
+    }
+
     /// Series need a motion before there is one: that of the law without them.
     fn renew_series(&mut self, pass: &mut Pass) {
         if self.has_series() {
@@ -330,6 +340,27 @@ impl Descent<'_> {
 
     fn has_series(&self) -> bool {
         !self.parts.series.is_empty() || !self.inner.is_empty()
+    }
+
+    /// Renews the series along a motion that the measurements hold: one that the law alone carries from end to end would follow its own errors,
+    /// growing from pass to pass where a memory resonates.
+    fn follow(&mut self, outcomes: &[Outcome], pass: &mut Pass) {
+        if self.parts.series.is_empty() {
+            return self.take_series(outcomes);
+        }
+        let scale = Scale::of(self.pieces, &self.smoothed(outcomes));
+        let rate = HELD * scale.frequency[0];
+        let [q, qd] = self.noise.sensor;
+        let displaced = self.pieces.iter().all(|piece| piece.q.is_some());
+        let process = if displaced { rate.powi(4) * q } else { rate.powi(2) * qd } * scale.sample_time;
+        let own = self.noise.process;
+        if own >= process {
+            return self.take_series(outcomes);
+        }
+        self.noise.process = process;
+        let held = self.run(pass);
+        self.noise.process = own;
+        self.take_series(&held);
     }
 
     fn take_series(&mut self, outcomes: &[Outcome]) {

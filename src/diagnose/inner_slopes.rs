@@ -39,13 +39,21 @@ fn effect_at(form: &Form, index: usize) -> Option<Effect> {
     form.terms[index].effect()
 }
 
+/// A smoothed motion of a piece, how its acceleration changes over every interval, and where a memory begins.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Along<'a> {
+    pub(super) piece: &'a Piece,
+    pub(super) states: &'a [State],
+    pub(super) bends: &'a [f64],
+    pub(super) begin: &'a [f64],
+}
+
 /// Change of the law's force over every interval with the logarithm of an inner parameter, along a smoothed motion, its memory beginning
 /// there.
 pub(super) fn slope(
     (form, coefficients): (&Form, &[f64]),
     one: Sought,
-    (piece, states): (&Piece, &[State]),
-    begin: &[f64],
+    Along { piece, states, bends, begin }: Along,
 ) -> Vec<Line> {
     let flat = || vec![[0.0; 2]; piece.len() - 1];
     let Some(present) = form.terms[one.term].effect() else { return flat() };
@@ -58,7 +66,7 @@ pub(super) fn slope(
         let term = Term::Effect(effect);
         match effect.is_pointwise() {
             true => means::means(term, &[], piece, states).into_iter().map(|mean| [mean; 2]).collect(),
-            false => interval_forces(term, &[], &course.trajectory(), begin),
+            false => interval_forces(term, &[], &course.trajectory(), bends, begin),
         }
     };
     let pairs = forces(above).into_iter().zip(forces(below));

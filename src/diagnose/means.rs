@@ -19,7 +19,8 @@ pub(super) fn means(term: Term, expressions: &[Expression], piece: &Piece, state
         return pointwise(term, piece, states);
     }
     let course = Course::of(piece, states);
-    let lines = interval_forces(term, expressions, &course.trajectory(), &[]);
+    let straight = vec![0.0; piece.len() - 1];
+    let lines = interval_forces(term, expressions, &course.trajectory(), &straight, &[]);
     lines.into_iter().map(|[from, to]| 0.5 * (from + to)).collect()
 }
 

@@ -1,6 +1,7 @@
 //! What a term does between the samples of a motion that is known at them: the straight line with its mean and its first moment.
 //!
-//! The motion follows the cubic that has the displacements and velocities of both ends (Hermite); internal states are integrated along it on a
+//! The displacement follows the cubic that has the displacements and velocities of both ends (Hermite), the velocity the parabola through
+//! those of both ends that has the change of acceleration which the law gives: noise of q does not enter it. Internal states are integrated along it on a
 //! grid [`PANELS`] times finer than the samples, or finer yet where they are fast. A force f(s), s from 0 to 1 over the interval, becomes the
 //! line whose mean is ∫ f ds and whose moment about the middle is ∫ f (s − ½) ds: what acts on a coordinate that hardly moves
 //! within the interval is exact to second order.
@@ -55,22 +56,25 @@ impl Effect {
 }
 
 /// The force of a term with memory, a delay or a formula over every interval, per unit of its coefficient; NaN for an expression that is not
-/// there, and for a term that has a pointwise force. `beginning` has [`Effect::beginning_length`] numbers.
+/// there, and for a term that has a pointwise force. `bends` is by how much q̈ changes over each interval, m/s²; `beginning` has
+/// [`Effect::beginning_length`] numbers.
 pub fn interval_forces(
     term: Term,
     expressions: &[Expression],
     trajectory: &Trajectory,
+    bends: &[f64],
     beginning: &[f64],
 ) -> Vec<Line> {
     let count = trajectory.t.len().saturating_sub(1);
+    let course = Course { trajectory, bends };
     match term {
         Term::Effect(Effect::ExcitationDelay { delay }) => {
             let offset = beginning.first().copied().unwrap_or_default();
             (0..count).map(|k| delayed(trajectory, k, delay.value(), offset)).collect()
         }
-        Term::Effect(effect) if effect.memory_length() > 0 => remembered(effect, trajectory, beginning),
+        Term::Effect(effect) if effect.memory_length() > 0 => remembered(effect, &course, beginning),
         Term::Expression(index) => match expressions.get(usize::from(index)) {
-            Some(expression) => (0..count).map(|k| expressed(expression, trajectory, k)).collect(),
+            Some(expression) => (0..count).map(|k| expressed(expression, &course, k)).collect(),
             None => vec![[f64::NAN; 2]; count],
         },
         _ => vec![[f64::NAN; 2]; count],
@@ -108,71 +112,83 @@ impl Simpson {
     }
 }
 
-/// The state at a share of the way from a sample to the next.
-fn between(trajectory: &Trajectory, index: usize, share: f64) -> State {
-    let (from, to) = (trajectory.state(index), trajectory.state(index + 1));
-    let width = trajectory.t[index + 1] - trajectory.t[index];
-    let slope = (to.q - from.q) / width;
-    let (before, after) = (from.qd - slope, to.qd - slope);
-    let bend = share * (1.0 - share);
-    State {
-        q: from.q + width * (share * slope + bend * ((1.0 - share) * before - share * after)),
-        qd: slope + before * (1.0 - share) * (1.0 - 3.0 * share) + after * share * (3.0 * share - 2.0),
+/// A motion between its samples.
+struct Course<'a> {
+    trajectory: &'a Trajectory<'a>,
+    bends: &'a [f64],
+}
+
+impl Course<'_> {
+    /// The state at a share of the way from a sample to the next.
+    fn between(&self, index: usize, share: f64) -> State {
+        let (from, to) = (self.trajectory.state(index), self.trajectory.state(index + 1));
+        let width = self.trajectory.t[index + 1] - self.trajectory.t[index];
+        let slope = (to.q - from.q) / width;
+        let inside = share * (1.0 - share);
+        let turn = (1.0 - share) * (from.qd - slope) - share * (to.qd - slope);
+        let bend = self.bends.get(index).copied().unwrap_or_default();
+        State {
+            q: from.q + width * (share * slope + inside * turn),
+            qd: from.qd + share * (to.qd - from.qd) - 0.5 * inside * width * bend,
+        }
     }
 }
 
-fn expressed(expression: &Expression, trajectory: &Trajectory, k: usize) -> Line {
+fn expressed(expression: &Expression, course: &Course, k: usize) -> Line {
+    let trajectory = course.trajectory;
     let (from, to) = (trajectory.t[k], trajectory.t[k + 1]);
     let samples = trajectory.samples();
     let mut sums = Simpson::default();
     for node in 0..=PANELS {
         let share = node as f64 / PANELS as f64;
-        let (t, State { q, qd }) = (from + share * (to - from), between(trajectory, k, share));
+        let (t, State { q, qd }) = (from + share * (to - from), course.between(k, share));
         let excitation = if trajectory.hold == Hold::Zero { trajectory.excitation[k] } else { samples.at(t) };
         sums.add(node, PANELS, expression.value(q, qd, excitation, t));
     }
     sums.line()
 }
 
-fn remembered(effect: Effect, trajectory: &Trajectory, beginning: &[f64]) -> Vec<Line> {
+fn remembered(effect: Effect, course: &Course, beginning: &[f64]) -> Vec<Line> {
+    let trajectory = course.trajectory;
     let Some(last) = trajectory.t.len().checked_sub(1) else { return Vec::new() };
     let mut memory = effect.rest(trajectory.state(0));
     memory.iter_mut().zip(beginning).for_each(|(value, offset)| *value += offset);
     if let Some(shape) = Loop::of(effect) {
-        return looped(&shape, trajectory, memory[0]);
+        return looped(&shape, course, memory[0]);
     }
     (0..last)
         .map(|k| {
             let line;
-            (line, memory) = followed(effect, trajectory, k, memory);
+            (line, memory) = followed(effect, course, k, memory);
             line
         })
         .collect()
 }
 
 /// z along a motion that begins with it.
-fn looped(shape: &Loop, trajectory: &Trajectory, z: f64) -> Vec<Line> {
-    let mut place = shape.place(z, trajectory.qd[0]);
+fn looped(shape: &Loop, course: &Course, z: f64) -> Vec<Line> {
+    let mut place = shape.place(z, course.trajectory.qd[0]);
     let interval = |k: usize| {
         let mut sums = Simpson::default();
         sums.add(0, PANELS, shape.z(place));
         for panel in 0..PANELS {
             let share = |part: f64| (panel as f64 + part) / PANELS as f64;
-            let states = [0.0, 1.0].map(|part| between(trajectory, k, share(part)));
-            place = shape.followed(place, states, |part| between(trajectory, k, share(part)).q);
+            let states = [0.0, 1.0].map(|part| course.between(k, share(part)));
+            place = shape.followed(place, states, |part| course.between(k, share(part)).q);
             sums.add(panel + 1, PANELS, shape.z(place));
         }
         sums.line()
     };
-    (0..trajectory.t.len() - 1).map(interval).collect()
+    (0..course.trajectory.t.len() - 1).map(interval).collect()
 }
 
 /// The force over an interval, and the internal states at its end.
-fn followed(effect: Effect, trajectory: &Trajectory, k: usize, memory: [f64; LARGEST]) -> (Line, [f64; LARGEST]) {
+fn followed(effect: Effect, course: &Course, k: usize, memory: [f64; LARGEST]) -> (Line, [f64; LARGEST]) {
+    let trajectory = course.trajectory;
     let dt = trajectory.t[k + 1] - trajectory.t[k];
     let speed = trajectory.qd[k].abs().max(trajectory.qd[k + 1].abs());
     let panels = parts(effect.memory_rate(speed), dt).max(PANELS).next_multiple_of(2);
-    let state = |half: usize| between(trajectory, k, 0.5 * half as f64 / panels as f64);
+    let state = |half: usize| course.between(k, 0.5 * half as f64 / panels as f64);
     let mut sums = Simpson::default();
     let mut memory = memory;
     sums.add(0, panels, effect.feature(state(0), &memory));
@@ -252,7 +268,14 @@ mod tests {
         let q: Vec<f64> = record.phases.iter().map(|phase| phase.state.q).collect();
         let qd: Vec<f64> = record.phases.iter().map(|phase| phase.state.qd).collect();
         let trajectory = Trajectory { t: &record.t, q: &q, qd: &qd, excitation: &record.excitation, hold };
-        interval_forces(term, &[], &trajectory, beginning)
+        let at = |k: usize| {
+            let State { q, qd } = record.phases[k].state;
+            let feature = term.effect().filter(|effect| effect.memory_length() > 0);
+            let own = feature.map_or(0.0, |effect| effect.feature(record.phases[k].state, &record.phases[k].memory));
+            record.excitation[k] - 0.2 * qd - 3.0 * q - 0.3 * own
+        };
+        let bends: Vec<f64> = (0..record.t.len() - 1).map(|k| at(k + 1) - at(k)).collect();
+        interval_forces(term, &[], &trajectory, &bends, beginning)
     }
 
     fn effect(id: &str, inner: &[f64]) -> Effect {
@@ -307,7 +330,9 @@ mod tests {
         let (t, q, qd, excitation) = ([0.0, 0.1], [1.0, 1.2], [1.0, 3.0], [5.0, 6.0]);
         let trajectory = Trajectory { t: &t, q: &q, qd: &qd, excitation: &excitation, hold: Hold::Zero };
         let expression = Expression::parse("x", "qd + F + t").unwrap();
-        let [line] = interval_forces(Term::Expression(0), &[expression], &trajectory, &[])[..] else { panic!() };
+        let [line] = interval_forces(Term::Expression(0), &[expression], &trajectory, &[0.0], &[])[..] else {
+            panic!()
+        };
         let mean = 2.0 + 5.0 + 0.05;
         assert!((0.5 * (line[0] + line[1]) - mean).abs() < 1e-12, "{line:?}");
         assert!((line[1] - line[0] - 2.1).abs() < 1e-12, "{line:?}");
