@@ -111,12 +111,6 @@ impl Beside {
         self.changes.iter_mut().zip(own).for_each(|(change, step)| *change += fraction * step);
     }
 
-    /// Sets the beginnings back, or forth.
-    pub(super) fn set(&mut self, beginnings: &[f64]) {
-        let pairs = self.beginnings.iter().zip(beginnings);
-        self.changes.iter_mut().zip(pairs).for_each(|(change, (from, to))| *change = to - from);
-    }
-
     /// Where the memories begin, as far as they can.
     pub(super) fn beginnings(&self, form: &Form, parts: &Parts) -> Vec<f64> {
         let own = |effect: Effect| std::iter::repeat_n(effect, effect.beginning_length());

@@ -5,41 +5,15 @@
 //! Terms that no state gives (memory, delay, expressions of time) are series along the smoothed motion, renewed with it.
 
 use super::beside::Beside;
+use super::descent::Descent;
 use super::diagnosis::effect_name;
-use super::inner_slopes::{self, Sought};
+use super::inner_slopes;
 use super::means::is_series;
 use super::piece::Piece;
-use super::run::{self, Law, Outcome, Sums};
-use super::smooth::smooth;
 use super::start;
-use super::variants::Scale;
-use crate::evidence::{Noise, Pass, RIVALS};
+use crate::evidence::{Noise, Pass};
 use crate::law::{Expression, State, Term};
 use nalgebra::{DMatrix, DVector};
-
-/// Most passes of one descent.
-const PASSES: usize = 40;
-
-/// Gauss–Newton decrement per unknown below which a step is no longer one.
-const SETTLED: f64 = 1e-3;
-
-/// Gain in log-likelihood, nats, that another level of process noise must promise.
-const GAIN: f64 = 0.1;
-
-/// Smallest sensor noise std, relative to the largest value measured.
-const NOISE_FLOOR: f64 = 1e-7;
-
-/// The sensors alone do not come to explain the record where a pass makes good only this part of what is missing, 1 ÷.
-const HOPELESS: f64 = 5.0;
-
-/// Passes in which the sensors alone take all error.
-const QUIET_PASSES: usize = 8;
-
-/// Rate at which the measurements hold the motion of the series, relative to the motion's own angular frequency.
-const HELD: f64 = 1.0;
-
-/// Factor by which a step may change the inertia.
-const LARGEST_RATIO: f64 = 2.5;
 
 /// Guesses from which a fit begins, at most.
 const STARTS: usize = 4;
@@ -138,7 +112,7 @@ impl Form {
         }
     }
 
-    fn inertia(&self) -> Option<usize> {
+    pub(super) fn inertia(&self) -> Option<usize> {
         self.terms.iter().position(|term| *term == Term::Inertia)
     }
 }
@@ -156,19 +130,6 @@ impl Fit {
         let row = unknowns.iter().position(|unknown| *unknown == index);
         row.map_or(0.0, |row| self.covariance[(row, row)].max(0.0).sqrt())
     }
-}
-
-/// Where a descent stands.
-#[derive(Clone, Debug)]
-struct Descent<'a> {
-    form: Form,
-    pieces: &'a [Piece],
-    parts: Parts,
-    inner: Vec<Sought>,
-    coefficients: Vec<f64>,
-    noise: Noise,
-    /// The series.
-    beside: Beside,
 }
 
 /// The terms of a form by the way they enter a run.
@@ -241,218 +202,6 @@ pub fn refit(form: &Form, pieces: &[Piece], coefficients: &[f64], noise: Noise) 
     Some(quiet.unwrap_or(loud))
 }
 
-impl Descent<'_> {
-    /// Passes until coefficients and noise stay; leaves them where they are best.
-    fn descend(&mut self, pass: &mut Pass) -> Option<Fit> {
-        let mut best: Option<Fit> = None;
-        let mut calm = 0;
-        for _ in 0..PASSES {
-            let outcomes = self.run(pass);
-            if outcomes.iter().any(|outcome| !outcome.finite) {
-                self.noise.process *= 100.0;
-                let last = best.as_ref()?;
-                self.coefficients.clone_from(&last.coefficients);
-                self.form.clone_from(&last.form);
-                self.beside.set(&last.beginnings);
-                calm = 0;
-                continue;
-            }
-            let mut sums = total(&outcomes);
-            let log_likelihood = self.log_likelihood(&outcomes, &sums);
-            self.beside.add_prior(&mut sums);
-            let solved = solve(&sums.information, &sums.score)?;
-            let decrement = solved.step.dot(&sums.score) / solved.step.len().max(1) as f64;
-            let followed = self.is_followed(best.as_ref(), log_likelihood);
-            let present = self.summary(log_likelihood, solved.covariance, sums.count);
-            if best.as_ref().is_none_or(|best| present.log_likelihood >= best.log_likelihood) {
-                best = Some(present);
-            }
-            let steady = move_noise(&mut self.noise, &outcomes, start::largest(self.pieces)) && followed;
-            calm = if steady && decrement < SETTLED.max(1e-9 * sums.count) { calm + 1 } else { 0 };
-            if calm >= 2 {
-                break;
-            }
-            self.take(&solved.step);
-            self.follow(&outcomes, pass);
-        }
-        let mut best = best?;
-        self.beside.set(&best.beginnings);
-        (self.coefficients, self.noise) = (best.coefficients.clone(), best.noise);
-        self.form.clone_from(&best.form);
-        best.states = self.smoothed(&self.run(pass));
-        Some(best)
-    }
-
-    /// Log-likelihood under no process noise, the sensors' noise taking all error, coefficients moving along.
-    /// Gives up where it will not come near `loud`.
-    fn quieten(&mut self, pass: &mut Pass, loud: f64) -> f64 {
-        let mut reached = f64::NEG_INFINITY;
-        let largest = start::largest(self.pieces);
-        for _ in 0..QUIET_PASSES {
-            self.noise.process = start::negligible(&self.noise);
-            let outcomes = self.run(pass);
-            if outcomes.iter().any(|outcome| !outcome.finite) {
-                return reached;
-            }
-            let mut sums = total(&outcomes);
-            let log_likelihood = self.log_likelihood(&outcomes, &sums);
-            self.beside.add_prior(&mut sums);
-            let gained = log_likelihood - reached;
-            reached = reached.max(log_likelihood);
-            let Some(solved) = solve(&sums.information, &sums.score) else { return reached };
-            move_noise(&mut self.noise, &outcomes, largest);
-            if gained.abs() < GAIN || loud - reached > HOPELESS * gained {
-                return reached;
-            }
-            self.take(&solved.step);
-        }
-        reached
-    }
-
-    fn run(&self, pass: &mut Pass) -> Vec<Outcome> {
-        let terms: Vec<Term> = self.parts.of_state.iter().map(|index| self.form.terms[*index]).collect();
-        let coefficients: Vec<f64> = self.parts.of_state.iter().map(|index| self.coefficients[*index]).collect();
-        let series = self.beside.weights(&self.parts, &self.coefficients);
-        let law = Law {
-            terms: &terms,
-            coefficients: &coefficients,
-            free: &self.parts.free,
-            series: &series,
-            noise: self.noise,
-        };
-        let pairs = self.pieces.iter().zip(&self.beside.rows);
-        pairs.map(|(piece, rows)| run::run(&law, piece, pass, rows, &[], &[], None)).collect()
-    }
-
-    /// Whether the series have followed the motion that they are part of: they are renewed pass by pass.
-    fn is_followed(&self, before: Option<&Fit>, log_likelihood: f64) -> bool {
-        let gained = before.map_or(f64::INFINITY, |before| (log_likelihood - before.log_likelihood).abs());
-        self.parts.series.is_empty() || gained < GAIN
-    }
-
-    /// Series need a motion before there is one: that of the law without them.
-    fn renew_series(&mut self, pass: &mut Pass) {
-        if self.has_series() {
-            let outcomes = self.run(pass);
-            self.take_series(&outcomes);
-        }
-    }
-
-    fn has_series(&self) -> bool {
-        !self.parts.series.is_empty() || !self.inner.is_empty()
-    }
-
-    /// Renews the series along a motion that the measurements hold: one that the law alone carries from end to end would follow its own errors,
-    /// growing from pass to pass where a memory resonates.
-    fn follow(&mut self, outcomes: &[Outcome], pass: &mut Pass) {
-        if self.parts.series.is_empty() {
-            return self.take_series(outcomes);
-        }
-        let scale = Scale::of(self.pieces, &self.smoothed(outcomes));
-        let rate = HELD * scale.frequency[0];
-        let [q, qd] = self.noise.sensor;
-        let displaced = self.pieces.iter().all(|piece| piece.q.is_some());
-        let process = if displaced { rate.powi(4) * q } else { rate.powi(2) * qd } * scale.sample_time;
-        let own = self.noise.process;
-        if own >= process {
-            return self.take_series(outcomes);
-        }
-        self.noise.process = process;
-        let held = self.run(pass);
-        self.noise.process = own;
-        self.take_series(&held);
-    }
-
-    fn take_series(&mut self, outcomes: &[Outcome]) {
-        if self.has_series() {
-            let states = self.smoothed(outcomes);
-            let beginnings = self.beside.beginnings(&self.form, &self.parts);
-            let law = (&self.form, self.coefficients.as_slice());
-            self.beside = Beside::along(law, &self.inner, self.pieces, &states, &beginnings);
-        }
-    }
-
-    /// Of all pieces, the price of unknown beginnings taken off; `sums` without their prior.
-    fn log_likelihood(&self, outcomes: &[Outcome], sums: &Sums) -> f64 {
-        outcomes.iter().map(|outcome| outcome.log_likelihood).sum::<f64>() - self.beside.price(sums)
-    }
-
-    fn smoothed(&self, outcomes: &[Outcome]) -> Vec<Vec<State>> {
-        outcomes.iter().map(|outcome| smooth(&outcome.first, &outcome.steps)).collect()
-    }
-
-    fn summary(&self, log_likelihood: f64, covariance: DMatrix<f64>, measurements: f64) -> Fit {
-        let sought = self.parts.unknowns.len() + self.inner.len();
-        Fit {
-            form: self.form.clone(),
-            coefficients: self.coefficients.clone(),
-            covariance: covariance.view((0, 0), (sought, sought)).into_owned(),
-            noise: self.noise,
-            log_likelihood,
-            log_likelihood_if_right: f64::NEG_INFINITY,
-            measurements,
-            states: Vec::new(),
-            beginnings: self.beside.beginnings(&self.form, &self.parts),
-        }
-    }
-
-    /// Takes the Gauss–Newton step; the inertia becomes at most [`LARGEST_RATIO`] times larger or smaller: as it grows without bounds, the law
-    /// forgets its excitation.
-    fn take(&mut self, step: &DVector<f64>) {
-        let inertia =
-            self.form.inertia().and_then(|inertia| self.parts.unknowns.iter().position(|index| *index == inertia));
-        let fraction = inertia.map_or(1.0, |row| {
-            let (old, change) = (self.coefficients[self.parts.unknowns[row]], step[row]);
-            let relative = change / old;
-            let bounded = relative.clamp(LARGEST_RATIO.recip() - 1.0, LARGEST_RATIO - 1.0);
-            if relative == bounded { 1.0 } else { bounded / relative }
-        });
-        for (index, change) in self.parts.unknowns.iter().zip(step.iter()) {
-            self.coefficients[*index] += fraction * change;
-        }
-        let inner: Vec<f64> = step.iter().skip(self.parts.unknowns.len()).map(|change| fraction * change).collect();
-        inner_slopes::take(&mut self.form, &self.inner, &inner);
-        self.beside.take(step.as_slice(), fraction);
-    }
-}
-
-fn total(outcomes: &[Outcome]) -> Sums {
-    let mut sums = outcomes[0].sums[0].clone();
-    outcomes[1..].iter().flat_map(|outcome| &outcome.sums).for_each(|other| sums.merge(other));
-    sums
-}
-
-/// Sensor noise follows the innovations, process noise the likelihood; returns whether both stayed.
-fn move_noise(noise: &mut Noise, outcomes: &[Outcome], largest: [f64; 2]) -> bool {
-    let sum = |value: fn(&Outcome) -> f64| outcomes.iter().map(value).sum::<f64>();
-    let squares = [sum(|outcome| outcome.squares[0]), sum(|outcome| outcome.squares[1])];
-    let count = [sum(|outcome| outcome.count[0]), sum(|outcome| outcome.count[1])];
-    let mut steady = true;
-    for channel in 0..2 {
-        let scale = if count[channel] > 0.0 { squares[channel] / count[channel] } else { 1.0 };
-        let floor = (NOISE_FLOOR * largest[channel]).powi(2).max(f64::MIN_POSITIVE);
-        let value = (noise.sensor[channel] * scale).max(floor);
-        steady &= (value / noise.sensor[channel] - 1.0).abs() < 0.02;
-        noise.sensor[channel] = value;
-    }
-    let present = sum(|outcome| outcome.log_likelihood);
-    let [less, more] = [sum(|outcome| outcome.rivals[0]) - present, sum(|outcome| outcome.rivals[1]) - present];
-    let ratio = match (less >= more, less > -GAIN, more > GAIN) {
-        // where a part of it does as well, it is none: a law that explains its record is not to be approached step by step
-        (true, true, _) if less < GAIN => 0.0,
-        (true, true, _) => RIVALS[0],
-        (false, _, true) => RIVALS[1],
-        _ => 1.0,
-    };
-    let mean = (squares[0] + squares[1]) / (count[0] + count[1]).max(1.0);
-    let process = noise.process * ratio * mean;
-    // once there is less than the motion itself could show, it is none
-    let negligible = process < start::negligible(noise);
-    steady &= ratio == 1.0 || negligible;
-    noise.process = if negligible { start::negligible(noise) } else { process };
-    steady
-}
-
 /// A step and the covariance behind it.
 pub(super) struct Solved {
     pub(super) step: DVector<f64>,
@@ -462,6 +211,11 @@ pub(super) struct Solved {
 /// Solves information · step = score, columns scaled to unit diagonal, by pseudo-inverse. None where a run left no numbers: the singular
 /// value decomposition of those would not end.
 pub(super) fn solve(information: &DMatrix<f64>, score: &DVector<f64>) -> Option<Solved> {
+    solve_damped(information, score, 0.0)
+}
+
+/// The same with that part of each diagonal added to it; the covariance is that of the solution without.
+pub(super) fn solve_damped(information: &DMatrix<f64>, score: &DVector<f64>, damping: f64) -> Option<Solved> {
     let n = score.len();
     if !information.iter().chain(score.iter()).all(|value| value.is_finite()) {
         return None;
@@ -474,8 +228,13 @@ pub(super) fn solve(information: &DMatrix<f64>, score: &DVector<f64>) -> Option<
         if diagonal > 0.0 { diagonal.sqrt().recip() } else { 0.0 }
     });
     let scaled = DMatrix::from_fn(n, n, |row, column| information[(row, column)] * scale[row] * scale[column]);
-    let inverse = scaled.pseudo_inverse(1e-12).ok()?;
-    let covariance = DMatrix::from_fn(n, n, |row, column| inverse[(row, column)] * scale[row] * scale[column]);
-    let step = &covariance * score;
+    let unscaled = |inverse: &DMatrix<f64>| {
+        DMatrix::from_fn(n, n, |row, column| inverse[(row, column)] * scale[row] * scale[column])
+    };
+    let covariance = unscaled(&scaled.clone().pseudo_inverse(1e-12).ok()?);
+    let step = match damping {
+        0.0 => &covariance * score,
+        _ => unscaled(&(scaled + DMatrix::identity(n, n) * damping).pseudo_inverse(1e-12).ok()?) * score,
+    };
     step.iter().all(|value| value.is_finite()).then_some(Solved { step, covariance })
 }

@@ -74,10 +74,16 @@ pub(super) fn slope(
     if slope.iter().flatten().all(|value| value.is_finite()) { slope } else { flat() }
 }
 
-/// Moves each by a step of its logarithm, within its range.
-pub(super) fn take(form: &mut Form, sought: &[Sought], steps: &[f64]) {
+/// The part of a step that moves none too far.
+pub(super) fn bounded(steps: &[f64]) -> f64 {
+    let largest = steps.iter().map(|step| step.abs()).fold(0.0, f64::max);
+    if largest > LARGEST_STEP { LARGEST_STEP / largest } else { 1.0 }
+}
+
+/// Moves each by a fraction of a step of its logarithm, within its range.
+pub(super) fn take(form: &mut Form, sought: &[Sought], steps: &[f64], fraction: f64) {
     for (one, step) in sought.iter().zip(steps) {
-        let factor = step.clamp(-LARGEST_STEP, LARGEST_STEP).exp();
+        let factor = (fraction * step).exp();
         let moved = effect_at(form, one.term).and_then(|effect| moved(effect, one.parameter, factor));
         if let Some(effect) = moved {
             form.terms[one.term] = Term::Effect(effect);

@@ -6,6 +6,7 @@ mod compare;
 mod conclude;
 mod decide;
 mod depends;
+mod descent;
 mod diagnosis;
 mod errors;
 mod fit;
