@@ -9,6 +9,7 @@ use super::conclude::{Answer, conclude};
 use super::errors::{Left, Windows};
 use super::fit::{Fit, Form, fit, refit};
 use super::judge::{Trial, p_value};
+use super::massless::massless;
 use super::piece::Piece;
 use super::place::place;
 use super::search::search;
@@ -170,6 +171,22 @@ fn without_weakest(fitted: &Fit, maybe: &[Term], pieces: &[Piece]) -> Option<Fit
 pub fn candidates(expressions: &[Expression]) -> Vec<Term> {
     let own = (0..expressions.len()).map(|index| Term::Expression(index as u8));
     Catalogue::ENTRIES.iter().map(|entry| entry.term).chain(own).collect()
+}
+
+/// Diagnoses a model: its form with its best coefficients.
+///
+/// None where the record determines no law of the model's form.
+pub fn diagnose_model(model: &Model, evidence: &Evidence) -> Option<Diagnosis> {
+    let base = best_of_form(model, evidence);
+    base.map_or_else(|| massless(model, evidence), |base| Some(diagnose(&base, evidence)))
+}
+
+/// One candidate in the list of a law that nothing else was tried in, and the length of its windows, s.
+pub(super) fn listed(base: &Fit, trial: &Trial, evidence: &Evidence) -> (Vec<Candidate>, f64) {
+    let sound = Sound::new(base, &evidence.pieces);
+    let listed = Listed { base, pairs: vec![(base, &trial.fit, trial.fit.form.terms.len() - 1)] };
+    let described = listed.describe(evidence, &sound, 1);
+    (described.candidates, described.window)
 }
 
 /// Diagnoses a fitted law.

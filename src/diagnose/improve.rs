@@ -1,9 +1,10 @@
 //! Effects added to a law until nothing is missing that the catalogue has.
 
-use super::diagnosis::{Diagnosis, Evidence, Finding, best_of_form, diagnose};
+use super::diagnosis::{Diagnosis, Evidence, Finding, best_of_form, diagnose, diagnose_model};
 use super::errors::Windows;
 use super::fit::{Fit, refit};
 use super::judge::Trial;
+use super::massless::massless;
 use super::search::search;
 use super::variants::same_effect;
 use crate::law::{Given, Model, ModelTerm, Term};
@@ -37,18 +38,19 @@ pub struct Improvement {
 ///
 /// None where the record determines no law of the model's form.
 pub fn improve(model: &Model, evidence: &Evidence) -> Option<Improvement> {
-    let first = best_of_form(model, evidence)?;
+    let mut last = diagnose_model(model, evidence)?;
+    let first = last.base.clone();
     let original = first.form.terms.clone();
     let mut steps = vec![Step { effect: None, removed: Vec::new(), error: error(&first, evidence), fit: first }];
     loop {
         let law = &steps[steps.len() - 1].fit;
-        let last = diagnose(law, evidence);
         let (Finding::Missing, Some(found), true) = (last.finding, &last.improved, steps.len() <= STEPS) else {
             return Some(Improvement { steps, last });
         };
         steps.extend(one_by_one(law, found, &last, evidence));
         let (fit, removed) = without_superfluous(found.fit.clone(), &original, found.count, evidence);
         let effect = last.beside.last().or(last.effect.as_ref()).cloned();
+        last = diagnose(&fit, evidence);
         steps.push(Step { effect, removed, error: error(&fit, evidence), fit });
     }
 }
@@ -84,6 +86,12 @@ pub struct Addition {
 
 /// Adds an effect to a model, whatever its evidence. None where the record determines no law with it.
 pub fn add(model: &Model, effect: Term, evidence: &Evidence) -> Option<Addition> {
+    if let Some(Diagnosis { base, improved: Some(trial), .. }) =
+        massless(model, evidence).filter(|_| effect == Term::Inertia)
+    {
+        let [error_before, error_after] = [&base, &trial.fit].map(|fit| error(fit, evidence));
+        return Some(Addition { before: base, after: trial.fit, error_before, error_after });
+    }
     let before = best_of_form(model, evidence)?;
     let trial = search(&before, &evidence.pieces, &[effect]).trials(1).into_iter().next()?;
     let [error_before, error_after] = [&before, &trial.fit].map(|fit| error(fit, evidence));

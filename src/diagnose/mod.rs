@@ -16,6 +16,7 @@ mod improve;
 mod inner_slopes;
 mod judge;
 mod locate;
+mod massless;
 mod means;
 mod noise;
 mod piece;
@@ -44,8 +45,8 @@ pub use compare::{Comparison, Error, NOISE_RATIO, Options, Side, Verdict, compar
 pub use decide::{Decision, Reach, Visible, decide, visible};
 pub use depends::{Dependence, Source, depends_on};
 pub use diagnosis::{
-    Candidate, Diagnosis, Evidence, Finding, LEVEL, best_as_given, best_of_form, candidates, diagnose, effect_name,
-    excess, is_evident,
+    Candidate, Diagnosis, Evidence, Finding, LEVEL, best_as_given, best_of_form, candidates, diagnose, diagnose_model,
+    effect_name, excess, is_evident,
 };
 pub use fit::{Fit, Form, fit, refit};
 pub use improve::{Addition, Improvement, Step, add, error, improve, improved_model};

@@ -53,11 +53,14 @@ impl<'a> Sound<'a> {
     pub(super) fn ranked(&self, trials: Vec<Trial>) -> Vec<Trial> {
         let (mut sound, unsound): (Vec<Trial>, Vec<Trial>) = trials.into_iter().partition(|trial| self.is(trial));
         if let Some(best) = sound.first().cloned() {
-            let tied = (0..sound.len()).filter(|index| !best.is_clearly_better_than(&sound[*index]));
-            let simplest = tied.min_by_key(|index| (sound[*index].inner_count(), *index)).unwrap_or(0);
-            let contained = Catalogue::is_contained(&self.name(&sound[simplest]), &self.name(&best));
-            if sound[simplest].inner_count() < best.inner_count() || contained {
-                let simplest = sound.remove(simplest);
+            let simpler = |trial: &Trial| {
+                let contained = Catalogue::is_contained(&self.name(trial), &self.name(&best));
+                contained || trial.inner_count() < best.inner_count()
+            };
+            let tied = (1..sound.len()).filter(|index| !best.is_clearly_better_than(&sound[*index]));
+            let simplest = tied.filter(|index| simpler(&sound[*index])).min_by_key(|index| sound[*index].inner_count());
+            if let Some(index) = simplest {
+                let simplest = sound.remove(index);
                 sound.insert(0, simplest);
             }
         }

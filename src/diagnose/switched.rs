@@ -4,7 +4,7 @@
 //! taken only where their laws, each with the effect that it lacks, explain the record better than one law with the effect that it lacks:
 //! by likelihood, every coefficient counted with ½ ln N (Schwarz 1978).
 
-use super::diagnosis::{Diagnosis, Evidence, Finding, best_of_form, diagnose};
+use super::diagnosis::{Diagnosis, Evidence, Finding, diagnose_model};
 use super::fit::Fit;
 use crate::identify::{Recording, Settings, identify_recording, settings_for};
 use crate::law::{Given, Hold, Model};
@@ -36,7 +36,7 @@ pub struct Switched {
 /// Diagnoses recordings, stage by stage where they switch.
 pub fn diagnose_stages(model: &Model, recordings: &[(&Recording, Hold)]) -> Switched {
     let evidence = Evidence::new(recordings);
-    let whole = best_of_form(model, &evidence).map(|base| diagnose(&base, &evidence));
+    let whole = diagnose_model(model, &evidence);
     let stages = stages(model, recordings);
     if stages.len() <= recordings.len() {
         return Switched { whole, stages: Vec::new() };
@@ -100,7 +100,7 @@ fn cuts(model: &Model, recording: &Recording, hold: Hold) -> Vec<Recording> {
 fn alone(model: &Model, stage: Found) -> StageDiagnosis {
     let Found { recording, hold, samples } = stage;
     let evidence = Evidence::new(&[(&samples, hold)]);
-    let diagnosis = best_of_form(model, &evidence).map(|base| diagnose(&base, &evidence));
+    let diagnosis = diagnose_model(model, &evidence);
     let (start, end) = (samples.t()[0], samples.t()[samples.count() - 1]);
     StageDiagnosis { recording, start, end, samples, diagnosis }
 }

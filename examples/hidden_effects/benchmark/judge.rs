@@ -3,7 +3,7 @@
 use super::problem::{Problem, Setting};
 use super::secret::{Secret, id};
 use rustix::time::{ClockId, clock_gettime};
-use switchid::diagnose::{Diagnosis, Evidence, Finding, Fit, Form, best_of_form, diagnose, error, improve, refit};
+use switchid::diagnose::{Diagnosis, Evidence, Finding, Fit, Form, diagnose_model, error, improve, refit};
 use switchid::evidence::Noise;
 use switchid::law::{Given, Model, Term};
 
@@ -55,7 +55,7 @@ pub fn judge(setting: &Setting, problem: &Problem) -> Outcome {
     match &setting.secret {
         Secret::Missing(ids) if ids.len() > 1 => judge_several(&model, &evidence, problem, start),
         secret => {
-            let found = best_of_form(&model, &evidence).map(|base| diagnose(&base, &evidence));
+            let found = diagnose_model(&model, &evidence);
             let seconds = clock() - start;
             match found {
                 Some(found) => judge_one(secret, &found, &evidence, problem, seconds),

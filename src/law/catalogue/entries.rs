@@ -173,7 +173,7 @@ pub(super) const ENTRIES: [Entry; 22] = [
         reason: "Gravity on a swinging mass, magnetic torque, a superconducting junction's current.",
         reference: "Baker and Blackburn, The Pendulum: A Case Study in Physics, Oxford University Press 2005.",
         look_alikes: &["linear_stiffness", "cubic_stiffness"],
-        contains: &[],
+        contains: &["linear_stiffness"],
     },
     Entry {
         id: "signed_quadratic_stiffness",
