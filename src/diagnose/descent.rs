@@ -61,30 +61,25 @@ pub(super) struct Descent<'a> {
     pub(super) beside: Beside,
 }
 
-/// The best pass of a descent.
-struct Best<'a> {
-    fit: Fit,
-    point: Descent<'a>,
-    sums: Sums,
-}
-
 impl<'a> Descent<'a> {
     /// Passes until coefficients and noise stay; leaves them where they are best.
     ///
-    /// A pass that is worse than the best one is taken back and its step shortened (Marquardt, SIAM Journal 11 (1963), 431).
+    /// A pass that is worse than the last one is taken back, and looked at again under the noise that it had; the next step is shorter
+    /// (Marquardt, SIAM Journal 11 (1963), 431). So a step is judged apart from the noise that moves with it.
     pub(super) fn descend(&mut self, pass: &mut Pass) -> Option<Fit> {
-        let mut best: Option<Best> = None;
+        let mut best: Option<(Fit, Descent<'a>)> = None;
+        let mut last: Option<Descent<'a>> = None;
+        let mut needed = f64::NEG_INFINITY;
         let (mut calm, mut damping) = (0, 0.0);
         for _ in 0..PASSES {
             let outcomes = self.run(pass);
             let mut sums = total(&outcomes);
             let log_likelihood = self.log_likelihood(&outcomes, &sums);
-            let finite = outcomes.iter().all(|outcome| outcome.finite);
-            let before = best.as_ref().map_or(f64::NEG_INFINITY, |best| best.fit.log_likelihood);
-            if !finite || log_likelihood < before - LOSS {
+            let finite = outcomes.iter().all(|outcome| outcome.finite) && log_likelihood.is_finite();
+            if !finite || log_likelihood < needed - LOSS {
+                self.take_back(last.as_ref()?, needed);
                 damping = (DAMPING_RATIO * damping).max(DAMPING[0]);
-                self.take_back(best.as_ref()?, damping)?;
-                calm = 0;
+                (calm, needed) = (0, f64::NEG_INFINITY);
                 if damping > DAMPING[1] {
                     break;
                 }
@@ -92,34 +87,36 @@ impl<'a> Descent<'a> {
             }
             self.add_priors(&mut sums);
             let solved = solve_damped(&sums.information, &sums.score, damping)?;
-            damping = if damping > DAMPING[0] { damping / DAMPING_RATIO } else { 0.0 };
+            damping = if needed.is_finite() { relaxed(damping) } else { damping };
             let decrement = solved.step.dot(&sums.score) / solved.step.len().max(1) as f64;
-            let followed = self.is_followed(before, log_likelihood);
-            let present = self.summary(log_likelihood, solved.covariance, sums.count);
-            let point = self.clone();
+            let followed = self.is_followed(needed, log_likelihood);
+            if best.as_ref().is_none_or(|(best, _)| log_likelihood >= best.log_likelihood) {
+                let mut fit = self.summary(log_likelihood, solved.covariance, sums.count);
+                fit.noise = calibrated(&self.noise, &outcomes);
+                best = Some((fit, self.clone()));
+            }
             let steady = move_noise(&mut self.noise, &outcomes, start::largest(self.pieces)) && followed;
             calm = if steady && decrement < SETTLED.max(1e-9 * sums.count) { calm + 1 } else { 0 };
-            if log_likelihood >= before {
-                best = Some(Best { fit: present, point, sums });
-            }
             if calm >= 2 {
                 break;
             }
+            (last, needed) = (Some(self.clone()), log_likelihood);
             self.take(&solved.step);
             self.follow(&outcomes, pass);
         }
-        let Best { mut fit, point, .. } = best?;
+        let (mut fit, point) = best?;
         *self = point;
         fit.states = self.smoothed(&self.run(pass));
         Some(fit)
     }
 
-    /// Back to the best pass, and on from there by a shorter step.
-    fn take_back(&mut self, best: &Best<'a>, damping: f64) -> Option<()> {
-        self.clone_from(&best.point);
-        let solved = solve_damped(&best.sums.information, &best.sums.score, damping)?;
-        self.take(&solved.step);
-        Some(())
+    /// Back to where the last step began; where that bore no motion either, with more process noise to hold it.
+    fn take_back(&mut self, last: &Descent<'a>, needed: f64) {
+        let process = self.noise.process;
+        self.clone_from(last);
+        if needed == f64::NEG_INFINITY {
+            self.noise.process = 100.0 * process;
+        }
     }
 
     /// Log-likelihood under no process noise, the sensors' noise taking all error, coefficients moving along.
@@ -282,6 +279,20 @@ fn total(outcomes: &[Outcome]) -> Sums {
     sums
 }
 
+fn relaxed(damping: f64) -> f64 {
+    if damping > DAMPING[0] { damping / DAMPING_RATIO } else { 0.0 }
+}
+
+/// The noise with the scale that the innovations have: the likelihood is that of the best scale, whatever the noise was.
+fn calibrated(noise: &Noise, outcomes: &[Outcome]) -> Noise {
+    let sum = |value: &dyn Fn(&Outcome) -> f64| outcomes.iter().map(value).sum::<f64>();
+    let squares = [0, 1].map(|channel| sum(&|outcome| outcome.squares[channel]));
+    let count = [0, 1].map(|channel| sum(&|outcome| outcome.count[channel]));
+    let scale = |channel: usize| if count[channel] > 0.0 { squares[channel] / count[channel] } else { 1.0 };
+    let mean = (squares[0] + squares[1]) / (count[0] + count[1]).max(1.0);
+    Noise { sensor: [0, 1].map(|channel| noise.sensor[channel] * scale(channel)), process: noise.process * mean }
+}
+
 /// Sensor noise follows the innovations, process noise the likelihood; returns whether both stayed.
 fn move_noise(noise: &mut Noise, outcomes: &[Outcome], largest: [f64; 2]) -> bool {
     let sum = |value: fn(&Outcome) -> f64| outcomes.iter().map(value).sum::<f64>();
@@ -308,7 +319,7 @@ fn move_noise(noise: &mut Noise, outcomes: &[Outcome], largest: [f64; 2]) -> boo
     let process = noise.process * ratio * mean;
     // once there is less than the motion itself could show, it is none
     let negligible = process < start::negligible(noise);
-    steady &= ratio == 1.0 || negligible;
+    steady &= ratio == 1.0 || negligible || (process / noise.process - 1.0).abs() < 0.02;
     noise.process = if negligible { start::negligible(noise) } else { process };
     steady
 }
