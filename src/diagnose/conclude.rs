@@ -67,12 +67,14 @@ pub(super) fn conclude(base: &Fit, evidence: &Evidence, found: &Search, singles:
     }
     let most = reached.into_iter().max_by(|a, b| a.0.merit().total_cmp(&b.0.merit()));
     match most {
-        Some((trial, members)) if explained(&trial) >= ENOUGH_TOGETHER => several(base, trial, members, &[], sound),
-        most => {
-            let shares = most.iter().map(|(trial, _)| explained(trial)).chain(first.map(explained));
-            nothing(Finding::Unexplained, shares.fold(0.0, f64::max))
-        }
+        Some((trial, members)) => several(base, trial, members, &[], sound),
+        None => nothing(Finding::Unexplained, first.map_or(0.0, explained)),
     }
+}
+
+/// Whether a law with several candidates leaves no evident error, or next to none.
+pub(super) fn explains(base: &Fit, fit: &Fit) -> bool {
+    !is_evident(fit) || share(base, fit) >= ENOUGH_TOGETHER
 }
 
 fn nothing(finding: Finding, explained: f64) -> Answer {
@@ -132,6 +134,9 @@ fn together(
 ) -> (Vec<Trial>, Option<(Trial, Vec<Member>)>) {
     let trials = found.trials(size);
     let needed = |trial: &Trial| {
+        if !explains(base, &trial.fit) {
+            return None;
+        }
         let members = members(base, trial, evidence)?;
         let counts = |(member, gain): &(Member, f64)| {
             let inner = member.term.effect().map_or(0, |effect| effect.inner().len());

@@ -2,6 +2,7 @@
 //!
 //! A long record is searched by parts of it; candidates that are clearly worse there need not be tried on all of it.
 
+use super::conclude::explains;
 use super::fit::{Fit, refit};
 use super::judge::Trial;
 use super::piece::{Piece, thinned};
@@ -44,7 +45,8 @@ pub fn search<'a>(base: &'a Fit, pieces: &'a [Piece], candidates: &[Term]) -> Se
 }
 
 impl Search<'_> {
-    /// The best sets of so many candidates in the law, one to three, best first.
+    /// The best sets of so many candidates in the law, one to three, best first. On a long record a set of several gets there only if it
+    /// explains the parts of it that are looked at first.
     pub fn trials(&self, size: usize) -> Vec<Trial> {
         let few = self.proposals.of(size).iter().take(FINALISTS[size.clamp(1, 3) - 1]);
         let few: Vec<Proposal> = few.cloned().collect();
@@ -52,7 +54,8 @@ impl Search<'_> {
         let trials = tried(fit, pieces, &few);
         let Some(best) = trials.first() else { return trials };
         let near = |trial: &&Trial| !best.is_clearly_better_than(trial) || trial.gain > NEARLY * best.gain;
-        let near: Vec<Proposal> = trials.iter().filter(near).map(Trial::as_proposal).collect();
+        let explains = |trial: &&Trial| size == 1 || explains(fit, &trial.fit);
+        let near: Vec<Proposal> = trials.iter().filter(near).filter(explains).map(Trial::as_proposal).collect();
         tried(self.base, self.pieces, &near)
     }
 }
