@@ -36,6 +36,9 @@ const LARGEST_RATIO: f64 = 2.5;
 /// Rate at which the measurements hold the motion of the series, relative to the motion's own angular frequency.
 const HELD: f64 = 1.0;
 
+/// Passes without a gain after which a descent has come to its end.
+const IDLE: usize = 6;
+
 /// Loss in log-likelihood, nats, for which a pass is taken back.
 const LOSS: f64 = 1.0;
 
@@ -70,11 +73,16 @@ impl<'a> Descent<'a> {
         let mut best: Option<(Fit, Descent<'a>)> = None;
         let mut last: Option<Descent<'a>> = None;
         let mut needed = f64::NEG_INFINITY;
-        let (mut calm, mut damping) = (0, 0.0);
+        let (mut calm, mut damping, mut idle) = (0, 0.0, 0);
         for _ in 0..PASSES {
             let outcomes = self.run(pass);
             let mut sums = total(&outcomes);
             let log_likelihood = self.log_likelihood(&outcomes, &sums);
+            let reached = best.as_ref().map_or(f64::NEG_INFINITY, |(best, _)| best.log_likelihood);
+            idle = if log_likelihood > reached + GAIN { 0 } else { idle + 1 };
+            if idle > IDLE {
+                break;
+            }
             let finite = outcomes.iter().all(|outcome| outcome.finite) && log_likelihood.is_finite();
             if !finite || log_likelihood < needed - LOSS {
                 self.take_back(last.as_ref()?, needed);
@@ -90,7 +98,7 @@ impl<'a> Descent<'a> {
             damping = if needed.is_finite() { relaxed(damping) } else { damping };
             let decrement = solved.step.dot(&sums.score) / solved.step.len().max(1) as f64;
             let followed = self.is_followed(needed, log_likelihood);
-            if best.as_ref().is_none_or(|(best, _)| log_likelihood >= best.log_likelihood) {
+            if log_likelihood >= reached {
                 let mut fit = self.summary(log_likelihood, solved.covariance, sums.count);
                 fit.noise = calibrated(&self.noise, &outcomes);
                 best = Some((fit, self.clone()));
@@ -294,32 +302,39 @@ fn calibrated(noise: &Noise, outcomes: &[Outcome]) -> Noise {
 }
 
 /// Sensor noise follows the innovations, process noise the likelihood; returns whether both stayed.
+///
+/// Where a sensor's noise would fall below its floor, all noise is lifted with it: the likelihood depends on the ratios alone.
 fn move_noise(noise: &mut Noise, outcomes: &[Outcome], largest: [f64; 2]) -> bool {
-    let sum = |value: fn(&Outcome) -> f64| outcomes.iter().map(value).sum::<f64>();
-    let squares = [sum(|outcome| outcome.squares[0]), sum(|outcome| outcome.squares[1])];
-    let count = [sum(|outcome| outcome.count[0]), sum(|outcome| outcome.count[1])];
-    let mut steady = true;
-    for channel in 0..2 {
-        let scale = if count[channel] > 0.0 { squares[channel] / count[channel] } else { 1.0 };
-        let floor = (NOISE_FLOOR * largest[channel]).powi(2).max(f64::MIN_POSITIVE);
-        let value = (noise.sensor[channel] * scale).max(floor);
-        steady &= (value / noise.sensor[channel] - 1.0).abs() < 0.02;
-        noise.sensor[channel] = value;
+    let old = *noise;
+    *noise = calibrated(&old, outcomes);
+    noise.process *= towards(outcomes);
+    let measured = [0, 1].map(|channel| outcomes.iter().any(|outcome| outcome.count[channel] > 0.0));
+    let floor = |channel: usize| (NOISE_FLOOR * largest[channel]).powi(2).max(f64::MIN_POSITIVE);
+    let lift = (0..2)
+        .filter(|channel| measured[*channel])
+        .map(|channel| floor(channel) / noise.sensor[channel])
+        .fold(1.0, f64::max);
+    for channel in (0..2).filter(|channel| measured[*channel]) {
+        noise.sensor[channel] *= lift;
     }
+    // once there is less than the motion itself could show, it is none
+    noise.process = (noise.process * lift).max(start::negligible(noise));
+    let near = |new: f64, old: f64| (new / old - 1.0).abs() < 0.02;
+    let none = noise.process <= start::negligible(noise);
+    let settled = |channel: usize| !measured[channel] || near(noise.sensor[channel], old.sensor[channel]);
+    settled(0) && settled(1) && (none || near(noise.process, old.process))
+}
+
+/// Factor by which the process noise moves: a rival's, or none.
+fn towards(outcomes: &[Outcome]) -> f64 {
+    let sum = |value: fn(&Outcome) -> f64| outcomes.iter().map(value).sum::<f64>();
     let present = sum(|outcome| outcome.log_likelihood);
     let [less, more] = [sum(|outcome| outcome.rivals[0]) - present, sum(|outcome| outcome.rivals[1]) - present];
-    let ratio = match (less >= more, less > -GAIN, more > GAIN) {
+    match (less >= more, less > -GAIN, more > GAIN) {
         // where a part of it does as well, it is none: a law that explains its record is not to be approached step by step
         (true, true, _) if less < GAIN => 0.0,
         (true, true, _) => RIVALS[0],
         (false, _, true) => RIVALS[1],
         _ => 1.0,
-    };
-    let mean = (squares[0] + squares[1]) / (count[0] + count[1]).max(1.0);
-    let process = noise.process * ratio * mean;
-    // once there is less than the motion itself could show, it is none
-    let negligible = process < start::negligible(noise);
-    steady &= ratio == 1.0 || negligible || (process / noise.process - 1.0).abs() < 0.02;
-    noise.process = if negligible { start::negligible(noise) } else { process };
-    steady
+    }
 }

@@ -7,8 +7,7 @@
 //! within the interval is exact to second order.
 
 use super::hysteresis_loop::Loop;
-use super::memory::{LARGEST, parts};
-use super::series::runge_kutta;
+use super::memory::LARGEST;
 use super::{Effect, Expression, Hold, State, Term, Trajectory};
 
 /// A force over an interval as a straight line: its values at the start and at the end.
@@ -150,19 +149,70 @@ fn expressed(expression: &Expression, course: &Course, k: usize) -> Line {
 
 fn remembered(effect: Effect, course: &Course, beginning: &[f64]) -> Vec<Line> {
     let trajectory = course.trajectory;
-    let Some(last) = trajectory.t.len().checked_sub(1) else { return Vec::new() };
+    if trajectory.t.is_empty() {
+        return Vec::new();
+    }
     let mut memory = effect.rest(trajectory.state(0));
     memory.iter_mut().zip(beginning).for_each(|(value, offset)| *value += offset);
-    if let Some(shape) = Loop::of(effect) {
-        return looped(&shape, course, memory[0]);
+    match (effect, Loop::of(effect)) {
+        (_, Some(shape)) => looped(&shape, course, memory[0]),
+        (Effect::HiddenResonator { frequency, damping_ratio }, _) => {
+            let mass = HiddenMass { frequency: frequency.value(), damping_ratio: damping_ratio.value() };
+            mass.carried(course, memory)
+        }
+        _ => vec![[f64::NAN; 2]; trajectory.t.len() - 1],
     }
-    (0..last)
-        .map(|k| {
-            let line;
-            (line, memory) = followed(effect, course, k, memory);
-            line
-        })
-        .collect()
+}
+
+/// A mass that the coordinate carries on a spring. With w = y − q, ẅ + 2ζΩ ẇ + Ω² w = −q̈, which is solved exactly where q̈ is a straight line over
+/// an interval; mean and first moment of ÿ follow from y and ẏ at its ends.
+struct HiddenMass {
+    frequency: f64,
+    damping_ratio: f64,
+}
+
+impl HiddenMass {
+    fn carried(&self, course: &Course, [y, yd]: [f64; LARGEST]) -> Vec<Line> {
+        let Trajectory { t, q, qd, .. } = *course.trajectory;
+        let mut relative = [y - q[0], yd - qd[0]];
+        let (mut width, mut propagator) = (f64::NAN, [[0.0; 2]; 2]);
+        let interval = |k: usize| {
+            let dt = t[k + 1] - t[k];
+            if dt != width {
+                (width, propagator) = (dt, self.propagator(dt));
+            }
+            let slope = course.bends[k] / dt;
+            let next = self.step(relative, propagator, [(qd[k + 1] - qd[k]) / dt - 0.5 * course.bends[k], slope], dt);
+            let (from, to) = ([q[k] + relative[0], qd[k] + relative[1]], [q[k + 1] + next[0], qd[k + 1] + next[1]]);
+            relative = next;
+            line((to[1] - from[1]) / dt, 0.5 * (to[1] + from[1]) / dt - (to[0] - from[0]) / (dt * dt))
+        };
+        (0..t.len() - 1).map(interval).collect()
+    }
+
+    /// (w, ẇ) after an interval in which q̈ is `line[0] + line[1] t`.
+    fn step(&self, [w, wd]: [f64; 2], [[a, b], [c, d]]: [[f64; 2]; 2], line: [f64; 2], dt: f64) -> [f64; 2] {
+        let stiffness = self.frequency * self.frequency;
+        let slope = -line[1] / stiffness;
+        let offset = -(line[0] + 2.0 * self.damping_ratio * self.frequency * slope) / stiffness;
+        let (w, wd) = (w - offset, wd - slope);
+        [a * w + b * wd + offset + slope * dt, c * w + d * wd + slope]
+    }
+
+    /// What a free motion of that length does to (w, ẇ).
+    fn propagator(&self, dt: f64) -> [[f64; 2]; 2] {
+        let stiffness = self.frequency * self.frequency;
+        let decay = self.damping_ratio * self.frequency;
+        let left = stiffness - decay * decay;
+        let rate = left.abs().sqrt();
+        let (even, odd) = match rate * dt {
+            small if small < 1e-6 => (1.0, dt),
+            angle if left > 0.0 => (angle.cos(), angle.sin() / rate),
+            angle => (angle.cosh(), angle.sinh() / rate),
+        };
+        let shrunk = (-decay * dt).exp();
+        [[even + decay * odd, odd], [-stiffness * odd, even - decay * odd]].map(|row| row.map(|entry| shrunk * entry))
+    }
 }
 
 /// z along a motion that begins with it.
@@ -180,24 +230,6 @@ fn looped(shape: &Loop, course: &Course, z: f64) -> Vec<Line> {
         sums.line()
     };
     (0..course.trajectory.t.len() - 1).map(interval).collect()
-}
-
-/// The force over an interval, and the internal states at its end.
-fn followed(effect: Effect, course: &Course, k: usize, memory: [f64; LARGEST]) -> (Line, [f64; LARGEST]) {
-    let trajectory = course.trajectory;
-    let dt = trajectory.t[k + 1] - trajectory.t[k];
-    let speed = trajectory.qd[k].abs().max(trajectory.qd[k + 1].abs());
-    let panels = parts(effect.memory_rate(speed), dt).max(PANELS).next_multiple_of(2);
-    let state = |half: usize| course.between(k, 0.5 * half as f64 / panels as f64);
-    let mut sums = Simpson::default();
-    let mut memory = memory;
-    sums.add(0, panels, effect.feature(state(0), &memory));
-    for panel in 0..panels {
-        let states = [state(2 * panel), state(2 * panel + 1), state(2 * panel + 2)];
-        memory = runge_kutta(effect, states, memory, dt / panels as f64);
-        sums.add(panel + 1, panels, effect.feature(states[2], &memory));
-    }
-    (sums.line(), memory)
 }
 
 /// F(t) − F(t − τ); before the first sample F was the first value and `offset` beside.

@@ -120,7 +120,7 @@ fn follow(effect: Effect, trajectory: &Trajectory, k: usize, memory: [f64; LARGE
     })
 }
 
-pub(super) fn runge_kutta(effect: Effect, states: [State; 3], memory: [f64; LARGEST], dt: f64) -> [f64; LARGEST] {
+fn runge_kutta(effect: Effect, states: [State; 3], memory: [f64; LARGEST], dt: f64) -> [f64; LARGEST] {
     let moved = |slope: &[f64; LARGEST], dt: f64| std::array::from_fn(|index| memory[index] + dt * slope[index]);
     let at = |state: usize, memory: [f64; LARGEST]| effect.memory_slope(states[state], &memory);
     let first = at(0, memory);
