@@ -9,13 +9,16 @@ use super::judge::{Trial, p_value};
 use super::search::Search;
 use super::sound::Sound;
 use super::variants::same_effect;
-use crate::law::Term;
+use crate::law::{Catalogue, Term};
 
 /// Share of what is unexplained that one effect must explain to be the answer though error is left.
 const ENOUGH: f64 = 0.75;
 
 /// The same of several effects together, which have more freedom.
 const ENOUGH_TOGETHER: f64 = 0.9;
+
+/// Gain, nats, that an effect must have over one that it contains to be another.
+const SAME: f64 = 0.5;
 
 /// Effects that may be missing together.
 const DEPTH: usize = 3;
@@ -84,8 +87,11 @@ fn nothing(finding: Finding, explained: f64) -> Answer {
 /// One effect, and those that could stand in its place.
 fn alone(base: &Fit, first: &Trial, singles: &[Trial], sound: &Sound) -> Answer {
     let name = |trial: &Trial| trial.fit.form.effect_name(trial.term());
+    // an effect that contains the first and gains no more is the first, at the end of its inner parameters
+    let same = |trial: &Trial| Catalogue::is_contained(&name(first), &name(trial)) && trial.gain < first.gain + SAME;
     let tied = singles.iter().filter(|trial| {
-        !same_effect(trial.term(), first.term()) && sound.is(trial) && !first.is_clearly_better_than(trial)
+        let other = !same_effect(trial.term(), first.term()) && !same(trial);
+        other && sound.is(trial) && !first.is_clearly_better_than(trial)
     });
     let group: Vec<String> = std::iter::once(first).chain(tied).map(name).collect();
     Answer {

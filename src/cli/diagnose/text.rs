@@ -120,8 +120,13 @@ fn sure(answer: &Answer) -> String {
 fn behind(diagnosis: &Diagnosis) -> String {
     let tied = diagnosis.indistinguishable.first();
     let is_tied = |candidate: &&Candidate| tied.is_some_and(|group| group.contains(&candidate.effect));
-    let gain = diagnosis.candidates.first().map_or(0.0, |best| best.gain);
-    match diagnosis.candidates.iter().skip(1).find(|candidate| !is_tied(candidate)) {
+    let Some(best) = diagnosis.candidates.first() else { return String::new() };
+    let gain = best.gain;
+    // one that contains the best is a rival only where it gains more
+    let rival = |candidate: &&Candidate| {
+        !diagnosis.beside.contains(&candidate.effect) && !Catalogue::is_contained(&best.effect, &candidate.effect)
+    };
+    match diagnosis.candidates.iter().skip(1).filter(rival).find(|candidate| !is_tied(candidate)) {
         Some(next) if gain > next.gain => {
             format!("; {}, the next best, is {:.0} nats behind", next.effect, gain - next.gain)
         }
