@@ -35,7 +35,7 @@ pub(super) struct Member {
 #[derive(Clone, Debug)]
 pub(super) struct Answer {
     pub(super) finding: Finding,
-    /// The law with all effects of the answer; where nothing explains the record, the best that was found.
+    /// The law with all effects of the answer.
     pub(super) best: Option<Trial>,
     /// The effects of the answer, the weightiest first.
     pub(super) members: Vec<Member>,

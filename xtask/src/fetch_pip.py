@@ -3,8 +3,10 @@
 Usage: fetch_pip.py VERSION SHA256 FILE
 """
 
+import configparser
 import hashlib
 import os
+import pathlib
 import re
 import sys
 import urllib.parse
@@ -21,9 +23,23 @@ def wheel_address(index, version):
     return urllib.parse.urljoin(page_address, link.group(1))
 
 
+def index_address():
+    """Address of the package index: PIP_INDEX_URL, else what pip's configuration files say."""
+    files = configparser.RawConfigParser()
+    home = pathlib.Path.home()
+    files.read([pathlib.Path("/etc/pip.conf"), home / ".pip/pip.conf", home / ".config/pip/pip.conf"])
+    index = os.environ.get("PIP_INDEX_URL") or files.get("global", "index-url", fallback=None)
+    if index is None:
+        sys.exit(
+            "this Python has no ensurepip, and no package index is named to fetch pip from: "
+            "apt-get install python3-venv, or set PIP_INDEX_URL"
+        )
+    return index
+
+
 def main():
     version, expected, path = sys.argv[1:]
-    index = os.environ.get("PIP_INDEX_URL", "https://pypi.org/simple")
+    index = index_address()
     wheel = urllib.request.urlopen(wheel_address(index, version), timeout=60).read()
     found = hashlib.sha256(wheel).hexdigest()
     if found != expected:

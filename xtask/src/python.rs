@@ -82,7 +82,7 @@ fn install(interpreter: &Path, directory: &Path, requirements: &Path) -> Result<
 }
 
 fn fetched_pip(interpreter: &Path, directory: &Path) -> Result<PathBuf, Error> {
-    eprintln!("this Python comes without pip: fetching pip {PIP_VERSION} from PyPI");
+    eprintln!("this Python comes without pip: fetching pip {PIP_VERSION}");
     let wheel = directory.join(format!("pip-{PIP_VERSION}-py3-none-any.whl"));
     let script = directory.join("fetch_pip.py");
     write(&script, include_bytes!("fetch_pip.py"))?;

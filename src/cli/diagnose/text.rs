@@ -59,8 +59,9 @@ fn what(answer: &Answer, input: &Input) -> String {
             for other in &diagnosis.beside {
                 let _ = write!(line, "; and beside it {other}");
             }
-            if let Some(group) = diagnosis.indistinguishable.first() {
-                let _ = write!(line, "; this record cannot tell it from {}", group[1..].join(", "));
+            for group in &diagnosis.indistinguishable {
+                let one = if group[0] == best.effect { "it" } else { &group[0] };
+                let _ = write!(line, "; this record cannot tell {one} from {}", group[1..].join(", "));
             }
             line
         }
@@ -137,7 +138,10 @@ fn behind(diagnosis: &Diagnosis) -> String {
 fn decides(answer: &Answer) -> String {
     let line = match (answer.diagnosis.finding, &answer.decision, &answer.visible) {
         (Finding::Missing, Some(decision), _) => decision_words(decision),
-        (Finding::Missing, None, _) => "no further recording is needed".into(),
+        (Finding::Missing, None, _) => match answer.diagnosis.indistinguishable.first() {
+            Some(group) => format!("a longer or larger motion, between {} and {}", group[0], group[1]),
+            None => "no further recording is needed".into(),
+        },
         (Finding::Adequate, _, Some(seen)) => format!(
             "a weaker effect needs a longer or larger motion: this record shows {} from {} of the force on",
             seen.effect,
