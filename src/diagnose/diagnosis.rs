@@ -196,7 +196,7 @@ pub fn diagnose(base: &Fit, evidence: &Evidence) -> Diagnosis {
     let sound = Sound::new(base, &evidence.pieces);
     let singles = sound.ranked(found.trials(1));
     let answer = conclude(base, evidence, &found, &singles, &sound);
-    let listed = Listed::new(base, &answer, &singles);
+    let listed = Listed::new(base, &answer, &singles, &sound);
     let described = listed.describe(evidence, &sound, found.tried);
     let name = |term: Term| base.form.effect_name(term);
     let missing = answer.finding == Finding::Missing;
@@ -227,8 +227,8 @@ struct Described {
 }
 
 impl<'a> Listed<'a> {
-    /// The members of the answer, then the candidates alone.
-    fn new(base: &'a Fit, answer: &'a Answer, singles: &'a [Trial]) -> Listed<'a> {
+    /// The members of the answer, then the candidates alone; not those that neither physics nor the law bears: they are numbers run wild.
+    fn new(base: &'a Fit, answer: &'a Answer, singles: &'a [Trial], sound: &Sound) -> Listed<'a> {
         let together = answer.best.iter().filter(|best| best.count > 1).flat_map(|best| {
             let position = |term: Term| best.fit.form.terms.iter().position(|other| *other == term);
             answer.members.iter().filter_map(move |member| Some((&member.without, &best.fit, position(member.term)?)))
@@ -237,7 +237,11 @@ impl<'a> Listed<'a> {
             Some(best) if best.count > 1 => !best.terms().iter().any(|term| same_effect(*term, trial.term())),
             _ => true,
         };
-        let alone = singles.iter().filter(is_listed).map(|trial| (base, &trial.fit, trial.fit.form.terms.len() - 1));
+        let is_wild = |trial: &&Trial| {
+            !is_physical(&trial.fit, trial.fit.form.terms.len() - 1) && !sound.is_plausible(&trial.fit)
+        };
+        let tame = singles.iter().filter(|trial| !is_wild(trial));
+        let alone = tame.filter(is_listed).map(|trial| (base, &trial.fit, trial.fit.form.terms.len() - 1));
         Listed { base, pairs: together.chain(alone).collect() }
     }
 
