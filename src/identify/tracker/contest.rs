@@ -1,0 +1,151 @@
+//! Challengers of the law that a stage stands on: from the weak rows of its record, and with its error in the sensors.
+
+use super::{BUDGET, INERTIA_SPREAD, PRIOR_WIDTH, Phase, Tracker};
+use crate::evidence::Noise;
+use crate::identify::problem::Problem;
+use crate::identify::settings::Settings;
+use crate::identify::stage::Prior;
+use crate::identify::window::Window;
+
+/// Passes after which a challenger that has not settled gives up.
+const PATIENCE: u32 = 40;
+
+/// Samples from which on the kind of a record's error can be told.
+const ENOUGH: u64 = 500;
+
+/// A first law is tried when the weak start predicts its force this well.
+const START_ERROR: f64 = 0.3;
+
+/// The same where no displacement is measured: each weak row then has an offset of its own, which the filter does not need.
+const START_ERROR_WITHOUT_Q: f64 = 1.0;
+
+/// Samples after which an unvouched law is contested by the latest record alone.
+const FRESH_START: u64 = 12_000;
+
+/// What the latest record must explain better than the whole one to replace it, nats per measurement.
+const CLEARLY: f64 = 0.1;
+
+impl Tracker {
+    /// A record that has grown long without a law to vouch for may hold a switch that nobody saw: the weak rows begin anew, so that
+    /// the next challenger knows the latest record alone.
+    pub(super) fn begin_afresh(&mut self) {
+        let (end, since) = (self.window.end(), self.challenged_from);
+        let patience = FRESH_START + 2 * (since - self.stage.start.min(since));
+        if self.challenging || self.phase == Phase::Gathering || end - since < patience {
+            return;
+        }
+        self.start.begin(end);
+        (self.challenged_from, self.next_guess) = (end, 0);
+    }
+
+    /// Begins a stage, or a challenger of the one there is, from what the weak rows of its record say.
+    pub(super) fn challenge(&mut self, problem: &Problem, settings: &Settings) {
+        if self.start.feed(problem, &self.window, 1) {
+            return;
+        }
+        let (window, since) = (&self.window, self.challenged_from);
+        let long_enough = !self.challenging && self.now() - window.sample(window.oldest()).t >= settings.initial_window;
+        if !long_enough || window.end() < self.next_guess || since < window.oldest() {
+            return;
+        }
+        self.next_guess = window.end() + (window.end() - since) / 8 + 4;
+        let sensor = match self.phase {
+            Phase::Gathering => first_noise(settings, window),
+            Phase::Refining if self.noise_weight > 0.0 => self.live.noise.sensor,
+            Phase::Refining => self.stage.noise.sensor,
+        };
+        let Some(guess) = self.start.guess(problem, sensor) else { return };
+        let inertia =
+            problem.free_inertia().map_or(problem.known[problem.inertia], |index| guess.fit.coefficients[index]);
+        let allowed = if problem.channels.q { START_ERROR } else { START_ERROR_WITHOUT_Q };
+        if guess.relative_error > allowed || !(inertia.is_finite() && inertia != 0.0) {
+            return;
+        }
+        let process = guess.force_intensity / (inertia * inertia) + f64::MIN_POSITIVE;
+        let noise = Noise { sensor, process };
+        let fit = guess.fit;
+        for index in 0..problem.n() {
+            self.spread[index] = fit.reach[index].max(10.0 * guess.std[index]).min(1e9);
+            self.centre[index] = if problem.maybe[index] { 0.0 } else { fit.coefficients[index] };
+        }
+        let challenger = match self.phase {
+            Phase::Gathering => &mut self.stage,
+            Phase::Refining => &mut self.challenger,
+        };
+        let structure = (self.noise_weight > 0.0).then_some(self.live.active.as_slice());
+        let prior = Prior {
+            centre: &self.centre,
+            std: &self.spread,
+            log_inertia: INERTIA_SPREAD,
+            structure,
+            noise_weight: self.noise_weight,
+        };
+        challenger.begin(problem, window, since, &fit.coefficients, prior, noise);
+        self.challenging = self.phase == Phase::Refining;
+        self.phase = Phase::Refining;
+    }
+
+    /// A fit with much process noise may be a maximum of the likelihood without being the largest: the other kind, all error in
+    /// the sensors, is tried from the same coefficients each time the record has doubled.
+    pub(super) fn challenge_noise(&mut self, problem: &Problem, settings: &Settings) {
+        let end = self.window.ready();
+        let due = end >= self.next_noise_challenge && self.phase == Phase::Refining && !self.challenging;
+        if !due || !self.stage.process_matters || !self.stage.settled() || self.stage.length(end) < ENOUGH {
+            return;
+        }
+        self.next_noise_challenge = end + self.stage.length(end);
+        let sensor = first_noise(settings, &self.window);
+        let noise = Noise { sensor, process: 1e-6 * self.stage.noise.process };
+        self.set_spread(problem);
+        self.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
+        let prior = Prior {
+            centre: &self.stage.coefficients,
+            std: &self.spread,
+            log_inertia: INERTIA_SPREAD,
+            structure: (self.noise_weight > 0.0).then_some(self.live.active.as_slice()),
+            noise_weight: 0.0,
+        };
+        self.challenger.begin(problem, &self.window, self.stage.start, &self.stage.coefficients, prior, noise);
+        self.challenging = true;
+    }
+
+    /// Refines the challenger; it takes the stage's place when it explains the record better.
+    pub(super) fn refine_challenger(&mut self, problem: &Problem, settings: &Settings) {
+        if !self.challenging || !self.challenger.refine(problem, settings, &self.window, BUDGET[1]) {
+            return;
+        }
+        if self.challenger.settled() {
+            self.challenging = false;
+            if self.challenger.agrees_with(&self.stage) {
+                self.next_guess = self.window.end() + self.stage.length(self.window.end());
+            }
+            let measurements = 2.0 * self.challenger.length(self.window.ready()) as f64;
+            let later = self.challenger.start > self.stage.start;
+            let margin = if later { CLEARLY } else { 3.0 / measurements };
+            if self.challenger.likelihood > self.stage.likelihood + margin {
+                std::mem::swap(&mut self.challenger, &mut self.stage);
+            }
+        } else if self.challenger.passes > PATIENCE {
+            self.challenging = false;
+        }
+        self.challenger.begin_pass(problem, &self.window);
+    }
+}
+
+/// Sensor variances from third differences, which a smooth motion leaves small; an upper bound that passes then lower.
+fn first_noise(settings: &Settings, window: &Window) -> [f64; 2] {
+    let given = [settings.noise_q, settings.noise_qd];
+    let channel = |index: usize, value: fn(&crate::identify::Sample) -> f64| {
+        if given[index] > 0.0 {
+            return given[index] * given[index];
+        }
+        let first = window.end().saturating_sub(1024).max(window.oldest());
+        let differences = (first..window.end().saturating_sub(3)).map(|number| {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|offset| value(window.sample(number + offset)));
+            (d - 3.0 * c + 3.0 * b - a).powi(2)
+        });
+        let count = window.end().saturating_sub(3).saturating_sub(first).max(1);
+        differences.sum::<f64>() / (20.0 * count as f64) + f64::MIN_POSITIVE
+    };
+    [channel(0, |sample| sample.q), channel(1, |sample| sample.qd)]
+}

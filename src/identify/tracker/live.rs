@@ -1,0 +1,132 @@
+//! The law in use, run along with the stream: its innovations, its prediction, and how far that deviates.
+
+use super::{Stage, Tracker};
+use crate::evidence::{Innovation, Noise, Observation, Pass};
+use crate::identify::identifier::Output;
+use crate::identify::problem::Problem;
+use crate::identify::settings::Settings;
+use crate::identify::window::Window;
+use crate::law::{Motion, State};
+use serde::{Deserialize, Serialize};
+
+/// The law's own covariance counts this many times where it leaves the state open: it is that of a linearisation.
+const DISTRUST: f64 = 10.0;
+
+/// An error of the law acts one way for this many samples at most.
+const LONGEST_ERROR: f64 = 1000.0;
+
+/// The law in use, run along with the stream.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Live {
+    pub(super) pass: Pass,
+    pub(super) all: Vec<f64>,
+    pub(super) active: Vec<bool>,
+    pub(super) noise: Noise,
+    /// Covariance of the free coefficients, n × n.
+    covariance: Vec<f64>,
+    /// For how long an error of the law acts one way, s.
+    lasting: f64,
+    pub(super) next: u64,
+    pub(super) running: bool,
+    prediction: State,
+    predicted_since: f64,
+}
+
+impl Live {
+    /// Room for the problem.
+    pub(super) fn new(problem: &Problem) -> Live {
+        let n = problem.n();
+        Live {
+            pass: Pass::new(n),
+            all: problem.known.clone(),
+            active: vec![true; n],
+            noise: Noise { sensor: [1.0; 2], process: 1.0 },
+            covariance: vec![0.0; n * n],
+            lasting: 0.0,
+            next: 0,
+            running: false,
+            prediction: State::default(),
+            predicted_since: 0.0,
+        }
+    }
+
+    pub(super) fn step(&mut self, problem: &Problem, observation: &Observation) -> [Option<Innovation>; 2] {
+        let motion = Motion { terms: &problem.terms, coefficients: &self.all };
+        let noise = Noise { process: self.noise.process + self.doubt(observation.dt), ..self.noise };
+        self.pass.step(&motion, &problem.free_terms, &noise, observation)
+    }
+
+    /// Intensity of the acceleration that the law's own uncertainty leaves open over an interval like the last one, (m/s²)² s: where the
+    /// motion leaves what its record has seen, an uncertain law must not bind the state.
+    fn doubt(&self, dt: f64) -> f64 {
+        let inputs = &self.pass.map.input;
+        let rows = self.covariance.chunks_exact(inputs.len()).zip(inputs);
+        let variance: f64 = rows
+            .map(|(row, input)| input[1] * row.iter().zip(inputs).map(|(entry, other)| entry * other[1]).sum::<f64>())
+            .sum();
+        DISTRUST * variance.max(0.0) / (dt * dt) * self.lasting
+    }
+
+    /// Takes over the stage's estimate and the run that led to it.
+    pub(super) fn adopt(&mut self, problem: &Problem, stage: &mut Stage, window: &Window) {
+        stage.hand_over(problem, window, &mut self.pass);
+        self.all.copy_from_slice(&stage.all);
+        self.active.copy_from_slice(&stage.active);
+        self.noise = stage.noise;
+        self.covariance.copy_from_slice(&stage.solution.covariance);
+        let [before, last] = [window.ready() - 2, window.ready() - 1].map(|number| window.sample(number).t);
+        self.lasting = stage.scales.natural_time().min(LONGEST_ERROR * (last - before));
+        if !self.running {
+            self.restart_prediction(last);
+        }
+        self.next = window.ready();
+        self.running = true;
+    }
+
+    fn restart_prediction(&mut self, t: f64) {
+        self.prediction = self.pass.filter.state;
+        self.predicted_since = t;
+    }
+}
+
+impl Tracker {
+    pub(super) fn predict(
+        &mut self,
+        problem: &Problem,
+        settings: &Settings,
+        number: u64,
+        observation: &Observation,
+        output: &mut Output,
+    ) {
+        let sample = *self.window.sample(number);
+        let motion = Motion { terms: &problem.terms, coefficients: &self.live.all };
+        let [from, _, to] = observation.drive.part(0, 1);
+        self.live.prediction = motion.step_linear(self.live.prediction, observation.dt, from, to);
+        if !self.live.prediction.is_finite() {
+            self.live.restart_prediction(sample.t);
+        }
+        let prediction = self.live.prediction;
+        let weight = |measured: bool, weight: f64| if measured { weight } else { 0.0 };
+        let difference = weight(problem.channels.q, settings.weight_q) * (prediction.q - sample.q).abs()
+            + weight(problem.channels.qd, settings.weight_qd) * (prediction.qd - sample.qd).abs();
+        if difference.is_finite() {
+            self.deviation.add(sample.t, difference);
+        }
+        (output.prediction_q, output.prediction_qd) = (prediction.q, prediction.qd);
+        output.deviation = self.deviation.mean();
+        output.threshold = self.threshold(settings);
+        if sample.t - self.live.predicted_since > settings.deviation_interval {
+            self.live.restart_prediction(sample.t);
+            self.usual_deviation += 0.2 * (output.deviation - self.usual_deviation);
+        }
+    }
+
+    /// The given threshold, or four times the usual deviation under this law and what its noise alone would give.
+    fn threshold(&self, settings: &Settings) -> f64 {
+        if settings.deviation_threshold > 0.0 {
+            return settings.deviation_threshold;
+        }
+        let [q, qd] = self.live.noise.sensor.map(f64::sqrt);
+        4.0 * self.usual_deviation.max(settings.weight_q * q + settings.weight_qd * qd)
+    }
+}

@@ -1,0 +1,54 @@
+//! What a stage makes known, once its law is worth showing.
+
+use super::{Phase, Tracker};
+use crate::identify::identifier::{Coefficient, Output, Status};
+use crate::identify::problem::Problem;
+use crate::identify::stage::TRUSTED;
+
+/// e below this square vouches for a law.
+const VOUCHED: f64 = 0.05 * 0.05;
+
+impl Tracker {
+    /// What the record since the stage's start leaves open: combinations of terms while the weak rows of a first law are
+    /// gathered, then single terms whose std is larger than anything plausible.
+    pub fn unidentifiable(&self, problem: &Problem) -> Vec<String> {
+        let name = |free: &usize| problem.free_terms[*free].name();
+        let shown = self.stage.settled() && self.stage.stated_error() < TRUSTED;
+        if self.phase == Phase::Refining && shown {
+            let open =
+                (0..problem.n()).filter(|free| self.stage.active[*free] && self.stage.std(*free) >= self.spread[*free]);
+            return open.map(|free| name(&free)).collect();
+        }
+        let directions = self.start.open_directions();
+        directions.iter().map(|direction| problem.together(direction)).collect()
+    }
+
+    pub(super) fn publish(&mut self, problem: &Problem, published: &mut [Coefficient], output: &mut Output) {
+        for (index, coefficient) in published.iter_mut().enumerate() {
+            match problem.free.iter().position(|free| *free == index) {
+                None => (coefficient.value, coefficient.std) = (problem.known[index], Some(0.0)),
+                Some(free) => self.publish_free(free, coefficient),
+            }
+        }
+        output.noise_q = problem.channels.q.then(|| self.stage.noise.sensor[0].sqrt());
+        output.noise_qd = problem.channels.qd.then(|| self.stage.noise.sensor[1].sqrt());
+        if self.stage.stands() && self.stage.stated_error() < VOUCHED {
+            output.valid = true;
+            output.identified_time.get_or_insert(self.now());
+            if output.status != Status::SwitchSuspected {
+                output.status = Status::Tracking;
+            }
+        }
+    }
+
+    fn publish_free(&self, free: usize, coefficient: &mut Coefficient) {
+        let std = self.stage.std(free);
+        if !self.stage.active[free] {
+            (coefficient.value, coefficient.std) = (0.0, Some(0.0));
+        } else if std < self.spread[free] {
+            (coefficient.value, coefficient.std) = (self.stage.coefficients[free], Some(std));
+        } else {
+            coefficient.std = None;
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Whether the law has switched, and what happens when it has.
+
+use super::{INERTIA_SPREAD, PRIOR_WIDTH, Phase, SWITCH_SIZE, Tracker};
+use crate::evidence::{Noise, Suspect};
+use crate::identify::identifier::{Output, Status};
+use crate::identify::problem::Problem;
+use crate::identify::settings::Settings;
+use crate::identify::stage::Prior;
+
+/// For how many samples the sensor noise of the last stage counts in the next one.
+const NOISE_MEMORY: f64 = 500.0;
+
+/// A law from this many samples needs twice the evidence: its information is that of a linearisation, whose error falls as the
+/// record grows.
+const DOUBT: f64 = 2000.0;
+
+/// A law that is not vouched for needs this many times the evidence.
+const UNPROVEN: f64 = 10.0;
+
+impl Tracker {
+    /// The law in use has left what can be computed: everything begins anew with the next samples.
+    pub(super) fn lose(&mut self, output: &mut Output) {
+        let end = self.window.end();
+        self.live.running = false;
+        self.bank.clear();
+        self.deviation.clear();
+        self.start.begin(end);
+        (self.phase, self.challenging, self.challenged_from) = (Phase::Gathering, false, end);
+        (self.next_guess, self.next_noise_challenge) = (0, 0);
+        (output.status, output.valid, output.identified_time) = (Status::Acquiring, false, None);
+    }
+
+    /// Alarm, suspicion, or neither.
+    pub(super) fn judge(&mut self, problem: &Problem, settings: &Settings, suspect: &Suspect, output: &mut Output) {
+        let doubt = self.stage.overdispersion * (1.0 + DOUBT / self.stage.length(self.window.ready()).max(1) as f64);
+        let doubt = if output.valid { doubt } else { UNPROVEN * doubt };
+        let level = doubt * (settings.false_alarm_interval / settings.sample_time).ln().max(3.0);
+        let level = level.max(self.usual.level());
+        if output.valid {
+            self.usual.add(suspect.evidence);
+        }
+        let given = settings.deviation_threshold;
+        let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
+        if suspect.evidence > level || deviates {
+            self.switch(problem, suspect, level, output);
+        } else if output.status == Status::Tracking && suspect.evidence > 0.5 * level {
+            output.status = Status::SwitchSuspected;
+            if self.renewed {
+                (self.suspected, self.renewed) = (self.window.end(), false);
+            }
+        } else if output.status == Status::SwitchSuspected && suspect.evidence <= 0.5 * level {
+            output.status = Status::Tracking;
+        }
+    }
+
+    /// Ends the stage; only data from after the switch enters the new law.
+    fn switch(&mut self, problem: &Problem, suspect: &Suspect, level: f64, output: &mut Output) {
+        self.bank.look_at_all();
+        let suspect = self.bank.suspect().unwrap_or(*suspect);
+        let last = self.window.ready() - 1;
+        let instant = self.bank.likeliest_start(&suspect, level);
+        let start = (self.bank.after(&suspect, level) + 1).min(last);
+        self.bank.change(&suspect, &mut self.change);
+        self.set_spread(problem);
+        let plausible = self.change.iter().zip(&self.spread).all(|(change, spread)| change.abs() < 2.0 * spread);
+        for (index, (change, centre)) in self.change.iter_mut().zip(&mut self.centre).enumerate() {
+            *centre = self.live.all[problem.free[index]];
+            *change = if plausible { *centre + *change } else { *centre };
+        }
+        let acceleration = self.stage.scales.acceleration();
+        let process = (SWITCH_SIZE * acceleration).powi(2) * 0.1;
+        let noise = Noise { sensor: self.live.noise.sensor, process: process.max(self.live.noise.process) };
+        self.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
+        keep_inertia(problem, &self.live.all, &mut self.change);
+        self.noise_weight = NOISE_MEMORY;
+        let prior = Prior {
+            centre: &self.centre,
+            std: &self.spread,
+            log_inertia: INERTIA_SPREAD,
+            structure: Some(&self.live.active),
+            noise_weight: self.noise_weight,
+        };
+        self.stage.begin(problem, &self.window, start, &self.change, prior, noise);
+        self.start.begin(start);
+        (self.challenging, self.challenged_from) = (false, start);
+        (self.next_guess, self.next_noise_challenge) = (0, 0);
+        self.live.running = false;
+        self.bank.clear();
+        self.deviation.clear();
+        self.usual_deviation = 0.0;
+        self.usual.clear();
+        output.switch_count += 1;
+        output.switch_time = self.window.sample(instant).t;
+        output.detection_time = Some(self.now());
+        output.identified_time = None;
+        output.missing = None;
+        output.valid = false;
+        output.status = Status::ReIdentifying;
+    }
+}
+
+/// A linear estimate of the change may turn the inertia around: it then stays what it was.
+fn keep_inertia(problem: &Problem, old: &[f64], new: &mut [f64]) {
+    if let Some(index) = problem.free_inertia() {
+        let ratio = new[index] / old[problem.inertia];
+        if !(0.3..3.0).contains(&ratio) {
+            new[index] = old[problem.inertia];
+        }
+    }
+}
