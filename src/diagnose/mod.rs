@@ -15,6 +15,7 @@ mod free_run;
 mod improve;
 mod inner_slopes;
 mod judge;
+mod levels;
 mod locate;
 mod massless;
 mod means;
