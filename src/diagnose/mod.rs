@@ -19,6 +19,7 @@ mod levels;
 mod locate;
 mod massless;
 mod means;
+mod memory_run;
 mod noise;
 mod piece;
 mod place;
