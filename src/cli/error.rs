@@ -37,6 +37,17 @@ pub(super) enum CommandError {
         /// Why.
         source: BuildError,
     },
+    /// Free motion of a model without inertia.
+    #[error(
+        "{data}: there is no excitation, and {model} has no inertia: add inertia = 1.0 to its [terms], or the column of the excitation, \
+         so that forces have a scale"
+    )]
+    NoScale {
+        /// The recording.
+        data: String,
+        /// The model's file.
+        model: String,
+    },
     /// There is no FMU of the model.
     #[error("{model}: {source}")]
     Fmu {

@@ -4,7 +4,7 @@ use super::error::CommandError;
 use super::output;
 use crate::data::{self, Opened};
 use crate::identify::{self, Gap, Recording, Settings};
-use crate::law::{Hold, Model, Term, Units};
+use crate::law::{Given, Hold, Model, ModelTerm, Term, Units};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
@@ -43,14 +43,21 @@ impl Input {
         let opened: Vec<Opened> = data.iter().map(open).collect::<Result<_, _>>()?;
         let units = opened.iter().map(|opened| opened.units).reduce(Units::common).unwrap_or_default();
         let recordings: Vec<Recording> = opened.into_iter().map(|opened| opened.recording).collect();
+        let file = arguments.model.display().to_string();
+        let moving = moving(&model);
+        if let Some(free) = recordings.iter().find(|recording| !recording.channels().excitation)
+            && moving.terms.len() > model.terms.len()
+        {
+            return Err(CommandError::NoScale { data: free.source().into(), model: file });
+        }
         let asked = arguments.hold.as_deref().and_then(Hold::from_id);
         let hold = |recording: &Recording| {
             let settings = || identify::settings_for(recording, Settings::default());
-            asked.or(model.hold).unwrap_or_else(|| identify::choose_hold(&model, recording, &settings()))
+            asked.or(model.hold).unwrap_or_else(|| identify::choose_hold(&moving, recording, &settings()))
         };
         let holds = recordings.iter().map(hold).collect();
         recordings.iter().flat_map(warnings).for_each(|text| output::complain("warning", &text));
-        Ok(Input { file: arguments.model.display().to_string(), model, units, recordings, holds })
+        Ok(Input { file, model, units, recordings, holds })
     }
 
     /// The recordings with their holds.
@@ -73,6 +80,15 @@ impl Input {
     pub(super) fn undetermined(&self) -> CommandError {
         CommandError::Undetermined { data: self.named(), model: self.file.clone() }
     }
+}
+
+/// The model as a law of motion: with an inertia where it has none.
+fn moving(model: &Model) -> Model {
+    let mut moving = model.clone();
+    if moving.check_inertia().is_err() {
+        moving.terms.push(ModelTerm::new(Term::Inertia, Given::Fit));
+    }
+    moving
 }
 
 /// What was taken otherwise than the file says.

@@ -10,6 +10,7 @@ use super::piece::Piece;
 use super::run::Sums;
 use crate::law::{Effect, Hold, Line, Motion, State, Term, Trajectory, interval_forces};
 use nalgebra::DMatrix;
+use std::rc::Rc;
 
 /// Part of a beginning's spread by which it is moved to see what it does.
 const NUDGE: f64 = 1e-3;
@@ -19,7 +20,7 @@ const NUDGE: f64 = 1e-3;
 pub(super) struct Beside {
     /// By piece and interval: the force of every series per unit of its coefficient, of every inner parameter that is sought per unit of its
     /// logarithm, then of every beginning per unit of it.
-    pub(super) rows: Vec<Vec<Vec<Line>>>,
+    pub(super) rows: Rc<Vec<Vec<Vec<Line>>>>,
     /// By how much each beginning may be expected to differ from rest.
     spreads: Vec<f64>,
     /// Number of inner parameters.
@@ -42,7 +43,7 @@ impl Beside {
         let columns = parts.series.len() + inner.len() + count;
         let rows = |piece: &Piece| vec![vec![[0.0; 2]; columns]; if columns > 0 { piece.len() - 1 } else { 0 }];
         Beside {
-            rows: pieces.iter().map(rows).collect(),
+            rows: Rc::new(pieces.iter().map(rows).collect()),
             inner: inner.len(),
             spreads: vec![1.0; count],
             beginnings: vec![0.0; count],
@@ -60,6 +61,7 @@ impl Beside {
     ) -> Beside {
         let parts = Parts::of(form);
         let mut all = Beside::none(form, &parts, inner, pieces);
+        let rows = Rc::make_mut(&mut all.rows);
         let smooth = Smooth::of(form, &parts, coefficients);
         let (mut column, mut first) = (parts.series.len() + inner.len(), 0);
         for (number, (piece, states)) in pieces.iter().zip(states).enumerate() {
@@ -69,7 +71,7 @@ impl Beside {
             for (position, one) in inner.iter().enumerate() {
                 let along = Along { piece, states, bends: &bends, begin: begin(one.term) };
                 let slope = inner_slopes::slope((form, coefficients), *one, along);
-                put(&mut all.rows[number], parts.series.len() + position, &slope, |line| *line);
+                put(&mut rows[number], parts.series.len() + position, &slope, |line| *line);
             }
             for (position, index) in parts.series.iter().enumerate() {
                 let (term, coefficient) = (form.terms[*index], coefficients[*index]);
@@ -79,14 +81,14 @@ impl Beside {
                     |begin: &[f64]| interval_forces(term, &form.expressions, &course.trajectory(), &bends, begin);
                 let own = force(begin);
                 let spreads = spreads(term, &own, &piece.excitation);
-                put(&mut all.rows[number], position, &own, |line| *line);
+                put(&mut rows[number], position, &own, |line| *line);
                 for (offset, spread) in spreads.iter().enumerate() {
                     let mut moved = begin.to_vec();
                     moved[offset] += NUDGE * spread;
                     let change = force(&moved);
                     let pairs: Vec<(Line, Line)> = own.iter().copied().zip(change).collect();
                     let scale = coefficient / (NUDGE * spread);
-                    put(&mut all.rows[number], column, &pairs, |(from, to)| {
+                    put(&mut rows[number], column, &pairs, |(from, to)| {
                         [scale * (to[0] - from[0]), scale * (to[1] - from[1])]
                     });
                     all.spreads[first + offset] = *spread;

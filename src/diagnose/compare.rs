@@ -11,7 +11,7 @@ use super::locate::{Fail, locate};
 use super::record::{Balance, Record};
 use super::window::{choose_window, periods};
 use crate::identify::Recording;
-use crate::law::{Hold, Model, Motion, Term};
+use crate::law::{Expression, Hold, Model, Motion, Term};
 
 /// What a user may set.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,12 +139,13 @@ impl Comparison {
 pub fn compare(model: &Model, recordings: &[(&Recording, Hold)], options: &Options) -> Comparison {
     let terms: Vec<_> = model.terms.iter().map(|entry| entry.term).collect();
     let records: Vec<Record> =
-        recordings.iter().map(|(recording, hold)| Record::new(recording, *hold, &terms, &[])).collect();
+        recordings.iter().map(|(recording, hold)| Record::new(recording, *hold, &terms, &model.expressions)).collect();
     let forced = records.iter().any(|record| record.forced);
     let (as_given, free) = (Held::as_given(model, forced), Held::none(model, forced));
     let window = options.window.unwrap_or_else(|| choose_window(&records, &free));
     let rows: Vec<_> = records.iter().flat_map(|record| record.rows(record.windows(window))).collect();
-    let side = |held: &Held| side(best_coefficients(held, &rows), &records, window, options.horizon);
+    let side =
+        |held: &Held| side(best_coefficients(held, &rows), &records, &model.expressions, [window, options.horizon]);
     let best = side(&free);
     let given = if as_given == free { best.clone() } else { side(&as_given) };
     Comparison {
@@ -171,13 +172,13 @@ struct Totals {
     spread: [f64; 2],
 }
 
-fn side(law: Estimate, records: &[Record], window: f64, horizon: f64) -> Side {
+fn side(law: Estimate, records: &[Record], expressions: &[Expression], [window, horizon]: [f64; 2]) -> Side {
     let period = periods(records).displacement;
     let stretch = 2.0 * period;
     let totals: Vec<Totals> =
-        records.iter().map(|record| Totals::of(record, &law, [window, stretch, horizon])).collect();
+        records.iter().map(|record| Totals::of(record, &law, expressions, [window, stretch, horizon])).collect();
     let error = totals.iter().fold(Totals::default(), |sum, totals| sum.and(totals)).error();
-    let inertia = law.terms.iter().position(|term| *term == Term::Inertia).unwrap_or(0);
+    let inertia = law.terms.iter().position(|term| *term == Term::Inertia);
     let noisy = error.ratio() <= NOISE_RATIO;
     let left = if noisy { Vec::new() } else { left_over(records, &law.coefficients, inertia, window) };
     Side { error, fails: locate(&left, period), each: totals.iter().map(Totals::error).collect(), law }
@@ -185,17 +186,17 @@ fn side(law: Estimate, records: &[Record], window: f64, horizon: f64) -> Side {
 
 impl Totals {
     /// Of one recording; `lengths` are those of the weak windows, of the stretch that gives the initial state, of the horizon, s.
-    fn of(record: &Record, law: &Estimate, [window, stretch, horizon]: [f64; 3]) -> Totals {
+    fn of(record: &Record, law: &Estimate, expressions: &[Expression], [window, stretch, horizon]: [f64; 3]) -> Totals {
         let mut totals = Totals {
             balance: record.balance(record.windows(window), &law.terms, &law.coefficients),
             ..Totals::default()
         };
         let samples = |length: f64| (length / record.sample_time).round().max(2.0) as usize;
         let motion = Motion { terms: &law.terms, coefficients: &law.coefficients };
-        let from_state = law.terms.iter().all(|term| term.is_pointwise());
+        let moves = law.terms.contains(&Term::Inertia);
         for prepared in &record.pieces {
-            if from_state {
-                totals.predict(&FreeRun::new(prepared, &motion), samples(stretch), samples(horizon));
+            if let Some(run) = moves.then(|| FreeRun::new(prepared, motion, expressions)).flatten() {
+                totals.predict(&run, samples(stretch), samples(horizon));
             }
             for (spread, signal) in totals.spread.iter_mut().zip(prepared.piece.measured()) {
                 *spread += signal.map_or(0.0, |values| variance(values) * values.len() as f64);

@@ -9,16 +9,13 @@ use super::judge::{Trial, p_value};
 use super::search::Search;
 use super::sound::Sound;
 use super::variants::same_effect;
-use crate::law::{Catalogue, Term};
+use crate::law::Term;
 
 /// Share of what is unexplained that one effect must explain to be the answer though error is left.
 const ENOUGH: f64 = 0.75;
 
 /// The same of several effects together, which have more freedom.
 const ENOUGH_TOGETHER: f64 = 0.9;
-
-/// Gain, nats, that an effect must have over one that it contains to be another.
-const SAME: f64 = 0.5;
 
 /// Effects that may be missing together.
 const DEPTH: usize = 3;
@@ -55,17 +52,20 @@ pub(super) fn conclude(base: &Fit, evidence: &Evidence, found: &Search, singles:
     if let Some(first) = first.filter(|first| !is_evident(&first.fit)) {
         return alone(base, first, singles, sound);
     }
+    let explained = |trial: &Trial| share(base, &trial.fit);
+    let enough = first.filter(|first| explained(first) >= ENOUGH);
+    // beside one effect that is enough, only a set that leaves nothing could be the answer
+    let explains: &dyn Fn(&Fit, &Fit) -> bool = if enough.is_some() { &leaves_nothing } else { &explains };
     let mut reached: Vec<(Trial, Vec<Member>)> = Vec::new();
     for size in 2..=DEPTH {
-        let (trials, best) = together(base, evidence, found, sound, size);
+        let (trials, best) = together(base, evidence, found, sound, (size, explains));
         let Some((trial, members)) = best else { continue };
         if !is_evident(&trial.fit) {
             return several(base, trial, members, &trials, sound);
         }
         reached.push((trial, members));
     }
-    let explained = |trial: &Trial| share(base, &trial.fit);
-    if let Some(first) = first.filter(|first| explained(first) >= ENOUGH) {
+    if let Some(first) = enough {
         return alone(base, first, singles, sound);
     }
     let most = reached.into_iter().max_by(|a, b| a.0.merit().total_cmp(&b.0.merit()));
@@ -76,8 +76,12 @@ pub(super) fn conclude(base: &Fit, evidence: &Evidence, found: &Search, singles:
 }
 
 /// Whether a law with several candidates leaves no evident error, or next to none.
-pub(super) fn explains(base: &Fit, fit: &Fit) -> bool {
-    !is_evident(fit) || share(base, fit) >= ENOUGH_TOGETHER
+fn explains(base: &Fit, fit: &Fit) -> bool {
+    leaves_nothing(base, fit) || share(base, fit) >= ENOUGH_TOGETHER
+}
+
+fn leaves_nothing(_: &Fit, fit: &Fit) -> bool {
+    !is_evident(fit)
 }
 
 fn nothing(finding: Finding, explained: f64) -> Answer {
@@ -87,10 +91,8 @@ fn nothing(finding: Finding, explained: f64) -> Answer {
 /// One effect, and those that could stand in its place.
 fn alone(base: &Fit, first: &Trial, singles: &[Trial], sound: &Sound) -> Answer {
     let name = |trial: &Trial| trial.fit.form.effect_name(trial.term());
-    // an effect that contains the first and gains no more is the first, at the end of its inner parameters
-    let same = |trial: &Trial| Catalogue::is_contained(&name(first), &name(trial)) && trial.gain < first.gain + SAME;
     let tied = singles.iter().filter(|trial| {
-        let other = !same_effect(trial.term(), first.term()) && !same(trial);
+        let other = !same_effect(trial.term(), first.term()) && !trial.is_at_the_end_of(first);
         other && sound.is(trial) && !first.is_clearly_better_than(trial)
     });
     let group: Vec<String> = std::iter::once(first).chain(tied).map(name).collect();
@@ -136,9 +138,9 @@ fn together(
     evidence: &Evidence,
     found: &Search,
     sound: &Sound,
-    size: usize,
+    (size, explains): (usize, &dyn Fn(&Fit, &Fit) -> bool),
 ) -> (Vec<Trial>, Option<(Trial, Vec<Member>)>) {
-    let trials = found.trials(size);
+    let trials = found.sets(size, explains);
     let needed = |trial: &Trial| {
         if !explains(base, &trial.fit) {
             return None;

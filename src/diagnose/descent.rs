@@ -1,10 +1,11 @@
 //! Gauss–Newton steps on the innovations' likelihood, and the noise that follows them.
 
 use super::beside::Beside;
-use super::fit::{Fit, Form, Parts, solve, solve_damped};
+use super::fit::{Fit, Form, Parts, Solved, solve, solve_damped};
 use super::inner_slopes::{self, Sought};
+use super::levels::{self, GAIN};
 use super::piece::Piece;
-use super::run::{self, Law, Outcome, Sums};
+use super::run::{self, Law, Outcome, Place, Sums};
 use super::smooth::smooth;
 use super::start;
 use super::variants::Scale;
@@ -13,16 +14,10 @@ use crate::law::{Effect, State, Term};
 use nalgebra::{DMatrix, DVector};
 
 /// Most passes of one descent.
-const PASSES: usize = 40;
+const PASSES: usize = 25;
 
 /// Gauss–Newton decrement per unknown below which a step is no longer one.
 const SETTLED: f64 = 1e-3;
-
-/// Gain in log-likelihood, nats, that another level of process noise must promise.
-const GAIN: f64 = 0.1;
-
-/// Smallest sensor noise std, relative to the largest value measured.
-const NOISE_FLOOR: f64 = 1e-7;
 
 /// The sensors alone do not come to explain the record where a pass makes good only this part of what is missing, 1 ÷.
 const HOPELESS: f64 = 5.0;
@@ -39,8 +34,14 @@ const HELD: f64 = 1.0;
 /// Passes without a gain after which a descent has come to its end.
 const IDLE: usize = 6;
 
+/// The same where no step had to be taken back.
+const STILL: usize = 2;
+
 /// Loss in log-likelihood, nats, for which a pass is taken back.
 const LOSS: f64 = 1.0;
+
+/// Factor on the information of an inner parameter that is held.
+const HELD_FAST: f64 = 1e12;
 
 /// Damping of a step that is shortened, as part of each unknown's information: first, and at most.
 const DAMPING: [f64; 2] = [1e-3, 1e3];
@@ -56,10 +57,17 @@ const DELAYED: f64 = 0.2;
 pub(super) struct Descent<'a> {
     pub(super) form: Form,
     pub(super) pieces: &'a [Piece],
+    pub(super) places: Vec<Place>,
+    /// The largest value measured by channel.
+    pub(super) largest: [f64; 2],
     pub(super) parts: Parts,
     pub(super) inner: Vec<Sought>,
+    /// Between which values of each the motion can tell; empty before there is a motion.
+    pub(super) limits: Vec<[f64; 2]>,
     pub(super) coefficients: Vec<f64>,
     pub(super) noise: Noise,
+    /// The rivals' process noise, relative to it.
+    pub(super) ratios: [f64; 2],
     /// The series.
     pub(super) beside: Beside,
 }
@@ -70,17 +78,19 @@ impl<'a> Descent<'a> {
     /// A pass that is worse than the last one is taken back, and looked at again under the noise that it had; the next step is shorter
     /// (Marquardt, SIAM Journal 11 (1963), 431). So a step is judged apart from the noise that moves with it.
     pub(super) fn descend(&mut self, pass: &mut Pass) -> Option<Fit> {
-        let mut best: Option<(Fit, Descent<'a>)> = None;
+        let mut best: Option<(Fit, Descent<'a>, Vec<Outcome>)> = None;
         let mut last: Option<Descent<'a>> = None;
         let mut needed = f64::NEG_INFINITY;
-        let (mut calm, mut damping, mut idle) = (0, 0.0, 0);
+        let (mut calm, mut damping, mut idle, mut still) = (0, 0.0, 0, 0);
         for _ in 0..PASSES {
             let outcomes = self.run(pass);
             let mut sums = total(&outcomes);
             let log_likelihood = self.log_likelihood(&outcomes, &sums);
-            let reached = best.as_ref().map_or(f64::NEG_INFINITY, |(best, _)| best.log_likelihood);
-            idle = if log_likelihood > reached + GAIN { 0 } else { idle + 1 };
-            if idle > IDLE {
+            let reached = best.as_ref().map_or(f64::NEG_INFINITY, |(best, ..)| best.log_likelihood);
+            let gained = log_likelihood > reached + GAIN;
+            idle = if gained { 0 } else { idle + 1 };
+            still = if gained || needed == f64::NEG_INFINITY { 0 } else { still + 1 };
+            if idle > IDLE || still > STILL {
                 break;
             }
             let finite = outcomes.iter().all(|outcome| outcome.finite) && log_likelihood.is_finite();
@@ -94,28 +104,48 @@ impl<'a> Descent<'a> {
                 continue;
             }
             self.add_priors(&mut sums);
-            let solved = solve_damped(&sums.information, &sums.score, damping)?;
+            let solved = self.solved(&mut sums, damping)?;
             damping = if needed.is_finite() { relaxed(damping) } else { damping };
             let decrement = solved.step.dot(&sums.score) / solved.step.len().max(1) as f64;
             let followed = self.is_followed(needed, log_likelihood);
-            if log_likelihood >= reached {
-                let mut fit = self.summary(log_likelihood, solved.covariance, sums.count);
-                fit.noise = calibrated(&self.noise, &outcomes);
-                best = Some((fit, self.clone()));
+            let reached = (log_likelihood >= reached).then(|| {
+                let mut fit = self.summary(log_likelihood, solved.covariance, sums.measurements());
+                fit.noise = levels::calibrated(&self.noise, &outcomes);
+                (fit, self.clone())
+            });
+            let steady = levels::follow(&mut self.noise, &mut self.ratios, &outcomes, self.largest) && followed;
+            calm = if steady && decrement < SETTLED.max(1e-9 * sums.measurements()) { calm + 1 } else { 0 };
+            if calm < 2 {
+                (last, needed) = (Some(self.clone()), log_likelihood);
+                self.take(&solved.step);
+                self.follow(&outcomes, pass);
             }
-            let steady = move_noise(&mut self.noise, &outcomes, start::largest(self.pieces)) && followed;
-            calm = if steady && decrement < SETTLED.max(1e-9 * sums.count) { calm + 1 } else { 0 };
+            best = reached.map(|(fit, point)| (fit, point, outcomes)).or(best);
             if calm >= 2 {
                 break;
             }
-            (last, needed) = (Some(self.clone()), log_likelihood);
-            self.take(&solved.step);
-            self.follow(&outcomes, pass);
         }
-        let (mut fit, point) = best?;
+        let (mut fit, point, outcomes) = best?;
         *self = point;
-        fit.states = self.smoothed(&self.run(pass));
+        fit.states = self.smoothed(&outcomes);
+        fit.by_stretch = by_stretch(&outcomes);
         Some(fit)
+    }
+
+    /// The step, without inner parameters that it would carry out of what the motion can tell.
+    fn solved(&self, sums: &mut Sums, damping: f64) -> Option<Solved> {
+        let solved = solve_damped(&sums.information, &sums.score, damping)?;
+        let first = self.parts.unknowns.len();
+        let steps = &solved.step.as_slice()[first..first + self.inner.len()];
+        let held = inner_slopes::outward(&self.form, &self.inner, &self.limits, steps);
+        if held.is_empty() {
+            return Some(solved);
+        }
+        for row in held.iter().map(|position| first + position) {
+            sums.information[(row, row)] = HELD_FAST * sums.information[(row, row)].max(f64::MIN_POSITIVE);
+            sums.score[row] = 0.0;
+        }
+        solve_damped(&sums.information, &sums.score, damping)
     }
 
     /// Back to where the last step began; where that bore no motion either, with more process noise to hold it.
@@ -131,7 +161,7 @@ impl<'a> Descent<'a> {
     /// Gives up where it will not come near `loud`.
     pub(super) fn quieten(&mut self, pass: &mut Pass, loud: f64) -> f64 {
         let mut reached = f64::NEG_INFINITY;
-        let largest = start::largest(self.pieces);
+        self.ratios = RIVALS;
         for _ in 0..QUIET_PASSES {
             self.noise.process = start::negligible(&self.noise);
             let outcomes = self.run(pass);
@@ -144,7 +174,7 @@ impl<'a> Descent<'a> {
             let gained = log_likelihood - reached;
             reached = reached.max(log_likelihood);
             let Some(solved) = solve(&sums.information, &sums.score) else { return reached };
-            move_noise(&mut self.noise, &outcomes, largest);
+            levels::follow(&mut self.noise, &mut self.ratios, &outcomes, self.largest);
             if gained.abs() < GAIN || loud - reached > HOPELESS * gained {
                 return reached;
             }
@@ -164,8 +194,9 @@ impl<'a> Descent<'a> {
             series: &series,
             noise: self.noise,
         };
-        let pairs = self.pieces.iter().zip(&self.beside.rows);
-        pairs.map(|(piece, rows)| run::run(&law, piece, pass, rows, &[], &[], None)).collect()
+        pass.ratios = self.ratios;
+        let pieces = self.pieces.iter().zip(self.beside.rows.iter()).zip(&self.places);
+        pieces.map(|((piece, rows), place)| run::run(&law, piece, pass, rows, &[], *place, None)).collect()
     }
 
     /// Whether the series have followed the motion that they are part of: they are renewed pass by pass.
@@ -210,6 +241,9 @@ impl<'a> Descent<'a> {
         if self.has_series() {
             let states = self.smoothed(outcomes);
             let beginnings = self.beside.beginnings(&self.form, &self.parts);
+            if self.limits.is_empty() {
+                self.limits = inner_slopes::limits(&self.form, &self.inner, &Scale::of(self.pieces, &states));
+            }
             let law = (&self.form, self.coefficients.as_slice());
             self.beside = Beside::along(law, &self.inner, self.pieces, &states, &beginnings);
         }
@@ -235,6 +269,7 @@ impl<'a> Descent<'a> {
             log_likelihood,
             log_likelihood_if_right: f64::NEG_INFINITY,
             measurements,
+            by_stretch: Vec::new(),
             states: Vec::new(),
             beginnings: self.beside.beginnings(&self.form, &self.parts),
         }
@@ -249,7 +284,7 @@ impl<'a> Descent<'a> {
         for (index, change) in self.parts.unknowns.iter().zip(coefficients) {
             self.coefficients[*index] += fraction * change;
         }
-        inner_slopes::take(&mut self.form, &self.inner, inner, fraction);
+        inner_slopes::take(&mut self.form, &self.inner, &self.limits, inner, fraction);
         self.beside.take(step.as_slice(), fraction);
     }
 
@@ -282,59 +317,24 @@ impl<'a> Descent<'a> {
 }
 
 fn total(outcomes: &[Outcome]) -> Sums {
-    let mut sums = outcomes[0].sums[0].clone();
-    outcomes[1..].iter().flat_map(|outcome| &outcome.sums).for_each(|other| sums.merge(other));
+    let mut all = outcomes.iter().flat_map(|outcome| &outcome.sums);
+    let mut sums = all.next().cloned().unwrap_or_else(|| Sums::none(0, 0));
+    all.for_each(|other| sums.merge(other));
     sums
+}
+
+/// Sums by stretch of the record over all pieces, scaled as the innovations say.
+fn by_stretch(outcomes: &[Outcome]) -> Vec<Sums> {
+    let [first, others @ ..] = outcomes else { return Vec::new() };
+    let mut all = first.sums.clone();
+    for outcome in others {
+        all.iter_mut().zip(&outcome.sums).for_each(|(sum, other)| sum.merge(other));
+    }
+    let scale = levels::scale(outcomes);
+    all.iter_mut().for_each(|sums| sums.rescale(scale));
+    all
 }
 
 fn relaxed(damping: f64) -> f64 {
     if damping > DAMPING[0] { damping / DAMPING_RATIO } else { 0.0 }
-}
-
-/// The noise with the scale that the innovations have: the likelihood is that of the best scale, whatever the noise was.
-fn calibrated(noise: &Noise, outcomes: &[Outcome]) -> Noise {
-    let sum = |value: &dyn Fn(&Outcome) -> f64| outcomes.iter().map(value).sum::<f64>();
-    let squares = [0, 1].map(|channel| sum(&|outcome| outcome.squares[channel]));
-    let count = [0, 1].map(|channel| sum(&|outcome| outcome.count[channel]));
-    let scale = |channel: usize| if count[channel] > 0.0 { squares[channel] / count[channel] } else { 1.0 };
-    let mean = (squares[0] + squares[1]) / (count[0] + count[1]).max(1.0);
-    Noise { sensor: [0, 1].map(|channel| noise.sensor[channel] * scale(channel)), process: noise.process * mean }
-}
-
-/// Sensor noise follows the innovations, process noise the likelihood; returns whether both stayed.
-///
-/// Where a sensor's noise would fall below its floor, all noise is lifted with it: the likelihood depends on the ratios alone.
-fn move_noise(noise: &mut Noise, outcomes: &[Outcome], largest: [f64; 2]) -> bool {
-    let old = *noise;
-    *noise = calibrated(&old, outcomes);
-    noise.process *= towards(outcomes);
-    let measured = [0, 1].map(|channel| outcomes.iter().any(|outcome| outcome.count[channel] > 0.0));
-    let floor = |channel: usize| (NOISE_FLOOR * largest[channel]).powi(2).max(f64::MIN_POSITIVE);
-    let lift = (0..2)
-        .filter(|channel| measured[*channel])
-        .map(|channel| floor(channel) / noise.sensor[channel])
-        .fold(1.0, f64::max);
-    for channel in (0..2).filter(|channel| measured[*channel]) {
-        noise.sensor[channel] *= lift;
-    }
-    // once there is less than the motion itself could show, it is none
-    noise.process = (noise.process * lift).max(start::negligible(noise));
-    let near = |new: f64, old: f64| (new / old - 1.0).abs() < 0.02;
-    let none = noise.process <= start::negligible(noise);
-    let settled = |channel: usize| !measured[channel] || near(noise.sensor[channel], old.sensor[channel]);
-    settled(0) && settled(1) && (none || near(noise.process, old.process))
-}
-
-/// Factor by which the process noise moves: a rival's, or none.
-fn towards(outcomes: &[Outcome]) -> f64 {
-    let sum = |value: fn(&Outcome) -> f64| outcomes.iter().map(value).sum::<f64>();
-    let present = sum(|outcome| outcome.log_likelihood);
-    let [less, more] = [sum(|outcome| outcome.rivals[0]) - present, sum(|outcome| outcome.rivals[1]) - present];
-    match (less >= more, less > -GAIN, more > GAIN) {
-        // where a part of it does as well, it is none: a law that explains its record is not to be approached step by step
-        (true, true, _) if less < GAIN => 0.0,
-        (true, true, _) => RIVALS[0],
-        (false, _, true) => RIVALS[1],
-        _ => 1.0,
-    }
 }

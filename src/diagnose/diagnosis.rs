@@ -194,7 +194,7 @@ pub fn diagnose(base: &Fit, evidence: &Evidence) -> Diagnosis {
     let candidates = candidates(&base.form.expressions);
     let found = search(base, &evidence.pieces, &candidates);
     let sound = Sound::new(base, &evidence.pieces);
-    let singles = sound.ranked(found.trials(1));
+    let singles = sound.ranked(found.singles());
     let answer = conclude(base, evidence, &found, &singles, &sound);
     let listed = Listed::new(base, &answer, &singles, &sound);
     let described = listed.describe(evidence, &sound, found.tried);

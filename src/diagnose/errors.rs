@@ -5,11 +5,11 @@
 //! `compare` gives.
 
 use super::coefficients::Held;
-use super::fit::{Fit, solve};
+use super::fit::{Fit, Parts, solve};
 use super::piece::Piece;
 use super::record::Record;
 use super::rows::Rows;
-use super::screen::{self, STRETCHES};
+use super::run::STRETCHES;
 use super::window::choose_window;
 use crate::identify::Recording;
 use crate::law::{Expression, Hold, Term};
@@ -55,7 +55,7 @@ impl Windows {
 
     /// RMS weak residual ÷ RMS weak excitation (of free motion ÷ inertia), held out, and every window's share.
     pub(super) fn error(&self, fit: &Fit, pieces: &[Piece]) -> (f64, Vec<Left>) {
-        let folds = folds(fit, pieces);
+        let folds = folds(fit);
         let positions: Vec<usize> =
             fit.form.terms.iter().filter_map(|term| self.terms.iter().position(|other| other == term)).collect();
         let samples: usize = pieces.iter().map(|piece| piece.len() - 1).sum();
@@ -82,19 +82,21 @@ impl Windows {
 }
 
 /// Coefficients without each fold; those of all samples where no inertia lets a filter follow the law.
-fn folds(fit: &Fit, pieces: &[Piece]) -> Vec<Vec<f64>> {
+fn folds(fit: &Fit) -> Vec<Vec<f64>> {
     if fit.form.inertia().is_none() {
         return vec![fit.coefficients.clone(); FOLDS];
     }
-    let sums = screen::sums(fit, pieces, &|_, _| Vec::new());
-    let unknowns = super::fit::Parts::of(&fit.form).unknowns;
+    let unknowns = Parts::of(&fit.form).unknowns;
     let without = |fold: usize| {
-        let mut others = sums.iter().enumerate().filter(|(stretch, _)| stretch % FOLDS != fold).map(|(_, sums)| sums);
+        let stretches = fit.by_stretch.iter().enumerate();
+        let mut others = stretches.filter(|(stretch, _)| stretch % FOLDS != fold).map(|(_, sums)| sums);
         let mut coefficients = fit.coefficients.clone();
         let Some(first) = others.next() else { return coefficients };
         let mut total = first.clone();
         others.for_each(|other| total.merge(other));
-        if let Some(solved) = solve(&total.information, &total.score) {
+        // inner parameters and beginnings stay as they are
+        let information = total.information.view((0, 0), (unknowns.len(), unknowns.len())).into_owned();
+        if let Some(solved) = solve(&information, &total.score.rows(0, unknowns.len()).into_owned()) {
             unknowns.iter().zip(solved.step.iter()).for_each(|(index, step)| coefficients[*index] += step);
         }
         coefficients

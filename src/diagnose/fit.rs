@@ -10,8 +10,9 @@ use super::diagnosis::effect_name;
 use super::inner_slopes;
 use super::means::is_series;
 use super::piece::Piece;
+use super::run::{Place, Sums};
 use super::start;
-use crate::evidence::{Noise, Pass};
+use crate::evidence::{Noise, Pass, RIVALS};
 use crate::law::{Expression, State, Term};
 use nalgebra::{DMatrix, DVector};
 
@@ -52,6 +53,8 @@ pub struct Fit {
     pub log_likelihood_if_right: f64,
     /// Number of scalar measurements.
     pub measurements: f64,
+    /// What each stretch of the record says, under variances that its innovations have; coefficients before all else.
+    pub by_stretch: Vec<Sums>,
     /// Smoothed states at every sample, one list per piece.
     pub states: Vec<Vec<State>>,
     /// How far from rest the memories of its effects began, piece by piece.
@@ -185,8 +188,19 @@ pub fn refit(form: &Form, pieces: &[Piece], coefficients: &[f64], noise: Noise) 
     let mut pass = Pass::new(parts.free.len());
     let inner = inner_slopes::sought(form);
     let beside = Beside::none(form, &parts, &inner, pieces);
-    let mut descent =
-        Descent { form: form.clone(), pieces, parts, inner, coefficients: coefficients.to_vec(), noise, beside };
+    let mut descent = Descent {
+        form: form.clone(),
+        pieces,
+        places: Place::of(pieces),
+        largest: start::largest(pieces),
+        parts,
+        inner,
+        limits: Vec::new(),
+        coefficients: coefficients.to_vec(),
+        noise,
+        ratios: RIVALS,
+        beside,
+    };
     descent.renew_series(&mut pass);
     let mut loud = descent.descend(&mut pass)?;
     if loud.noise.process <= start::negligible(&loud.noise) {

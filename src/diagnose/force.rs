@@ -43,8 +43,9 @@ pub struct Left {
     pub places: Vec<Place>,
 }
 
-/// What the law leaves over along every piece; windows are at most `window` s long. `inertia` is its position among the coefficients.
-pub fn left_over(records: &[Record], coefficients: &[f64], inertia: usize, window: f64) -> Vec<Left> {
+/// What the law leaves over along every piece; windows are at most `window` s long. `inertia` is its position among the coefficients, where
+/// the law has one.
+pub fn left_over(records: &[Record], coefficients: &[f64], inertia: Option<usize>, window: f64) -> Vec<Left> {
     let of = |(index, record): (usize, &Record)| {
         let windows = choose(record, coefficients, window);
         let piece = |prepared: &Prepared| Left {
@@ -75,13 +76,22 @@ fn choose(record: &Record, coefficients: &[f64], window: f64) -> Windows {
     windows.into_iter().find(sparse).unwrap_or(longest)
 }
 
-fn places(record: &Record, prepared: &Prepared, windows: Windows, coefficients: &[f64], inertia: usize) -> Vec<Place> {
+fn places(
+    record: &Record,
+    prepared: &Prepared,
+    windows: Windows,
+    coefficients: &[f64],
+    inertia: Option<usize>,
+) -> Vec<Place> {
     let rows = prepared.rows(windows);
     let residuals = rows.residuals(coefficients);
     let noise = prepared.noise(windows, coefficients, record.noise);
     let place = |index: usize| {
         let centre = rows.centre[index];
-        let force = if record.forced { rows.right[index] } else { rows.row(index)[inertia] * coefficients[inertia] };
+        let force = match inertia {
+            Some(inertia) if !record.forced => rows.row(index)[inertia] * coefficients[inertia],
+            _ => rows.right[index],
+        };
         Place {
             t: prepared.piece.t[centre],
             q: prepared.motion.q[centre],

@@ -3,8 +3,10 @@
 //! The state at the start is sought by Gauss–Newton steps on the distance between motion and readings, first over a stretch of a period
 //! or two, then over all. Shorter windows, each from the state that the readings give at its start, show how fast a law errs.
 
+use super::memory_run::MemoryRun;
 use super::rows::Prepared;
-use crate::law::{Compiled, Motion, State};
+use crate::evidence::Observation;
+use crate::law::{Compiled, Expression, Motion, State};
 use std::ops::Range;
 
 /// Gauss–Newton steps at most.
@@ -15,6 +17,9 @@ const SETTLED: f64 = 1e-6;
 
 /// A motion this many times as large as any that was measured has diverged.
 const DIVERGED: f64 = 100.0;
+
+/// Sensitivity of a state to itself.
+const IDENTITY: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
 /// How far the state may turn within one part of an interval between samples, rad.
 const TURN: f64 = 0.2;
@@ -47,11 +52,42 @@ pub type Outcome = Result<Distance, f64>;
 /// A law that runs over a piece.
 pub struct FreeRun<'a> {
     prepared: &'a Prepared,
-    law: Compiled,
+    law: Law<'a>,
     /// Largest readings of q and q̇.
     bounds: [f64; 2],
     /// 1 ÷ variance of the readings by channel, 0 where there are none.
     weight: [f64; 2],
+}
+
+/// How a law is integrated.
+enum Law<'a> {
+    /// By its state alone.
+    OfState(Compiled),
+    /// With what it remembers.
+    WithMemory(MemoryRun<'a>),
+}
+
+/// Where a motion of a law without memory is.
+struct Course {
+    state: State,
+    /// Its sensitivity to the state at the start.
+    carried: [[f64; 2]; 2],
+    rate: f64,
+}
+
+impl Course {
+    fn advance(&mut self, law: &Compiled, observation: &Observation) {
+        let parts = observation.drive.parts((self.rate.sqrt() / TURN).ceil().clamp(1.0, 8.0) as usize);
+        self.rate = 0.0;
+        for part in 0..parts {
+            let excitation = observation.drive.part(part, parts);
+            law.steps(self.state, observation.dt / parts as f64, excitation, &mut [], |step, _, _| {
+                self.state = step.state;
+                self.carried = product(step.transition, self.carried);
+                self.rate = self.rate.max(step.rate * (parts * parts) as f64);
+            });
+        }
+    }
 }
 
 /// Sums of a run: distance, and the normal equations of the initial state.
@@ -64,15 +100,21 @@ struct Sums {
 }
 
 impl<'a> FreeRun<'a> {
-    /// The law with these numbers over a piece.
-    pub fn new(prepared: &'a Prepared, motion: &Motion) -> FreeRun<'a> {
-        let mut law = Compiled::default();
-        law.compile(motion);
+    /// The law with these numbers over a piece; none where it cannot be integrated.
+    pub fn new(prepared: &'a Prepared, motion: Motion<'a>, expressions: &'a [Expression]) -> Option<FreeRun<'a>> {
         let measured = prepared.piece.measured();
-        let bounds = [&prepared.motion.q, &prepared.motion.qd]
-            .map(|values| DIVERGED * values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())));
+        let largest = [&prepared.motion.q, &prepared.motion.qd]
+            .map(|values| values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())));
+        let law = match motion.terms.iter().all(|term| term.is_pointwise()) {
+            true => {
+                let mut law = Compiled::default();
+                law.compile(&motion);
+                Law::OfState(law)
+            }
+            false => Law::WithMemory(MemoryRun::new(prepared, motion, expressions, largest)?),
+        };
         let weight = measured.map(|signal| signal.map_or(0.0, |values| variance(values).recip()));
-        FreeRun { prepared, law, bounds, weight }
+        Some(FreeRun { prepared, law, bounds: largest.map(|value| DIVERGED * value), weight })
     }
 
     /// The prediction of the whole piece from the best initial state; `stretch` samples give the first guess of it.
@@ -128,28 +170,40 @@ impl<'a> FreeRun<'a> {
     }
 
     /// Integrates over intervals of samples.
-    fn run(&self, mut state: State, intervals: Range<usize>) -> Result<Sums, f64> {
-        let piece = &self.prepared.piece;
+    fn run(&self, start: State, intervals: Range<usize>) -> Result<Sums, f64> {
+        match &self.law {
+            Law::OfState(law) => {
+                let mut course = Course { state: start, carried: IDENTITY, rate: 1.0 };
+                self.follow(start, intervals, |interval| {
+                    course.advance(law, &self.prepared.piece.observations[interval]);
+                    (course.state, course.carried)
+                })
+            }
+            Law::WithMemory(law) => {
+                let mut course = law.begin(start, intervals.start);
+                self.follow(start, intervals, |interval| {
+                    law.advance(&mut course, interval);
+                    course.state()
+                })
+            }
+        }
+    }
+
+    /// Compares a motion from `start` on; `advance` gives the state after an interval, and its sensitivity to the one at the start.
+    fn follow(
+        &self,
+        start: State,
+        intervals: Range<usize>,
+        mut advance: impl FnMut(usize) -> (State, [[f64; 2]; 2]),
+    ) -> Result<Sums, f64> {
         let mut sums = Sums::default();
-        let mut carried = [[1.0, 0.0], [0.0, 1.0]];
-        let mut rate = 1.0;
-        self.compare(state, carried, intervals.start, &mut sums);
-        for k in intervals {
-            let observation = &piece.observations[k];
-            let parts = observation.drive.parts((f64::sqrt(rate) / TURN).ceil().clamp(1.0, 8.0) as usize);
-            rate = 0.0;
-            for part in 0..parts {
-                let excitation = observation.drive.part(part, parts);
-                self.law.steps(state, observation.dt / parts as f64, excitation, &mut [], |step, _, _| {
-                    state = step.state;
-                    carried = product(step.transition, carried);
-                    rate = f64::max(rate, step.rate * (parts * parts) as f64);
-                });
-            }
+        self.compare(start, IDENTITY, intervals.start, &mut sums);
+        for interval in intervals {
+            let (state, carried) = advance(interval);
             if !(state.q.abs() <= self.bounds[0] && state.qd.abs() <= self.bounds[1]) {
-                return Err(piece.t[k + 1]);
+                return Err(self.prepared.piece.t[interval + 1]);
             }
-            self.compare(state, carried, k + 1, &mut sums);
+            self.compare(state, carried, interval + 1, &mut sums);
         }
         Ok(sums)
     }

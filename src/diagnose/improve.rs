@@ -93,7 +93,7 @@ pub fn add(model: &Model, effect: Term, evidence: &Evidence) -> Option<Addition>
         return Some(Addition { before: base, after: trial.fit, error_before, error_after });
     }
     let before = best_of_form(model, evidence)?;
-    let trial = search(&before, &evidence.pieces, &[effect]).trials(1).into_iter().next()?;
+    let trial = search(&before, &evidence.pieces, &[effect]).singles().into_iter().next()?;
     let [error_before, error_after] = [&before, &trial.fit].map(|fit| error(fit, evidence));
     Some(Addition { before, after: trial.fit, error_before, error_after })
 }

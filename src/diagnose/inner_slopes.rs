@@ -4,6 +4,7 @@ use super::beside::Course;
 use super::fit::Form;
 use super::means;
 use super::piece::Piece;
+use super::variants::Scale;
 use crate::law::{Effect, InnerRange, Line, State, Term, interval_forces};
 
 /// Relative change of an inner parameter from which its slope is taken.
@@ -11,6 +12,9 @@ const DIFFERENCE: f64 = 0.01;
 
 /// Largest step, in the logarithm of an inner parameter.
 const LARGEST_STEP: f64 = 0.3;
+
+/// No limit.
+const EVERYWHERE: [f64; 2] = [0.0, f64::INFINITY];
 
 /// An inner parameter that is sought: the position of its term in the form, and its own in the effect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,12 +84,32 @@ pub(super) fn bounded(steps: &[f64]) -> f64 {
     if largest > LARGEST_STEP { LARGEST_STEP / largest } else { 1.0 }
 }
 
-/// Moves each by a fraction of a step of its logarithm, within its range.
-pub(super) fn take(form: &mut Form, sought: &[Sought], steps: &[f64], fraction: f64) {
-    for (one, step) in sought.iter().zip(steps) {
-        let factor = (fraction * step).exp();
-        let moved = effect_at(form, one.term).and_then(|effect| moved(effect, one.parameter, factor));
-        if let Some(effect) = moved {
+/// Between which values of each a motion of that scale can tell.
+pub(super) fn limits(form: &Form, sought: &[Sought], scale: &Scale) -> Vec<[f64; 2]> {
+    let of = |one: &Sought| effect_at(form, one.term).map_or(EVERYWHERE, |effect| scale.limits(effect, one.parameter));
+    sought.iter().map(of).collect()
+}
+
+/// Positions of those that stand at their limit, and would be carried beyond it.
+pub(super) fn outward(form: &Form, sought: &[Sought], limits: &[[f64; 2]], steps: &[f64]) -> Vec<usize> {
+    let is_held = |((one, [low, high]), step): ((&Sought, &[f64; 2]), &f64)| {
+        let value = effect_at(form, one.term).map_or(f64::NAN, |effect| effect.inner_values()[one.parameter]);
+        (value <= *low && *step < 0.0) || (value >= *high && *step > 0.0)
+    };
+    let held = sought.iter().zip(limits).zip(steps).map(is_held);
+    held.enumerate().filter_map(|(position, is_held)| is_held.then_some(position)).collect()
+}
+
+/// Moves each by a fraction of a step of its logarithm, to its limit at most.
+pub(super) fn take(form: &mut Form, sought: &[Sought], limits: &[[f64; 2]], steps: &[f64], fraction: f64) {
+    for (position, (one, step)) in sought.iter().zip(steps).enumerate() {
+        let limits = limits.get(position).copied().unwrap_or(EVERYWHERE);
+        let Some(effect) = effect_at(form, one.term) else { continue };
+        let present = effect.inner_values()[one.parameter];
+        // one that began beyond its limit may come back at its own pace
+        let [low, high] = [limits[0].min(present), limits[1].max(present)];
+        let factor = ((fraction * step).exp() * present).clamp(low, high) / present;
+        if let Some(effect) = moved(effect, one.parameter, factor) {
             form.terms[one.term] = Term::Effect(effect);
         }
     }

@@ -9,15 +9,16 @@ use super::diagnosis::is_evident;
 use super::fit::{Fit, refit};
 use super::piece::Piece;
 use super::proposal::Proposal;
-use super::screen;
-use super::variants::Variant;
-use crate::law::Term;
+use crate::law::{Catalogue, Term};
 
 /// Difference of log-likelihood, nats, below which two candidates are equally good.
 const TIE: f64 = 3.0;
 
 /// Standard errors by which one candidate must be better than another, stretch by stretch.
 const CLEAR: f64 = 2.0;
+
+/// Gain, nats, that an effect must have over one that it contains to be another.
+const SAME: f64 = 0.5;
 
 /// Smallest part of the law's process noise with which a fit begins that ought to explain it.
 const LEAST_LEFT: f64 = 1e-3;
@@ -31,8 +32,6 @@ pub struct Trial {
     pub fit: Fit,
     /// Log-likelihood gained.
     pub gain: f64,
-    /// Log-likelihood by stretch of the record.
-    pub by_stretch: Vec<f64>,
 }
 
 impl Trial {
@@ -42,8 +41,7 @@ impl Trial {
         let mut noise = base.noise;
         noise.process *= proposal.left.max(LEAST_LEFT);
         let fit = refit(&form, pieces, &proposal.coefficients, noise)?;
-        let by_stretch = by_stretch(&fit, pieces);
-        Some(Trial { count: proposal.variants.len(), gain: fit.log_likelihood - base.log_likelihood, fit, by_stretch })
+        Some(Trial { count: proposal.variants.len(), gain: fit.log_likelihood - base.log_likelihood, fit })
     }
 
     /// The candidates, inner parameters fitted.
@@ -56,15 +54,17 @@ impl Trial {
         self.terms()[0]
     }
 
-    /// What a screen would have said of it.
-    pub fn as_proposal(&self) -> Proposal {
-        let variant = |term: &Term| Variant { term: *term, spacing: 1.0 };
-        Proposal {
-            variants: self.terms().iter().map(variant).collect(),
-            coefficients: self.fit.coefficients.clone(),
-            gain: self.gain,
-            left: 1.0,
-        }
+    /// The same candidates in the law of `base` on its record, of which this one has seen a part.
+    pub fn on(&self, base: &Fit, pieces: &[Piece]) -> Option<Trial> {
+        let fit = refit(&self.fit.form, pieces, &self.fit.coefficients, self.fit.noise)?;
+        Some(Trial { count: self.count, gain: fit.log_likelihood - base.log_likelihood, fit })
+    }
+
+    /// Whether this is one effect that contains the other's and gains no more: the other, at the end of this one's inner parameters.
+    pub fn is_at_the_end_of(&self, simpler: &Trial) -> bool {
+        let name = |trial: &Trial| trial.fit.form.effect_name(trial.term());
+        let alone = self.count == 1 && simpler.count == 1;
+        alone && Catalogue::is_contained(&name(simpler), &name(self)) && self.gain < simpler.gain + SAME
     }
 
     /// Number of inner parameters that were fitted.
@@ -103,7 +103,8 @@ impl Trial {
         if !is_evident(&self.fit) {
             return difference > TIE;
         }
-        let parts: Vec<f64> = self.by_stretch.iter().zip(&other.by_stretch).map(|(a, b)| a - b).collect();
+        let pairs = self.fit.by_stretch.iter().zip(&other.fit.by_stretch);
+        let parts: Vec<f64> = pairs.map(|(own, other)| own.log_likelihood() - other.log_likelihood()).collect();
         let count = parts.len() as f64;
         let mean = parts.iter().sum::<f64>() / count;
         let scatter = parts.iter().map(|part| (part - mean).powi(2)).sum::<f64>() / (count - 1.0);
@@ -119,11 +120,6 @@ fn merit(gain: f64, inner: usize, measurements: f64) -> f64 {
 /// Probability of a gain this large by chance, `tried` candidates having been looked at.
 pub(super) fn p_value(gain: f64, inner: usize, measurements: f64, tried: usize) -> f64 {
     (tried as f64 * chance(2.0 * merit(gain, inner, measurements))).min(1.0)
-}
-
-/// Log-likelihood of the fitted law by stretch of the record.
-pub(super) fn by_stretch(fit: &Fit, pieces: &[Piece]) -> Vec<f64> {
-    screen::sums(fit, pieces, &|_, _| Vec::new()).iter().map(|sums| -0.5 * (sums.energy + sums.log_variance)).collect()
 }
 
 /// Probability that χ² with one degree of freedom exceeds x: erfc(√(x/2)).

@@ -5,7 +5,7 @@
 
 use super::diagnosis::{Diagnosis, Evidence, Finding, LEVEL, best_of_form, listed};
 use super::fit::Fit;
-use super::judge::{Trial, by_stretch};
+use super::judge::Trial;
 use super::start;
 use crate::law::{Given, Model, ModelTerm, Term};
 use nalgebra::DMatrix;
@@ -20,7 +20,7 @@ pub(super) fn massless(model: &Model, evidence: &Evidence) -> Option<Diagnosis> 
     let with = best_of_form(&whole, evidence)?;
     let base = without_inertia(&with, evidence)?;
     let gain = with.log_likelihood - base.log_likelihood;
-    let trial = Trial { count: 1, gain, by_stretch: by_stretch(&with, &evidence.pieces), fit: with };
+    let trial = Trial { count: 1, gain, fit: with };
     let physical = trial.coefficient() > 0.0;
     if !physical || trial.p_value(1) >= LEVEL {
         return None;

@@ -8,7 +8,7 @@ use super::screen;
 use super::sound;
 use super::tableau::{Joint, Tableau};
 use super::variants::{Scale, Variant, same_effect, variants};
-use crate::law::{Catalogue, Term};
+use crate::law::{Catalogue, State, Term};
 
 /// Rounds in which the grid of inner parameters is narrowed.
 const ROUNDS: usize = 3;
@@ -91,10 +91,11 @@ impl Proposals {
 
 fn proposals(base: &Fit, pieces: &[Piece], variants: &[Variant]) -> Proposals {
     let terms: Vec<Term> = variants.iter().map(|variant| variant.term).collect();
-    let Some(tableau) = screen::tableau(base, pieces, &terms) else { return Proposals::default() };
+    let own = |(piece, states): (&Piece, &Vec<State>)| screen::columns(&terms, &base.form.expressions, piece, states);
+    let columns: Vec<Vec<Vec<f64>>> = pieces.iter().zip(&base.states).map(own).collect();
+    let Some(tableau) = screen::tableau(base, pieces, &columns) else { return Proposals::default() };
     let largest = sound::forces(base, pieces).into_iter().fold(0.0, f64::max);
-    let bound = sound::rms(&terms, &base.form.expressions, pieces, &base.states);
-    let bounds = bound.iter().map(|rms| sound::CANCELLING * largest / rms).collect();
+    let bounds = sound::rms_of(&columns).into_iter().map(|rms| sound::CANCELLING * largest / rms).collect();
     let sets = Sets { base, tableau: &tableau, variants, effects: effects(variants), bounds };
     let single = sets.best((0..tableau.len()).map(|one| [one]), false);
     let count = tableau.len();

@@ -40,12 +40,12 @@ pub struct Sums {
     pub own: DVector<f64>,
     /// Σ ψε/s of each candidate, K.
     pub own_score: DVector<f64>,
-    /// Σ ε²/s.
-    pub energy: f64,
+    /// Σ ε²/s by channel.
+    pub energy: [f64; 2],
     /// Σ ln s.
     pub log_variance: f64,
-    /// Number of innovations.
-    pub count: f64,
+    /// Number of innovations by channel.
+    pub count: [f64; 2],
 }
 
 /// A sample as the filter saw it, for the smoother.
@@ -59,10 +59,41 @@ pub struct Step {
     pub transition: [[f64; 2]; 2],
 }
 
+/// Stretches into which a record is cut.
+pub const STRETCHES: usize = 24;
+
+/// Where a piece lies in its record.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Intervals of the pieces before it.
+    before: usize,
+    /// Intervals of all pieces.
+    all: usize,
+}
+
+impl Place {
+    /// Of every piece.
+    pub fn of(pieces: &[Piece]) -> Vec<Place> {
+        let all = pieces.iter().map(|piece| piece.len() - 1).sum::<usize>().max(1);
+        let mut before = 0;
+        let place = |piece: &Piece| {
+            let place = Place { before, all };
+            before += piece.len() - 1;
+            place
+        };
+        pieces.iter().map(place).collect()
+    }
+
+    /// The stretch that the piece's interval of that number belongs to.
+    pub fn stretch(self, interval: usize) -> usize {
+        ((self.before + interval) * STRETCHES / self.all).min(STRETCHES - 1)
+    }
+}
+
 /// What a run leaves beside its sums.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// One per stretch.
+    /// One per stretch of the record.
     pub sums: Vec<Sums>,
     /// At the first sample.
     pub first: Filter,
@@ -70,7 +101,7 @@ pub struct Outcome {
     pub steps: Vec<Step>,
     /// Log-likelihood, and what the rival levels of process noise would make of it.
     pub log_likelihood: f64,
-    /// Under the process noise times [`crate::evidence::RIVALS`].
+    /// Under the process noise times the pass's ratios.
     pub rivals: [f64; 2],
     /// Σ ε²/s and number of innovations by channel.
     pub squares: [f64; 2],
@@ -89,9 +120,9 @@ impl Sums {
             cross: DMatrix::zeros(unknowns, candidates),
             own: DVector::zeros(candidates),
             own_score: DVector::zeros(candidates),
-            energy: 0.0,
+            energy: [0.0; 2],
             log_variance: 0.0,
-            count: 0.0,
+            count: [0.0; 2],
         }
     }
 
@@ -102,16 +133,36 @@ impl Sums {
         self.cross += &other.cross;
         self.own += &other.own;
         self.own_score += &other.own_score;
-        self.energy += other.energy;
         self.log_variance += other.log_variance;
-        self.count += other.count;
+        for channel in 0..2 {
+            self.energy[channel] += other.energy[channel];
+            self.count[channel] += other.count[channel];
+        }
     }
 
-    fn add(&mut self, unknowns: &[f64], candidates: &[f64], innovation: &Innovation) {
+    /// Number of innovations.
+    pub fn measurements(&self) -> f64 {
+        self.count[0] + self.count[1]
+    }
+
+    /// Log-likelihood, up to a constant.
+    pub fn log_likelihood(&self) -> f64 {
+        -0.5 * (self.log_variance + self.energy[0] + self.energy[1])
+    }
+
+    /// Says energies and log-likelihood under variances that are these times as large, by channel.
+    pub fn rescale(&mut self, scale: [f64; 2]) {
+        for channel in 0..2 {
+            self.energy[channel] /= scale[channel];
+            self.log_variance += self.count[channel] * scale[channel].ln();
+        }
+    }
+
+    fn add(&mut self, unknowns: &[f64], candidates: &[f64], channel: Channel, innovation: &Innovation) {
         let (weight, residual) = (innovation.precision, innovation.residual);
-        self.energy += residual * residual * weight;
+        self.energy[channel as usize] += residual * residual * weight;
         self.log_variance += innovation.variance.ln();
-        self.count += 1.0;
+        self.count[channel as usize] += 1.0;
         for (column, psi) in unknowns.iter().enumerate() {
             let scaled = psi * weight;
             self.score[column] += scaled * residual;
@@ -152,24 +203,23 @@ impl Carried {
     }
 }
 
-/// Runs the filter over a piece. `series` holds the lines and `candidates` the mean forces of every interval, one row per interval;
-/// `stretches[k]` says to which sum interval k belongs. With `joint`, the candidates go there, one beside the other.
+/// Runs the filter over a piece that lies there in its record. `series` holds the lines and `candidates` the mean forces of every interval,
+/// one row per interval. With `joint`, the candidates go there, one beside the other.
 pub fn run(
     law: &Law,
     piece: &Piece,
     pass: &mut Pass,
     series: &[Vec<Line>],
     candidates: &[Vec<f64>],
-    stretches: &[usize],
+    place: Place,
     mut joint: Option<&mut Gram>,
 ) -> Outcome {
     let free: Vec<Term> = law.free.iter().map(|index| law.terms[*index]).collect();
     let (n, extra) = (free.len(), law.series.len());
     let kinds = candidates.first().map_or(0, Vec::len);
-    let stretch_count = stretches.iter().max().map_or(1, |last| last + 1);
     let summed = if joint.is_some() { 0 } else { kinds };
     let first = first_state(piece, &law.noise);
-    let mut outcome = Outcome::none(first, stretch_count, [n + extra, summed], piece.len());
+    let mut outcome = Outcome::none(first, [n + extra, summed], piece.len());
     let motion = Motion { terms: law.terms, coefficients: law.coefficients };
     let (mut carried, mut tried) = (Carried::new(extra), Carried::new(kinds));
     let mut unknowns = vec![0.0; n + extra];
@@ -185,13 +235,13 @@ pub fn run(
         if let Some(forces) = candidates.get(k) {
             tried.step(forces.iter().copied(), pass, inverse_mass, gains);
         }
-        let sums = &mut outcome.sums[stretches.get(k).copied().unwrap_or(0)];
+        let sums = &mut outcome.sums[place.stretch(k)];
         for channel in Channel::ALL {
             if let Some(innovation) = &innovations[channel as usize] {
                 unknowns[..n].copy_from_slice(pass.expected(channel));
                 unknowns[n..].copy_from_slice(&carried.rows[channel as usize]);
                 let rows = &tried.rows[channel as usize];
-                sums.add(&unknowns, &rows[..summed], innovation);
+                sums.add(&unknowns, &rows[..summed], channel, innovation);
                 if let Some(joint) = &mut joint {
                     joint.add(&unknowns, rows, innovation);
                 }
@@ -207,9 +257,9 @@ pub fn run(
 }
 
 impl Outcome {
-    fn none(first: Filter, stretches: usize, [unknowns, candidates]: [usize; 2], samples: usize) -> Outcome {
+    fn none(first: Filter, [unknowns, candidates]: [usize; 2], samples: usize) -> Outcome {
         Outcome {
-            sums: vec![Sums::none(unknowns, candidates); stretches],
+            sums: vec![Sums::none(unknowns, candidates); STRETCHES],
             first,
             steps: Vec::with_capacity(samples),
             log_likelihood: 0.0,

@@ -7,13 +7,10 @@ use super::beside::Beside;
 use super::fit::{Fit, Parts, solve};
 use super::means;
 use super::piece::Piece;
-use super::run::{self, Law, Sums};
+use super::run::{self, Law, Place, Sums};
 use super::tableau::{Gram, Tableau};
 use crate::evidence::Pass;
 use crate::law::{Expression, State, Term};
-
-/// Stretches into which the record is cut.
-pub(super) const STRETCHES: usize = 24;
 
 /// What one candidate would gain.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +26,7 @@ pub struct Gain {
 /// The gain of every candidate term, in their order.
 pub fn screen(fit: &Fit, pieces: &[Piece], candidates: &[Term]) -> Vec<Gain> {
     let expressions = &fit.form.expressions;
-    gains(&merged(&sums(fit, pieces, &|piece, states| columns(candidates, expressions, piece, states))))
+    screen_columns(fit, pieces, &|piece, states| columns(candidates, expressions, piece, states))
 }
 
 /// Columns of mean forces over a piece's intervals, along its smoothed motion.
@@ -37,64 +34,52 @@ pub(super) type Columns<'a> = dyn Fn(&Piece, &[State]) -> Vec<Vec<f64>> + 'a;
 
 /// The gain of every column, in their order.
 pub(super) fn screen_columns(fit: &Fit, pieces: &[Piece], columns: &Columns) -> Vec<Gain> {
-    gains(&merged(&sums(fit, pieces, columns)))
+    let all: Vec<Vec<Vec<f64>>> =
+        pieces.iter().zip(&fit.states).map(|(piece, states)| columns(piece, states)).collect();
+    gains(&run_all(fit, pieces, &all, None))
 }
 
+/// One column per term.
 pub(super) fn columns(terms: &[Term], expressions: &[Expression], piece: &Piece, states: &[State]) -> Vec<Vec<f64>> {
     terms.iter().map(|term| means::means(*term, expressions, piece, states)).collect()
 }
 
-fn merged(sums: &[Sums]) -> Sums {
-    let mut total = sums[0].clone();
-    sums[1..].iter().for_each(|other| total.merge(other));
-    total
-}
-
-/// Every candidate beside every other; none where a run leaves no numbers.
-pub(super) fn tableau(fit: &Fit, pieces: &[Piece], candidates: &[Term]) -> Option<Tableau> {
-    let expressions = &fit.form.expressions;
+/// Every candidate, given as one column for each piece, beside every other; none where a run leaves no numbers.
+pub(super) fn tableau(fit: &Fit, pieces: &[Piece], columns: &[Vec<Vec<f64>>]) -> Option<Tableau> {
     let parts = Parts::of(&fit.form);
     let beginnings = Beside::count(&fit.form, &parts, pieces);
-    let mut gram = Gram::none(parts.unknowns.len() + beginnings, candidates.len());
-    let columns = |piece: &Piece, states: &[State]| columns(candidates, expressions, piece, states);
-    run_all(fit, pieces, &columns, Some(&mut gram));
+    let kinds = columns.first().map_or(0, Vec::len);
+    let mut gram = Gram::none(parts.unknowns.len() + beginnings, kinds);
+    run_all(fit, pieces, columns, Some(&mut gram));
     gram.swept()
 }
 
-/// Sums by stretch of the record, with columns as candidates.
-pub(super) fn sums(fit: &Fit, pieces: &[Piece], candidates: &Columns) -> Vec<Sums> {
-    run_all(fit, pieces, candidates, None)
-}
-
-fn run_all(fit: &Fit, pieces: &[Piece], candidates: &Columns, mut joint: Option<&mut Gram>) -> Vec<Sums> {
+fn run_all(fit: &Fit, pieces: &[Piece], columns: &[Vec<Vec<f64>>], mut joint: Option<&mut Gram>) -> Sums {
     let parts = Parts::of(&fit.form);
     let pick = |positions: &[usize]| -> Vec<f64> { positions.iter().map(|index| fit.coefficients[*index]).collect() };
     let terms: Vec<Term> = parts.of_state.iter().map(|index| fit.form.terms[*index]).collect();
     let beside = Beside::along((&fit.form, &fit.coefficients), &[], pieces, &fit.states, &fit.beginnings);
     let (of_state, of_series) = (pick(&parts.of_state), beside.weights(&parts, &fit.coefficients));
     let law = Law { terms: &terms, coefficients: &of_state, free: &parts.free, series: &of_series, noise: fit.noise };
-    let unknowns = parts.free.len() + of_series.len();
-    let samples: usize = pieces.iter().map(|piece| piece.len() - 1).sum();
-    let mut all: Vec<Sums> = Vec::new();
-    let mut before = 0;
     let mut pass = Pass::new(parts.free.len());
-    for ((piece, states), series) in pieces.iter().zip(&fit.states).zip(&beside.rows) {
-        let rows = means::rows(&candidates(piece, states));
-        let stretch = |k: usize| (before + k) * STRETCHES / samples.max(1);
-        let stretches: Vec<usize> = (0..piece.len() - 1).map(stretch).collect();
-        before += piece.len() - 1;
-        let outcome = run::run(&law, piece, &mut pass, series, &rows, &stretches, joint.as_deref_mut());
-        if all.is_empty() {
-            let kinds = outcome.sums[0].own.len();
-            all = vec![Sums::none(unknowns, kinds); STRETCHES];
+    let mut total: Option<Sums> = None;
+    for (((piece, columns), series), place) in pieces.iter().zip(columns).zip(beside.rows.iter()).zip(Place::of(pieces))
+    {
+        let rows = means::rows(columns);
+        let outcome = run::run(&law, piece, &mut pass, series, &rows, place, joint.as_deref_mut());
+        for sums in outcome.sums {
+            match &mut total {
+                Some(total) => total.merge(&sums),
+                None => total = Some(sums),
+            }
         }
-        all.iter_mut().zip(&outcome.sums).for_each(|(sum, other)| sum.merge(other));
     }
-    all.first_mut().into_iter().for_each(|sums| beside.add_prior(sums));
+    let mut total = total.unwrap_or_else(|| Sums::none(of_series.len(), 0));
+    beside.add_prior(&mut total);
     if let Some(joint) = joint {
         joint.add_prior(beside.prior());
     }
-    all
+    total
 }
 
 /// Score test of each candidate.

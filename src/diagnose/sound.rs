@@ -80,13 +80,17 @@ pub(super) fn forces(fit: &Fit, pieces: &[Piece]) -> Vec<f64> {
 }
 
 /// RMS of terms along smoothed motions.
-pub(super) fn rms(terms: &[Term], expressions: &[Expression], pieces: &[Piece], states: &[Vec<State>]) -> Vec<f64> {
-    let mut squares = vec![0.0; terms.len()];
-    let mut count = 0;
-    for (piece, states) in pieces.iter().zip(states) {
-        let columns = screen::columns(terms, expressions, piece, states);
-        squares.iter_mut().zip(&columns).for_each(|(sum, column)| *sum += column.iter().map(|f| f * f).sum::<f64>());
-        count += states.len();
+fn rms(terms: &[Term], expressions: &[Expression], pieces: &[Piece], states: &[Vec<State>]) -> Vec<f64> {
+    let own = |(piece, states): (&Piece, &Vec<State>)| screen::columns(terms, expressions, piece, states);
+    rms_of(&pieces.iter().zip(states).map(own).collect::<Vec<_>>())
+}
+
+/// RMS of the columns of all pieces, each.
+pub(super) fn rms_of(pieces: &[Vec<Vec<f64>>]) -> Vec<f64> {
+    let mut squares = vec![0.0; pieces.first().map_or(0, Vec::len)];
+    for columns in pieces {
+        squares.iter_mut().zip(columns).for_each(|(sum, column)| *sum += column.iter().map(|f| f * f).sum::<f64>());
     }
+    let count: usize = pieces.iter().filter_map(|columns| columns.first()).map(Vec::len).sum();
     squares.into_iter().map(|square| (square / count.max(1) as f64).sqrt()).collect()
 }

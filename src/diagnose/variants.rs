@@ -68,6 +68,25 @@ impl Scale {
     }
 }
 
+impl Scale {
+    /// Between which values of an inner parameter the motion can tell: beyond them the effect is another of the catalogue, or none.
+    pub fn limits(&self, effect: Effect, parameter: usize) -> [f64; 2] {
+        let [slow, _] = self.frequency;
+        let times = |scale: f64, from: f64, to: f64| [from * scale, to * scale];
+        match (effect, parameter) {
+            (Effect::StribeckFriction { .. }, _) => times(self.velocity, 1e-3, 2.0),
+            (Effect::DeadZoneStiffness { .. } | Effect::OneSidedStop { .. }, _) => times(self.displacement, 1e-3, 1.0),
+            (Effect::ExcitationDelay { .. }, _) => [1e-3 * self.sample_time, 3.0 / slow],
+            (Effect::Hysteresis { .. }, 0) => times(self.displacement, 1e-3, 4.0),
+            (Effect::Hysteresis { .. }, 1) => [0.5, 4.0],
+            (Effect::Hysteresis { .. }, _) => [1.0, 8.0],
+            (Effect::HiddenResonator { .. }, 0) => [0.1 * slow, 3.0 / self.sample_time],
+            (Effect::HiddenResonator { .. }, _) => [1e-4, 2.0],
+            _ => [0.0, f64::INFINITY],
+        }
+    }
+}
+
 /// The candidates that the form does not have already.
 pub fn variants(candidates: &[Term], present: &[Term], scale: &Scale) -> Vec<Variant> {
     let absent = candidates.iter().filter(|term| !present.iter().any(|other| same_effect(**term, *other)));

@@ -6,7 +6,7 @@ use super::symmetric::{Lane, LogSum, WIDTH};
 use crate::law::{Compiled, Drive, Linearized, Motion, State, Term};
 use serde::{Deserialize, Serialize};
 
-/// Ratio by which the process noise of the two rival filters differs from the one in use.
+/// Ratios by which the process noise of the two rival filters differs from the one in use, unless told otherwise.
 pub const RIVALS: [f64; 2] = [1.0 / 30.0, 6.0];
 
 /// Most parts into which an interval between two samples is cut.
@@ -116,8 +116,10 @@ pub struct Pass {
     pub filter: Filter,
     /// Its likelihood.
     pub track: Track,
-    /// Likelihoods under the process noise times [`RIVALS`].
+    /// Likelihoods under the process noise times `ratios`.
     pub rivals: [Track; 2],
+    /// Ratios of the rivals' process noise to the one in use; [`RIVALS`] at first.
+    pub ratios: [f64; 2],
     /// What the record says on the free coefficients.
     pub information: Information,
     /// ∂(q, q̇)/∂θ of the filtered state.
@@ -145,6 +147,7 @@ impl Pass {
             filter,
             track: Track::default(),
             rivals: [Track::default(); 2],
+            ratios: RIVALS,
             information: Information::none(n),
             sensitivity: vec![[0.0; 2]; n],
             map: IntervalMap { transition: [[0.0; 2]; 2], input: vec![[0.0; 2]; n], push: [0.0; 2] },
@@ -212,7 +215,7 @@ impl Pass {
         let mut first = true;
         for part in 0..parts {
             let excitation = observation.drive.part(part, parts);
-            let Pass { compiled, slopes, map, rival_filters, filter, fastest, .. } = self;
+            let Pass { compiled, slopes, map, rival_filters, ratios, filter, fastest, .. } = self;
             compiled.steps(filter.state, dt, excitation, slopes, |step, dt, slopes| {
                 match first {
                     true => map.set(step, slopes),
@@ -220,7 +223,7 @@ impl Pass {
                 }
                 first = false;
                 *fastest = fastest.max(step.rate * (parts * parts) as f64);
-                for (rival, ratio) in rival_filters.iter_mut().zip(RIVALS) {
+                for (rival, ratio) in rival_filters.iter_mut().zip(*ratios) {
                     rival.state = beside(step, filter.state, rival.state);
                     rival.predict(step, dt, noise.process * ratio);
                 }

@@ -13,6 +13,7 @@ use switchid_fmu_slave::{Description, Enumeration, Kind, Variable};
 /// [`FmuError`] where the model is refused, cannot be identified sample by sample, or `name` is no identifier.
 pub fn identifier(name: &str, model: &Model) -> Result<Fmu, FmuError> {
     model.check()?;
+    model.check_inertia()?;
     model.check_streaming()?;
     let description = identifier_description(name, model);
     let page = documentation::page(&description, &text(model));

@@ -16,6 +16,7 @@ use switchid_fmu_slave::{Description, Kind};
 /// effect, and what packing refuses.
 pub fn plant_of_model(name: &str, model: &Model) -> Result<Fmu, FmuError> {
     model.check()?;
+    model.check_inertia()?;
     let numbers = numbers(model)?;
     let law_file = law_file(name, model, &numbers);
     let mut description = plant_description(&ParametricLaw::from_toml(&law_file)?);

@@ -166,6 +166,7 @@ impl Identifier {
     pub fn new(model: &Model, settings: Settings) -> Result<Identifier, BuildError> {
         settings.check()?;
         model.check()?;
+        model.check_inertia()?;
         model.check_streaming()?;
         let coefficients =
             model.terms.iter().map(|entry| Coefficient { term: entry.term, value: 0.0, std: None }).collect();

@@ -13,6 +13,12 @@ const SPACING: f64 = 0.04;
 /// Nodes of each table: beyond the last the loop has yielded.
 const NODES: usize = 512;
 
+/// ρ from which on a loading branch stays: the loop has yielded.
+const FILLED: f64 = 1.0 - 1e-9;
+
+/// ρ beyond which no branch is read: an unloading one would grow without bounds.
+const UNUSED: f64 = 2.0;
+
 /// ρ against the way from 0, and its slope, at every node.
 #[derive(Clone, Debug)]
 struct Branch {
@@ -40,10 +46,15 @@ pub(super) struct Place {
 impl Branch {
     /// Integrates dρ/du = 1 + factor · ρⁿ from 0; ρ stops at 1.
     fn new(factor: f64, exponent: f64) -> Branch {
-        let slope = |value: f64| 1.0 + factor * value.clamp(0.0, 1.0).powf(exponent);
+        let power = |value: f64| if exponent == 1.0 { value } else { value.powf(exponent) };
+        let slope = |value: f64| 1.0 + factor * power(value.clamp(0.0, 1.0));
         let mut values = vec![0.0; NODES];
         for node in 1..NODES {
             let value = values[node - 1];
+            if value > UNUSED || (factor < 0.0 && value >= FILLED) {
+                values[node] = value;
+                continue;
+            }
             let first = slope(value);
             let second = slope(value + 0.5 * SPACING * first);
             let third = slope(value + 0.5 * SPACING * second);

@@ -187,7 +187,7 @@ impl Model {
         self.terms.iter().position(|entry| entry.term == term)
     }
 
-    /// Checks what the TOML reader cannot: each term once, an inertia, not too many.
+    /// Checks what the TOML reader cannot: each term once, not too many.
     ///
     /// # Errors
     /// The first rule that is broken.
@@ -204,6 +204,14 @@ impl Model {
                 return Err(ModelError::Twice { first: first.key.clone(), second: entry.key.clone() });
             }
         }
+        Ok(())
+    }
+
+    /// Checks that the law is one of motion.
+    ///
+    /// # Errors
+    /// [`ModelError::NoInertia`].
+    pub fn check_inertia(&self) -> Result<(), ModelError> {
         self.position(Term::Inertia).map(|_| ()).ok_or(ModelError::NoInertia)
     }
 }

@@ -9,7 +9,7 @@ use super::output;
 use super::progress::Waiting;
 use crate::diagnose::{Evidence, Fit, best_as_given, is_evident};
 use crate::identify::{Recording, Settings};
-use crate::law::{Given, Hold, Term};
+use crate::law::{Given, Hold, ModelError, Term};
 use crate::limits::{Bound, Course, Detection, Law, LimitsError, Sensors, Start, bound, detection, level};
 use asked::Asked;
 use clap::Args;
@@ -75,6 +75,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
 
 fn limits<'a>(input: &'a Input, asked: &'a Asked) -> Result<Limits<'a>, CommandError> {
     let refused = |source: LimitsError| CommandError::Limits { model: input.file.clone(), source };
+    let massless = |source: ModelError| CommandError::Build { model: input.file.clone(), source: source.into() };
+    input.model.check_inertia().map_err(massless)?;
     pointwise(input).map_err(refused)?;
     let recordings = input.recordings();
     let (recording, hold) = recordings[0];
