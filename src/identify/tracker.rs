@@ -214,9 +214,13 @@ impl Tracker {
 
     /// τ of each coefficient: a change whose force moves the acceleration by [`SWITCH_SIZE`] of its RMS.
     fn set_spread(&mut self, problem: &Problem) {
-        let acceleration = self.stage.scales.acceleration();
+        let scales = &self.stage.scales;
         for index in 0..problem.n() {
-            let slope = self.stage.scales.slope(index);
+            let slope = scales.slope(index);
+            let acceleration = match problem.free_inertia() == Some(index) {
+                true => scales.acceleration(),
+                false => scales.restoring_acceleration(),
+            };
             self.spread[index] = if slope > 0.0 { SWITCH_SIZE * acceleration / slope } else { 1e9 };
         }
     }
