@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 const TOLERANCE: f64 = 1e-13;
 
 /// The law in use is trusted with this fraction of its information: its covariance is that of a linearisation.
-const CAUTION: f64 = 0.03;
+const CAUTION: f64 = 0.3;
 
 /// Evidence of this many levels at once comes from the last samples alone.
 const OVERWHELMING: f64 = 10.0;

@@ -5,6 +5,9 @@ use crate::evidence::{Observation, Pass};
 use crate::law::Motion;
 use serde::{Deserialize, Serialize};
 
+/// Smallest mean square of the law's own acceleration, in terms of the excitation's.
+const LEAST: f64 = 1e-4;
+
 /// Mean squares over a pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scales {
@@ -50,9 +53,10 @@ impl Scales {
         (sum / self.count.max(1.0)).sqrt()
     }
 
-    /// RMS of the acceleration that a force of the motion gives, as the law's own forces are: of a rough excitation most acts on the inertia alone.
+    /// RMS of the acceleration that a force of the motion gives, as the law's own forces are: of a rough excitation most acts on the
+    /// inertia alone.
     pub fn restoring_acceleration(&self) -> f64 {
-        let sum = if self.force > 0.0 { self.force.min(self.restoring) } else { self.restoring };
+        let sum = if self.force > 0.0 { self.restoring.clamp(LEAST * self.force, self.force) } else { self.restoring };
         (sum / self.count.max(1.0)).sqrt()
     }
 

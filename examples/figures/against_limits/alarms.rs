@@ -30,10 +30,14 @@ fn run(asked: &Asked, settings: Settings) -> Result<(), Failure> {
     println!("|---|---|---|---|---|---|");
     for builtin in PLANTS {
         for library in [Library::Given, Library::Maybe] {
+            let label = format!("{} | {} | {NOISE}", builtin.id(), library.id());
+            if !asked.wants(&label) {
+                continue;
+            }
             let counts = asked.each(|seed| count(builtin, library, settings, seed))?;
             let minutes = counts.len() as f64 * SECONDS / 60.0;
             let total: usize = counts.iter().sum();
-            println!("| {} | {} | {NOISE} | {minutes} | {total} | {counts:?} |", builtin.id(), library.id());
+            println!("| {label} | {minutes} | {total} | {counts:?} |");
         }
     }
     Ok(())

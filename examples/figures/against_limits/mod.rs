@@ -1,6 +1,7 @@
-//! Figures beside what any method could reach: `cargo run --release --example figures -- --against-limits [FIRST..END] [ROW] [--threads N]`.
+//! Figures beside what any method could reach: `cargo run --release --example figures -- --against-limits [FIRST..END] [ROW] [--only TEXT] [--threads N]`.
 //!
-//! Every row draws its scenarios and its noise from the seeds FIRST to END − 1, so that a row can be measured piece by piece.
+//! Every row draws its scenarios and its noise from the seeds FIRST to END − 1, so that a row can be measured piece by piece;
+//! with `--only TEXT` those of its cases alone whose label holds the text.
 //!
 //! | row | what it prints |
 //! |---|---|
@@ -30,9 +31,16 @@ pub struct Asked {
     pub seeds: Range<u64>,
     /// Threads.
     pub threads: usize,
+    /// What a case's label must hold.
+    pub only: String,
 }
 
 impl Asked {
+    /// Whether the case of this label is asked for.
+    pub fn wants(&self, label: &str) -> bool {
+        label.contains(&self.only)
+    }
+
     /// Measures every seed.
     pub fn each<T: Send>(&self, measure: impl Fn(u64) -> Result<T, Failure> + Sync) -> Result<Vec<T>, Failure> {
         super::threads::run(self.seeds.clone(), self.threads, measure)
@@ -53,12 +61,14 @@ const ROWS: [(&str, Row); 7] = [
 
 /// Prints the rows asked for, all where none is named.
 pub fn run(arguments: impl Iterator<Item = String>) -> Result<(), Failure> {
-    let mut asked = Asked { seeds: 1000..1020, threads: 1 };
+    let mut asked = Asked { seeds: 1000..1020, threads: 1, only: String::new() };
     let mut chosen: Vec<(&str, Row)> = Vec::new();
     let mut arguments = arguments;
     while let Some(argument) = arguments.next() {
         if argument == "--threads" {
             asked.threads = arguments.next().ok_or("--threads needs a number")?.parse()?;
+        } else if argument == "--only" {
+            asked.only = arguments.next().ok_or("--only needs a text")?;
         } else if let Some((first, end)) = argument.split_once("..") {
             asked.seeds = first.parse()?..end.parse()?;
         } else {

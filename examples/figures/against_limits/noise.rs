@@ -22,10 +22,14 @@ pub fn run(asked: &Asked) -> Result<(), Failure> {
     for builtin in PLANTS {
         for disturbance in Disturbance::ALL {
             for noise in NOISES {
+                let label = format!("{} | {} | {noise}", builtin.id(), disturbance.id());
+                if !asked.wants(&label) {
+                    continue;
+                }
                 let found = asked.each(|seed| errors(builtin, disturbance, noise, seed))?;
                 let spread = Spread::of(found.iter().flat_map(|(errors, _)| errors.map(|error| 100.0 * error)));
                 let alarms: u32 = found.iter().map(|(_, alarms)| alarms).sum();
-                println!("| {} | {} | {noise} | {} | {alarms} |", builtin.id(), disturbance.id(), spread.cells());
+                println!("| {label} | {} | {alarms} |", spread.cells());
             }
         }
     }
