@@ -26,6 +26,8 @@ pub(super) struct Live {
     covariance: Vec<f64>,
     /// For how long an error of the law acts one way, s.
     lasting: f64,
+    /// Mean of ∂q̈/∂θ over that time, by free coefficient.
+    slopes: Vec<f64>,
     pub(super) next: u64,
     pub(super) running: bool,
     prediction: State,
@@ -43,6 +45,7 @@ impl Live {
             noise: Noise { sensor: [1.0; 2], process: 1.0 },
             covariance: vec![0.0; n * n],
             lasting: 0.0,
+            slopes: vec![0.0; n],
             next: 0,
             running: false,
             prediction: State::default(),
@@ -52,19 +55,29 @@ impl Live {
 
     pub(super) fn step(&mut self, problem: &Problem, observation: &Observation) -> [Option<Innovation>; 2] {
         let motion = Motion { terms: &problem.terms, coefficients: &self.all };
-        let noise = Noise { process: self.noise.process + self.doubt(observation.dt), ..self.noise };
-        self.pass.step(&motion, &problem.free_terms, &noise, observation)
+        let noise = Noise { process: self.noise.process + self.doubt(), ..self.noise };
+        let innovations = self.pass.step(&motion, &problem.free_terms, &noise, observation);
+        self.smooth_slopes(observation.dt);
+        innovations
     }
 
-    /// Intensity of the acceleration that the law's own uncertainty leaves open over an interval like the last one, (m/s²)² s: where the
-    /// motion leaves what its record has seen, an uncertain law must not bind the state.
-    fn doubt(&self, dt: f64) -> f64 {
-        let inputs = &self.pass.map.input;
-        let rows = self.covariance.chunks_exact(inputs.len()).zip(inputs);
+    /// Errors that a rough excitation turns around faster than the motion follows do not last.
+    fn smooth_slopes(&mut self, dt: f64) {
+        let share = dt / (self.lasting + dt);
+        for (slope, input) in self.slopes.iter_mut().zip(&self.pass.map.input) {
+            *slope += share * (input[1] / dt - *slope);
+        }
+    }
+
+    /// Intensity of the acceleration that the law's own uncertainty leaves open, (m/s²)² s: where the motion leaves what its record has
+    /// seen, an uncertain law must not bind the state.
+    fn doubt(&self) -> f64 {
+        let slopes = &self.slopes;
+        let rows = self.covariance.chunks_exact(slopes.len()).zip(slopes);
         let variance: f64 = rows
-            .map(|(row, input)| input[1] * row.iter().zip(inputs).map(|(entry, other)| entry * other[1]).sum::<f64>())
+            .map(|(row, slope)| slope * row.iter().zip(slopes).map(|(entry, other)| entry * other).sum::<f64>())
             .sum();
-        DISTRUST * variance.max(0.0) / (dt * dt) * self.lasting
+        DISTRUST * variance.max(0.0) * self.lasting
     }
 
     /// Takes over the stage's estimate and the run that led to it.
