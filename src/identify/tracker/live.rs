@@ -39,7 +39,7 @@ impl Live {
     pub(super) fn new(problem: &Problem) -> Live {
         let n = problem.n();
         Live {
-            pass: Pass::new(n),
+            pass: Pass::new(n).guarded(),
             all: problem.known.clone(),
             active: vec![true; n],
             noise: Noise { sensor: [1.0; 2], process: 1.0 },

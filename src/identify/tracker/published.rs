@@ -30,6 +30,7 @@ impl Tracker {
                 Some(free) => self.publish_free(free, coefficient),
             }
         }
+        self.noise_known = true;
         output.noise_q = problem.channels.q.then(|| self.stage.noise.sensor[0].sqrt());
         output.noise_qd = problem.channels.qd.then(|| self.stage.noise.sensor[1].sqrt());
         if self.stage.stands() && self.stage.stated_error() < VOUCHED {
