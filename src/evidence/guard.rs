@@ -12,6 +12,9 @@ const LASTS: u32 = 3;
 /// Where a motion leaves the law each residual is larger than the one before, by half at least.
 const GROWS: f64 = 1.5;
 
+/// Two in a row this many stds off are beyond what a sensor scatters.
+const BEYOND: f64 = 30.0;
+
 /// What a channel's last readings were like.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Guard {
@@ -29,9 +32,10 @@ impl Guard {
             return true;
         }
         self.far[index] += 1;
-        let grows = self.far[index] > 1 && residual / self.last[index] > GROWS;
-        self.last[index] = residual;
-        grows || self.far[index] >= LASTS
+        let last = std::mem::replace(&mut self.last[index], residual);
+        let beyond = |residual: f64| residual * residual > BEYOND * BEYOND * variance;
+        let leaves = residual / last > GROWS || (beyond(residual) && beyond(last));
+        (self.far[index] > 1 && leaves) || self.far[index] >= LASTS
     }
 }
 
@@ -52,6 +56,7 @@ mod tests {
     #[test]
     fn a_motion_that_leaves_the_law_counts_from_its_second_reading_on() {
         assert_eq!(admitted(&[1.0, 20.0, 45.0, 70.0]), [true, false, true, true]);
+        assert_eq!(admitted(&[1.0, 800.0, -300.0]), [true, false, true]);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod contest;
 mod live;
+mod loudness;
 mod published;
 mod switch;
 

@@ -2,6 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 use switchid::simulate::Reading;
 
 /// Share of readings that are outliers, and how far off, in σ.
@@ -21,12 +22,14 @@ pub enum Disturbance {
     Quantised,
     /// One sample in 20 is missing, and 100 in a row.
     Dropped,
+    /// The noise is three times as loud in the second half of the record.
+    Louder,
 }
 
 impl Disturbance {
     /// All of them.
-    pub const ALL: [Disturbance; 4] =
-        [Disturbance::None, Disturbance::Outliers, Disturbance::Quantised, Disturbance::Dropped];
+    pub const ALL: [Disturbance; 5] =
+        [Disturbance::None, Disturbance::Outliers, Disturbance::Quantised, Disturbance::Dropped, Disturbance::Louder];
 
     /// Its name in a table.
     pub fn id(self) -> &'static str {
@@ -35,11 +38,15 @@ impl Disturbance {
             Disturbance::Outliers => "0.5 % of readings 20 σ off",
             Disturbance::Quantised => "rounded to 2 σ",
             Disturbance::Dropped => "5 % dropped, a gap of 0.1 s",
+            Disturbance::Louder => "3 σ in the second half",
         }
     }
 
     /// Std of the noise that is then to be found, for Gaussian noise of std σ; an outlier is none of it.
     pub fn std(self, sigma: f64) -> f64 {
+        if self == Disturbance::Louder {
+            return 3.0 * sigma;
+        }
         let step = if self == Disturbance::Quantised { 2.0 * sigma } else { 0.0 };
         (sigma * sigma + step * step / 12.0).sqrt()
     }
@@ -50,24 +57,38 @@ impl Disturbance {
         let gap = readings.len() / 3..readings.len() / 3 + DROPPED.1;
         let mut disturbed = Vec::with_capacity(readings.len());
         for (index, reading) in readings.iter().enumerate() {
-            let mut off = || match generator.random_bool(OUTLIERS.0) {
-                true if generator.random_bool(0.5) => OUTLIERS.1 * sigma,
-                true => -OUTLIERS.1 * sigma,
-                false => 0.0,
-            };
             let rounded = |value: f64| (value / (2.0 * sigma)).round() * 2.0 * sigma;
             match self {
                 Disturbance::None => disturbed.push(*reading),
                 Disturbance::Outliers => {
+                    let mut off = || sigma * outlier(&mut generator);
                     disturbed.push(Reading { q: reading.q + off(), qd: reading.qd + off(), ..*reading });
                 }
                 Disturbance::Quantised => {
                     disturbed.push(Reading { q: rounded(reading.q), qd: rounded(reading.qd), ..*reading });
                 }
+                Disturbance::Louder if 2 * index > readings.len() => {
+                    let mut more = || 8.0_f64.sqrt() * sigma * normal(&mut generator);
+                    disturbed.push(Reading { q: reading.q + more(), qd: reading.qd + more(), ..*reading });
+                }
+                Disturbance::Louder => disturbed.push(*reading),
                 Disturbance::Dropped if gap.contains(&index) || generator.random_bool(DROPPED.0) => {}
                 Disturbance::Dropped => disturbed.push(*reading),
             }
         }
         disturbed
     }
+}
+
+/// How far off a reading is, in σ; mostly 0.
+fn outlier(generator: &mut ChaCha8Rng) -> f64 {
+    match generator.random_bool(OUTLIERS.0) {
+        true if generator.random_bool(0.5) => OUTLIERS.1,
+        true => -OUTLIERS.1,
+        false => 0.0,
+    }
+}
+
+fn normal(generator: &mut ChaCha8Rng) -> f64 {
+    StandardNormal.sample(generator)
 }

@@ -1,5 +1,6 @@
 //! The law in use, run along with the stream: its innovations, its prediction, and how far that deviates.
 
+use super::loudness::Loudness;
 use super::{Stage, Tracker};
 use crate::evidence::{Innovation, Noise, Observation, Pass};
 use crate::identify::identifier::Output;
@@ -22,6 +23,7 @@ pub(super) struct Live {
     pub(super) all: Vec<f64>,
     pub(super) active: Vec<bool>,
     pub(super) noise: Noise,
+    pub(super) loudness: Loudness,
     /// Covariance of the free coefficients, n × n.
     covariance: Vec<f64>,
     /// For how long an error of the law acts one way, s.
@@ -43,6 +45,7 @@ impl Live {
             all: problem.known.clone(),
             active: vec![true; n],
             noise: Noise { sensor: [1.0; 2], process: 1.0 },
+            loudness: Loudness::USUAL,
             covariance: vec![0.0; n * n],
             lasting: 0.0,
             slopes: vec![0.0; n],
@@ -55,8 +58,10 @@ impl Live {
 
     pub(super) fn step(&mut self, problem: &Problem, observation: &Observation) -> [Option<Innovation>; 2] {
         let motion = Motion { terms: &problem.terms, coefficients: &self.all };
-        let noise = Noise { process: self.noise.process + self.doubt(), ..self.noise };
+        let sensor = [0, 1].map(|channel| self.noise.sensor[channel] * self.loudness.factor(channel));
+        let noise = Noise { process: self.noise.process + self.doubt(), sensor };
         let innovations = self.pass.step(&motion, &problem.free_terms, &noise, observation);
+        self.loudness.add(&innovations, &observation.measured);
         self.smooth_slopes(observation.dt);
         innovations
     }
@@ -85,11 +90,13 @@ impl Live {
         stage.hand_over(problem, window, &mut self.pass);
         self.all.copy_from_slice(&stage.all);
         self.active.copy_from_slice(&stage.active);
+        self.loudness.refer(&self.noise, &stage.noise);
         self.noise = stage.noise;
         self.covariance.copy_from_slice(&stage.solution.covariance);
         let [before, last] = [window.ready() - 2, window.ready() - 1].map(|number| window.sample(number).t);
         self.lasting = stage.scales.natural_time().min(LONGEST_ERROR * (last - before));
         if !self.running {
+            self.loudness = Loudness::USUAL;
             self.restart_prediction(last);
         }
         self.next = window.ready();
