@@ -3,14 +3,17 @@
 //! Every built-in scenario through the library, without noise and with sensor noise 0.01 (the publication's two noise cases with
 //! theirs), over many seeds. The first is the documented scenario; the others draw stages, excitation and noise
 //! anew. e is eq. (8) at the end of every stage, delays count from the switch, and in a record of one stage from its start.
+//!
+//! With `--against-limits [FIRST..END] [ROW] [--threads N]` the figures of DESIGN §7 beside what any method could reach ([`against_limits`]).
 
+mod against_limits;
 mod measure;
+mod threads;
 
 use measure::{Figures, measure};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
 use switchid::simulate::{Builtin, Scenario};
 
+/// Why a figure could not be measured.
 type Failure = Box<dyn std::error::Error + Send + Sync>;
 
 const SEEDS: u64 = 50;
@@ -20,13 +23,17 @@ const HEAD: &str =
 |---|---|---|---|---|---|---|---|---|---|";
 
 fn main() -> Result<(), Failure> {
-    let mut arguments = std::env::args().skip(1);
+    let mut arguments = std::env::args().skip(1).peekable();
+    if arguments.next_if(|argument| argument == "--against-limits").is_some() {
+        return against_limits::run(arguments);
+    }
     let seeds = arguments.next().map_or(Ok(SEEDS), |text| text.parse())?;
     let chosen = arguments.next().map(|name| Builtin::from_id(&name)).transpose()?;
     println!("{HEAD}");
     for builtin in Builtin::ALL.into_iter().filter(|builtin| chosen.is_none_or(|chosen| chosen == *builtin)) {
         for noise in noises(builtin) {
-            let runs = runs(seeds, |seed| measure(builtin, &scenario(builtin, seed).with_noise(noise)))?;
+            let run = |seed: u64| measure(builtin, &scenario(builtin, seed).with_noise(noise));
+            let runs = threads::run(0..seeds, THREADS, run)?;
             println!("{}", row(builtin, noise, &runs));
         }
     }
@@ -41,25 +48,6 @@ fn noises(builtin: Builtin) -> Vec<f64> {
 
 fn scenario(builtin: Builtin, seed: u64) -> Scenario {
     if seed == 0 { builtin.scenario() } else { builtin.random(seed) }
-}
-
-fn runs(seeds: u64, run: impl Fn(u64) -> Result<Figures, Failure> + Sync) -> Result<Vec<Figures>, Failure> {
-    let (next, done) = (AtomicU64::new(0), Mutex::new(Vec::new()));
-    let work = || -> Result<(), Failure> {
-        loop {
-            let seed = next.fetch_add(1, Ordering::Relaxed);
-            if seed >= seeds {
-                return Ok(());
-            }
-            let figures = run(seed)?;
-            done.lock().map_err(|_| "a thread ended early")?.push(figures);
-        }
-    };
-    std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..THREADS).map(|_| scope.spawn(work)).collect();
-        threads.into_iter().try_for_each(|thread| thread.join().map_err(|_| "a thread ended early")?)
-    })?;
-    Ok(done.into_inner().map_err(|_| "a thread ended early")?)
 }
 
 fn row(builtin: Builtin, noise: f64, runs: &[Figures]) -> String {

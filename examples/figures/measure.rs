@@ -2,7 +2,7 @@
 
 use switchid::identify::{Coefficient, Identifier, Sample, Settings};
 use switchid::law::{Given, Model};
-use switchid::simulate::{Builtin, Scenario, record};
+use switchid::simulate::{Builtin, Reading, Scenario, record};
 
 /// A law is tracked once e stays below this.
 const TRACKED: f64 = 0.05 * 0.05;
@@ -27,6 +27,17 @@ pub struct Figures {
     pub false_alarms: usize,
 }
 
+impl Stage {
+    /// `since` is the time since the stage's start, s.
+    fn take(&mut self, error: f64, since: f64) {
+        self.error = error;
+        match error < TRACKED {
+            true => self.tracking = self.tracking.min(since),
+            false => self.tracking = f64::INFINITY,
+        }
+    }
+}
+
 impl Figures {
     /// Switches without a detection.
     pub fn missed(&self) -> usize {
@@ -44,16 +55,24 @@ pub fn model(builtin: Builtin) -> Model {
 
 /// Runs the default identifier over a record of the scenario.
 pub fn measure(builtin: Builtin, scenario: &Scenario) -> Result<Figures, Box<dyn std::error::Error + Send + Sync>> {
-    let model = model(builtin);
-    let mut identifier = Identifier::new(&model, Settings::default())?;
+    let mut identifier = Identifier::new(&model(builtin), Settings::default())?;
+    follow(&mut identifier, scenario, record(scenario)?)
+}
+
+/// Steps the identifier through readings of the scenario.
+pub fn follow(
+    identifier: &mut Identifier,
+    scenario: &Scenario,
+    readings: impl IntoIterator<Item = Reading>,
+) -> Result<Figures, Box<dyn std::error::Error + Send + Sync>> {
     let mut figures = begin(scenario);
     let mut alarms = 0;
-    for reading in record(scenario)? {
+    for reading in readings {
         identifier.step(Sample { t: reading.t, q: reading.q, qd: reading.qd, excitation: reading.excitation })?;
         let stage = scenario.stage_at(reading.t);
         let since = reading.t - scenario.stages[stage].start;
         let error = coefficient_error(identifier.coefficients(), scenario, stage);
-        follow(&mut figures.stages[stage], error, since);
+        figures.stages[stage].take(error, since);
         if identifier.output().switch_count != alarms {
             alarms = identifier.output().switch_count;
             alarm(&mut figures, stage, since);
@@ -77,15 +96,6 @@ fn coefficient_error(published: &[Coefficient], scenario: &Scenario, stage: usiz
     let of = |known: &Coefficient| scenario.terms.iter().position(|term| *term == known.term).map_or(0.0, |i| truth[i]);
     let difference: f64 = published.iter().map(|known| (known.value - of(known)).powi(2)).sum();
     difference / truth.iter().map(|value| value * value).sum::<f64>()
-}
-
-/// `since` is the time since the stage's start, s.
-fn follow(stage: &mut Stage, error: f64, since: f64) {
-    stage.error = error;
-    match error < TRACKED {
-        true => stage.tracking = stage.tracking.min(since),
-        false => stage.tracking = f64::INFINITY,
-    }
 }
 
 fn alarm(figures: &mut Figures, stage: usize, since: f64) {

@@ -91,6 +91,7 @@ impl Piece {
             Hold::BandLimited => band_limited.interpolate(&self.taps(k)),
         };
         let observation = |k: usize| Observation {
+            unseen: 0.0,
             dt: self.t[k + 1] - self.t[k],
             drive: drive(k),
             measured: self.measured().map(|signal| signal.map(|values| values[k + 1])),

@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 const TOLERANCE: f64 = 1e-13;
 
 /// The law in use is trusted with this fraction of its information: its covariance is that of a linearisation.
-const CAUTION: f64 = 0.03;
+const CAUTION: f64 = 0.3;
 
 /// Evidence of this many levels at once comes from the last samples alone.
 const OVERWHELMING: f64 = 10.0;
@@ -31,11 +31,11 @@ const OVERWHELMING: f64 = 10.0;
 /// Starts with this much less evidence than the best are as good, nats.
 const MARGIN: f64 = 5.0;
 
-/// A hypothesis is looked at again when its age has grown by this factor.
-const AGING: f64 = 1.1;
+/// Looks at a hypothesis this much older come half as often, samples.
+const AGING: f64 = 20.0;
 
-/// Innovations of the law in use that a start is old, at the least, before it is looked at.
-const YOUNGEST: u32 = 2;
+/// A hypothesis whose innovations together hold less than this cannot speak for a switch, nats.
+const SILENT: f64 = 4.0;
 
 /// What the law in use knows of its coefficients when a hypothesis starts.
 #[derive(Clone, Copy, Debug)]
@@ -61,8 +61,11 @@ pub struct Suspect {
 struct Hypothesis {
     start: u64,
     age: u32,
-    next_look: u32,
+    /// Age at the last look.
+    looked: u32,
     evidence: f64,
+    /// ½ Σ ε²/s since the start: no change explains more.
+    unexplained: f64,
     /// ∂q/∂δ and ∂q̇/∂δ, each n long and filled up with zeros.
     sensitivity: [Vec<Lane>; 2],
     information: Information,
@@ -105,8 +108,9 @@ impl Bank {
         let hypothesis = Hypothesis {
             start: 0,
             age: 0,
-            next_look: 0,
+            looked: 0,
             evidence: 0.0,
+            unexplained: 0.0,
             sensitivity: [lanes(), lanes()],
             information: Information::none(n),
             prior: Information::none(n).matrix,
@@ -147,8 +151,8 @@ impl Bank {
         }
         let n = self.n;
         let hypothesis = &mut self.hypotheses[self.count];
-        (hypothesis.start, hypothesis.age, hypothesis.next_look) = (start, 0, YOUNGEST);
-        hypothesis.evidence = 0.0;
+        (hypothesis.start, hypothesis.age, hypothesis.looked) = (start, 0, 0);
+        (hypothesis.evidence, hypothesis.unexplained) = (0.0, 0.0);
         hypothesis.sensitivity.iter_mut().for_each(|channel| channel.fill([0.0; WIDTH]));
         hypothesis.information.clear();
         hypothesis.prior.iter_mut().zip(&law.information.matrix).for_each(|(slot, entry)| *slot = CAUTION * entry);
@@ -182,8 +186,10 @@ impl Bank {
     pub fn step(&mut self, map: &IntervalMap, innovations: &[Option<Innovation>; 2]) {
         self.shared.set_input(map);
         let said = innovations.map(|innovation| innovation.map_or(Said::NOTHING, Said::from));
+        let unexplained = said.iter().map(|said| 0.5 * said.weight * said.residual * said.residual).sum::<f64>();
         for hypothesis in &mut self.hypotheses[..self.count] {
             hypothesis.age += 1;
+            hypothesis.unexplained += unexplained;
             self.shared.carry(&map.transition, &said, &mut hypothesis.sensitivity);
             let [q, qd] = &self.shared.rows;
             let [first, second] = &said;
@@ -199,19 +205,21 @@ impl Bank {
         }
     }
 
-    /// Looks at up to `looks` hypotheses that are due, the youngest first.
+    /// Looks at up to `looks` hypotheses, those that have waited longest for their age.
     pub fn look(&mut self, looks: usize) {
-        let mut left = looks;
-        for index in (0..self.count).rev() {
-            let hypothesis = &self.hypotheses[index];
-            if left > 0 && hypothesis.age >= hypothesis.next_look {
-                let evidence = self.evidence(index);
-                let hypothesis = &mut self.hypotheses[index];
-                hypothesis.evidence = evidence;
-                hypothesis.next_look = hypothesis.age + 1 + (f64::from(hypothesis.age) * (AGING - 1.0)) as u32;
-                left -= 1;
+        for _ in 0..looks {
+            let waiting = self.hypotheses[..self.count].iter().map(Hypothesis::wait).enumerate();
+            match waiting.max_by(|a, b| a.1.total_cmp(&b.1)) {
+                Some((index, wait)) if wait > 0.0 => self.look_at(index),
+                _ => return,
             }
         }
+    }
+
+    fn look_at(&mut self, index: usize) {
+        let evidence = self.evidence(index);
+        let hypothesis = &mut self.hypotheses[index];
+        (hypothesis.evidence, hypothesis.looked) = (evidence, hypothesis.age);
     }
 
     /// The hypothesis with most evidence, as last looked at.
@@ -223,9 +231,7 @@ impl Bank {
 
     /// Brings every evidence up to date.
     pub fn look_at_all(&mut self) {
-        for index in 0..self.count {
-            self.hypotheses[index].evidence = self.evidence(index);
-        }
+        (0..self.count).for_each(|index| self.look_at(index));
     }
 
     /// The likeliest start: the suspect's, or where the evidence is overwhelming the latest that alone passes `level`.
@@ -298,6 +304,12 @@ impl Bank {
 }
 
 impl Hypothesis {
+    /// Samples since the last look, in terms of how often one is due at this age; 0 where none can find anything.
+    fn wait(&self) -> f64 {
+        let wait = f64::from(self.age - self.looked) / (1.0 + f64::from(self.age) / AGING);
+        if self.unexplained > SILENT { wait } else { 0.0 }
+    }
+
     /// Takes what the hypothesis does not have out of the system.
     fn isolate_inactive(&self, system: &mut System) {
         for (unknown, _) in self.active.iter().enumerate().filter(|(_, active)| !**active) {

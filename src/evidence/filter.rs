@@ -71,6 +71,15 @@ impl Filter {
         ];
     }
 
+    /// What the measurement would leave, and the variance of that.
+    #[inline]
+    pub fn residual(&self, channel: Channel, measured: f64, variance: f64) -> (f64, f64) {
+        match channel {
+            Channel::Q => (measured - self.state.q, self.covariance[0] + variance),
+            Channel::Qd => (measured - self.state.qd, self.covariance[2] + variance),
+        }
+    }
+
     /// Takes one measurement with this noise variance.
     #[inline]
     pub fn update(&mut self, channel: Channel, measured: f64, variance: f64) -> Innovation {

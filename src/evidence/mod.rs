@@ -7,6 +7,7 @@
 //! likelihood of the trajectory, with its initial state marginalised; as it grows, that of the equation error.
 //!
 //! - [`Filter`]: the state and its covariance, from sample to sample;
+//! - [`Guard`]: readings that are no part of the motion;
 //! - [`Pass`]: one run over a record: likelihood, score and Fisher information of the coefficients;
 //! - [`Lack`]: effects that the law does not have, by the score test in the stream;
 //! - [`Information`]: sums of them, and their solution;
@@ -14,6 +15,7 @@
 
 mod bank;
 mod filter;
+mod guard;
 mod information;
 mod lack;
 mod pass;
@@ -21,6 +23,7 @@ mod symmetric;
 
 pub use bank::{Bank, Law, Suspect};
 pub use filter::{Channel, Filter, Innovation, Noise};
+pub use guard::Guard;
 pub use information::{Information, Solution};
 pub use lack::{Lack, Missing};
 pub use pass::{IntervalMap, Observation, Pass, RIVALS, Track, gains};

@@ -1,6 +1,7 @@
 //! One run of the filter over a record: likelihood, score and information of the coefficients.
 
 use super::filter::{Channel, Filter, Innovation, Noise};
+use super::guard::Guard;
 use super::information::Information;
 use super::symmetric::{Lane, LogSum, WIDTH};
 use crate::law::{Compiled, Drive, Linearized, Motion, State, Term};
@@ -24,6 +25,8 @@ pub struct Observation {
     pub drive: Drive,
     /// What was measured at its end, by [`Channel`]; `None` where a channel is not measured.
     pub measured: [Option<f64>; 2],
+    /// Intensity of the white force that the excitation may have had unseen over that time, N² s.
+    pub unseen: f64,
 }
 
 /// Sums that make up a likelihood.
@@ -130,6 +133,8 @@ pub struct Pass {
     pub parts: usize,
     rival_filters: [Filter; 2],
     fastest: f64,
+    /// Keeps outliers out, where wanted.
+    guard: Option<Guard>,
     compiled: Compiled,
     /// Whether the free terms of this run are known.
     seeking: bool,
@@ -154,11 +159,17 @@ impl Pass {
             parts: 1,
             rival_filters: [filter; 2],
             fastest: 0.0,
+            guard: None,
             compiled: Compiled::default(),
             seeking: false,
             slopes: vec![0.0; n],
             rows: [lanes(), lanes()],
         }
+    }
+
+    /// The same run, which leaves outliers out.
+    pub fn guarded(self) -> Pass {
+        Pass { guard: Some(Guard::default()), ..self }
     }
 
     /// Begins at a state that does not depend on the coefficients.
@@ -167,6 +178,7 @@ impl Pass {
         self.rival_filters = [filter; 2];
         self.track = Track::default();
         self.rivals = [Track::default(); 2];
+        self.guard = self.guard.map(|_| Guard::default());
         self.information.clear();
         self.sensitivity.fill([0.0; 2]);
         self.parts = ((self.fastest / MAX_RATE).sqrt().ceil() as usize).clamp(1, MAX_PARTS);
@@ -189,7 +201,11 @@ impl Pass {
             self.seeking = true;
         }
         self.compiled.follow(motion);
-        self.advance(noise, observation);
+        let unseen = match observation.unseen > 0.0 {
+            true => observation.unseen / motion.mass(self.filter.state.q).powi(2),
+            false => 0.0,
+        };
+        self.advance(noise.process, unseen, observation);
         let innovations = Channel::ALL.map(|channel| self.correct(channel, noise, observation));
         self.inform(&innovations);
         innovations
@@ -209,7 +225,8 @@ impl Pass {
         measured([a * q + b * qd + to_q * acceleration, c * q + d * qd + to_qd * acceleration], gains)
     }
 
-    fn advance(&mut self, noise: &Noise, observation: &Observation) {
+    /// With process noise of intensity `process`, and `unseen` besides.
+    fn advance(&mut self, process: f64, unseen: f64, observation: &Observation) {
         let parts = observation.drive.parts(self.parts);
         let dt = observation.dt / parts as f64;
         let mut first = true;
@@ -225,10 +242,10 @@ impl Pass {
                 *fastest = fastest.max(step.rate * (parts * parts) as f64);
                 for (rival, ratio) in rival_filters.iter_mut().zip(*ratios) {
                     rival.state = beside(step, filter.state, rival.state);
-                    rival.predict(step, dt, noise.process * ratio);
+                    rival.predict(step, dt, process * ratio + unseen);
                 }
                 filter.state = step.state;
-                filter.predict(step, dt, noise.process);
+                filter.predict(step, dt, process + unseen);
             });
         }
     }
@@ -237,6 +254,12 @@ impl Pass {
     fn correct(&mut self, channel: Channel, noise: &Noise, observation: &Observation) -> Option<Innovation> {
         let measured = observation.measured[channel as usize]?;
         let variance = noise.sensor[channel as usize];
+        if let Some(guard) = &mut self.guard {
+            let (residual, total) = self.filter.residual(channel, measured, variance);
+            if !guard.admits(channel, residual, total) {
+                return None;
+            }
+        }
         for (rival, track) in self.rival_filters.iter_mut().zip(&mut self.rivals) {
             track.add(channel, &rival.update(channel, measured, variance));
         }

@@ -14,6 +14,7 @@ mod parameters;
 mod problem;
 mod publication;
 mod recording;
+mod roughness;
 mod scales;
 mod settings;
 mod stage;

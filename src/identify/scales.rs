@@ -2,15 +2,21 @@
 
 use super::problem::Problem;
 use crate::evidence::{Observation, Pass};
+use crate::law::Motion;
 use serde::{Deserialize, Serialize};
+
+/// Smallest mean square of the law's own acceleration, in terms of the excitation's.
+const LEAST: f64 = 1e-4;
 
 /// Mean squares over a pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scales {
     /// Σ (∂q̈/∂θ)² by free coefficient.
     slopes: Vec<f64>,
+    /// Σ (F ÷ m)².
     force: f64,
-    inertial: f64,
+    /// Σ q̈² as it would be without an excitation.
+    restoring: f64,
     stiffness: f64,
     count: f64,
 }
@@ -18,31 +24,39 @@ pub struct Scales {
 impl Scales {
     /// Nothing seen yet of `n` free coefficients.
     pub fn new(n: usize) -> Scales {
-        Scales { slopes: vec![0.0; n], force: 0.0, inertial: 0.0, stiffness: 0.0, count: 0.0 }
+        Scales { slopes: vec![0.0; n], force: 0.0, restoring: 0.0, stiffness: 0.0, count: 0.0 }
     }
 
     /// Forgets everything.
     pub fn clear(&mut self) {
         self.slopes.fill(0.0);
-        (self.force, self.inertial, self.stiffness, self.count) = (0.0, 0.0, 0.0, 0.0);
+        (self.force, self.restoring, self.stiffness, self.count) = (0.0, 0.0, 0.0, 0.0);
     }
 
     /// Takes the interval that the pass has just run over, under the coefficients `all`.
     pub fn add(&mut self, problem: &Problem, all: &[f64], pass: &Pass, observation: &Observation) {
-        let inertia = all[problem.inertia];
+        let motion = Motion { terms: &problem.terms, coefficients: all };
+        let state = pass.filter.state;
         for (sum, input) in self.slopes.iter_mut().zip(&pass.map.input) {
             *sum += (input[1] / observation.dt).powi(2);
         }
-        self.force += (observation.drive.part(0, 1)[0] / inertia).powi(2);
+        self.force += (observation.drive.part(0, 1)[0] / motion.mass(state.q)).powi(2);
+        self.restoring += motion.acceleration(state, 0.0).powi(2);
         let stiffness = pass.map.transition[1][0] / observation.dt;
-        self.inertial += (stiffness * pass.filter.state.q).powi(2);
         self.stiffness += stiffness.abs();
         self.count += 1.0;
     }
 
-    /// RMS of the acceleration that the excitation gives, or in free motion the one that the stiffness gives.
+    /// RMS of the acceleration that the excitation gives, or in free motion the one that the law gives.
     pub fn acceleration(&self) -> f64 {
-        let sum = if self.force > 0.0 { self.force } else { self.inertial };
+        let sum = if self.force > 0.0 { self.force } else { self.restoring };
+        (sum / self.count.max(1.0)).sqrt()
+    }
+
+    /// RMS of the acceleration that a force of the motion gives, as the law's own forces are: of a rough excitation most acts on the
+    /// inertia alone.
+    pub fn restoring_acceleration(&self) -> f64 {
+        let sum = if self.force > 0.0 { self.restoring.clamp(LEAST * self.force, self.force) } else { self.restoring };
         (sum / self.count.max(1.0)).sqrt()
     }
 

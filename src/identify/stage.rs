@@ -189,7 +189,7 @@ impl Stage {
             lack: Lack::new(&problem.terms, n),
             looking: false,
             next_look: 0,
-            pass: Pass::new(n),
+            pass: Pass::new(n).guarded(),
             next: 0,
             closed_at: 0,
             checkpoint: Checkpoint { at: None, information: Information::none(n) },

@@ -2,12 +2,14 @@
 
 mod contest;
 mod live;
+mod loudness;
 mod published;
 mod switch;
 
 use super::deviation::Deviation;
 use super::identifier::{Coefficient, Output, Status};
 use super::problem::Problem;
+use super::roughness::Roughness;
 use super::settings::Settings;
 use super::stage::{Stage, TRUSTED};
 use super::start::Start;
@@ -47,6 +49,9 @@ const INERTIA_SPREAD: f64 = 0.5;
 /// Samples for which a suspicion keeps the law in use from being renewed: what comes may belong to another law.
 const SUSPENSE: u64 = 1000;
 
+/// Samples from which on differences tell the sensors' noise to a tenth.
+const ROUGHLY: u64 = 500;
+
 /// The state of our method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tracker {
@@ -58,6 +63,9 @@ pub struct Tracker {
     challenged_from: u64,
     live: Live,
     bank: Bank,
+    roughness: Roughness,
+    /// Whether a law's residuals have told the sensors' noise.
+    noise_known: bool,
     deviation: Deviation,
     usual_deviation: f64,
     usual: Usual,
@@ -96,6 +104,8 @@ impl Tracker {
             challenged_from: 0,
             live: Live::new(problem),
             bank: Bank::new(n, HYPOTHESES),
+            roughness: Roughness::default(),
+            noise_known: false,
             deviation: Deviation::new(settings.deviation_interval, settings.sample_time),
             usual_deviation: 0.0,
             usual: Usual::default(),
@@ -131,6 +141,7 @@ impl Tracker {
             self.start.begin(0);
         }
         self.window.push(sample);
+        self.measure_roughness(problem, output);
         self.follow(problem, settings, output);
         if !output.valid {
             self.begin_afresh();
@@ -140,6 +151,19 @@ impl Tracker {
         self.refine_challenger(problem, settings);
         if self.phase == Phase::Refining {
             self.refine(problem, settings, published, output);
+        }
+    }
+
+    /// Before any law the sensors' noise is known from differences.
+    fn measure_roughness(&mut self, problem: &Problem, output: &mut Output) {
+        let end = self.window.end();
+        if end < 4 {
+            return;
+        }
+        self.roughness.add([4, 3, 2, 1].map(|back| self.window.sample(end - back)));
+        if let Some([q, qd]) = self.roughness.variance().filter(|_| !self.noise_known && end >= ROUGHLY) {
+            output.noise_q = problem.channels.q.then(|| q.sqrt());
+            output.noise_qd = problem.channels.qd.then(|| qd.sqrt());
         }
     }
 
@@ -214,9 +238,13 @@ impl Tracker {
 
     /// τ of each coefficient: a change whose force moves the acceleration by [`SWITCH_SIZE`] of its RMS.
     fn set_spread(&mut self, problem: &Problem) {
-        let acceleration = self.stage.scales.acceleration();
+        let scales = &self.stage.scales;
         for index in 0..problem.n() {
-            let slope = self.stage.scales.slope(index);
+            let slope = scales.slope(index);
+            let acceleration = match problem.free_inertia() == Some(index) {
+                true => scales.acceleration(),
+                false => scales.restoring_acceleration(),
+            };
             self.spread[index] = if slope > 0.0 { SWITCH_SIZE * acceleration / slope } else { 1e9 };
         }
     }

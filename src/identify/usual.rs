@@ -1,7 +1,7 @@
 //! The evidence of a switch that the law in use meets without one.
 //!
 //! Under the right law it stays below what the false-alarm interval asks. A real record has error that no law models: its
-//! evidence rises again and again, and only what stands out from that is a switch.
+//! evidence rises again and again, and only what stands out from that is a switch. What chance brings in the time gone by does not count.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,6 +10,9 @@ const BLOCK: u64 = 1000;
 
 /// A switch has this many times the largest evidence seen before it.
 const STANDS_OUT: f64 = 2.0;
+
+/// Chance rises above what it brings once in the time gone by, by less than this in nineteen cases of twenty, nats.
+const LUCK: f64 = 3.0;
 
 /// Largest evidence in blocks of the stage.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -36,9 +39,10 @@ impl Usual {
         }
     }
 
-    /// The evidence that stands out, nats.
-    pub fn level(&self) -> f64 {
-        STANDS_OUT * self.before
+    /// The evidence that stands out, nats; `chance` is what a right law meets once in a sample.
+    pub fn level(&self, chance: f64) -> f64 {
+        let expected = chance + (self.count.max(1) as f64).ln() + LUCK;
+        if self.before > expected { STANDS_OUT * self.before } else { 0.0 }
     }
 }
 
@@ -49,10 +53,17 @@ mod tests {
     #[test]
     fn a_rise_counts_only_when_it_is_past() {
         let mut usual = Usual::default();
-        (0..BLOCK).for_each(|_| usual.add(7.0));
+        (0..BLOCK).for_each(|_| usual.add(9.0));
         (0..BLOCK).for_each(|_| usual.add(30.0));
-        assert_eq!(usual.level(), 14.0);
+        assert_eq!(usual.level(-4.4), 18.0);
         (0..BLOCK).for_each(|_| usual.add(1.0));
-        assert_eq!(usual.level(), 60.0);
+        assert_eq!(usual.level(-4.4), 60.0);
+    }
+
+    #[test]
+    fn what_chance_brings_does_not_count() {
+        let mut usual = Usual::default();
+        (0..3 * BLOCK).for_each(|_| usual.add(6.0));
+        assert_eq!(usual.level(-4.4), 0.0);
     }
 }

@@ -6,6 +6,18 @@ use crate::evidence::Observation;
 use crate::law::{BandLimited, Drive, Hold, REACH, look_ahead};
 use serde::{Deserialize, Serialize};
 
+/// An interval this many times as long as the usual one lacks samples …
+const GAP: f64 = 1.5;
+
+/// … unless more than so many in a row are.
+const PATIENCE: u32 = 3;
+
+/// Share of a sample in the usual interval.
+const ADAPTION: f64 = 0.05;
+
+/// Samples that count for how rough the excitation is.
+const MEMORY: f64 = 4000.0;
+
 /// Accepted samples by number; the first of all is number 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Window {
@@ -14,13 +26,56 @@ pub struct Window {
     channels: Channels,
     hold: Hold,
     band_limited: BandLimited,
+    pace: Pace,
+}
+
+/// How the samples come, and how much the excitation moves between two of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Pace {
+    /// The usual time between two samples, s.
+    dt: f64,
+    /// Longer ones in a row.
+    longer: u32,
+    /// Mean of half the square of what the excitation moves by, N².
+    roughness: f64,
+    count: f64,
+}
+
+impl Pace {
+    fn take(&mut self, before: &Sample, sample: &Sample) {
+        let dt = sample.t - before.t;
+        self.longer = if self.is_gap(dt) { self.longer + 1 } else { 0 };
+        if self.dt == 0.0 || self.longer > PATIENCE {
+            self.dt = dt;
+        }
+        if self.is_gap(dt) {
+            return;
+        }
+        self.dt += ADAPTION * (dt - self.dt);
+        self.count = (self.count + 1.0).min(MEMORY);
+        let square = 0.5 * (sample.excitation - before.excitation).powi(2);
+        self.roughness += (square - self.roughness) / self.count;
+    }
+
+    fn is_gap(&self, dt: f64) -> bool {
+        self.dt > 0.0 && dt > GAP * self.dt
+    }
+
+    /// Over an interval in which samples are missing the excitation is known at its ends alone: intensity of the white force that may
+    /// have been there besides, N² s.
+    fn unseen(&self, dt: f64, moved: f64) -> f64 {
+        match self.is_gap(dt) {
+            true => (1.0 - self.dt / dt) * (self.roughness * self.dt + 0.25 * moved * moved * dt),
+            false => 0.0,
+        }
+    }
 }
 
 impl Window {
     /// Room for `capacity` samples.
     pub fn new(capacity: usize, channels: Channels, hold: Hold) -> Window {
         let ring = vec![Sample::default(); capacity];
-        Window { ring, count: 0, channels, hold, band_limited: BandLimited::new() }
+        Window { ring, count: 0, channels, hold, band_limited: BandLimited::new(), pace: Pace::default() }
     }
 
     /// How many samples it can hold.
@@ -30,6 +85,10 @@ impl Window {
 
     /// Adds a sample; the oldest goes when there is no room.
     pub fn push(&mut self, sample: Sample) {
+        if self.count > 0 {
+            let before = *self.sample(self.count - 1);
+            self.pace.take(&before, &sample);
+        }
         let slot = self.slot(self.count);
         self.ring[slot] = sample;
         self.count += 1;
@@ -67,7 +126,9 @@ impl Window {
             Hold::BandLimited => self.interpolate(number - 1),
         };
         let measured = [self.channels.q.then_some(after.q), self.channels.qd.then_some(after.qd)];
-        Observation { dt: after.t - before.t, drive, measured }
+        let dt = after.t - before.t;
+        let unseen = self.pace.unseen(dt, after.excitation - before.excitation);
+        Observation { dt, drive, measured, unseen }
     }
 
     /// Interpolates the excitation after sample `start`; beyond the ends of the record its last value stays.

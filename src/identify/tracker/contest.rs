@@ -5,7 +5,6 @@ use crate::evidence::Noise;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::stage::Prior;
-use crate::identify::window::Window;
 
 /// Passes after which a challenger that has not settled gives up.
 const PATIENCE: u32 = 40;
@@ -50,7 +49,7 @@ impl Tracker {
         }
         self.next_guess = window.end() + (window.end() - since) / 8 + 4;
         let sensor = match self.phase {
-            Phase::Gathering => first_noise(settings, window),
+            Phase::Gathering => self.first_noise(settings),
             Phase::Refining if self.noise_weight > 0.0 => self.live.noise.sensor,
             Phase::Refining => self.stage.noise.sensor,
         };
@@ -94,7 +93,7 @@ impl Tracker {
             return;
         }
         self.next_noise_challenge = end + self.stage.length(end);
-        let sensor = first_noise(settings, &self.window);
+        let sensor = self.first_noise(settings);
         let noise = Noise { sensor, process: 1e-6 * self.stage.noise.process };
         self.set_spread(problem);
         self.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
@@ -130,22 +129,14 @@ impl Tracker {
         }
         self.challenger.begin_pass(problem, &self.window);
     }
-}
 
-/// Sensor variances from third differences, which a smooth motion leaves small; an upper bound that passes then lower.
-fn first_noise(settings: &Settings, window: &Window) -> [f64; 2] {
-    let given = [settings.noise_q, settings.noise_qd];
-    let channel = |index: usize, value: fn(&crate::identify::Sample) -> f64| {
-        if given[index] > 0.0 {
-            return given[index] * given[index];
-        }
-        let first = window.end().saturating_sub(1024).max(window.oldest());
-        let differences = (first..window.end().saturating_sub(3)).map(|number| {
-            let [a, b, c, d] = [0, 1, 2, 3].map(|offset| value(window.sample(number + offset)));
-            (d - 3.0 * c + 3.0 * b - a).powi(2)
-        });
-        let count = window.end().saturating_sub(3).saturating_sub(first).max(1);
-        differences.sum::<f64>() / (20.0 * count as f64) + f64::MIN_POSITIVE
-    };
-    [channel(0, |sample| sample.q), channel(1, |sample| sample.qd)]
+    /// Sensor variances before any law: as set, or from differences.
+    fn first_noise(&self, settings: &Settings) -> [f64; 2] {
+        let found = self.roughness.variance().unwrap_or([0.0; 2]);
+        let given = [settings.noise_q, settings.noise_qd];
+        [0, 1].map(|index| match given[index] {
+            0.0 => found[index] + f64::MIN_POSITIVE,
+            std => std * std,
+        })
+    }
 }

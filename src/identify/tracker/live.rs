@@ -1,5 +1,6 @@
 //! The law in use, run along with the stream: its innovations, its prediction, and how far that deviates.
 
+use super::loudness::Loudness;
 use super::{Stage, Tracker};
 use crate::evidence::{Innovation, Noise, Observation, Pass};
 use crate::identify::identifier::Output;
@@ -22,10 +23,13 @@ pub(super) struct Live {
     pub(super) all: Vec<f64>,
     pub(super) active: Vec<bool>,
     pub(super) noise: Noise,
+    pub(super) loudness: Loudness,
     /// Covariance of the free coefficients, n × n.
     covariance: Vec<f64>,
     /// For how long an error of the law acts one way, s.
     lasting: f64,
+    /// Mean of ∂q̈/∂θ over that time, by free coefficient.
+    slopes: Vec<f64>,
     pub(super) next: u64,
     pub(super) running: bool,
     prediction: State,
@@ -37,12 +41,14 @@ impl Live {
     pub(super) fn new(problem: &Problem) -> Live {
         let n = problem.n();
         Live {
-            pass: Pass::new(n),
+            pass: Pass::new(n).guarded(),
             all: problem.known.clone(),
             active: vec![true; n],
             noise: Noise { sensor: [1.0; 2], process: 1.0 },
+            loudness: Loudness::USUAL,
             covariance: vec![0.0; n * n],
             lasting: 0.0,
+            slopes: vec![0.0; n],
             next: 0,
             running: false,
             prediction: State::default(),
@@ -52,19 +58,31 @@ impl Live {
 
     pub(super) fn step(&mut self, problem: &Problem, observation: &Observation) -> [Option<Innovation>; 2] {
         let motion = Motion { terms: &problem.terms, coefficients: &self.all };
-        let noise = Noise { process: self.noise.process + self.doubt(observation.dt), ..self.noise };
-        self.pass.step(&motion, &problem.free_terms, &noise, observation)
+        let sensor = [0, 1].map(|channel| self.noise.sensor[channel] * self.loudness.factor(channel));
+        let noise = Noise { process: self.noise.process + self.doubt(), sensor };
+        let innovations = self.pass.step(&motion, &problem.free_terms, &noise, observation);
+        self.loudness.add(&innovations, &observation.measured);
+        self.smooth_slopes(observation.dt);
+        innovations
     }
 
-    /// Intensity of the acceleration that the law's own uncertainty leaves open over an interval like the last one, (m/s²)² s: where the
-    /// motion leaves what its record has seen, an uncertain law must not bind the state.
-    fn doubt(&self, dt: f64) -> f64 {
-        let inputs = &self.pass.map.input;
-        let rows = self.covariance.chunks_exact(inputs.len()).zip(inputs);
+    /// Errors that a rough excitation turns around faster than the motion follows do not last.
+    fn smooth_slopes(&mut self, dt: f64) {
+        let share = dt / (self.lasting + dt);
+        for (slope, input) in self.slopes.iter_mut().zip(&self.pass.map.input) {
+            *slope += share * (input[1] / dt - *slope);
+        }
+    }
+
+    /// Intensity of the acceleration that the law's own uncertainty leaves open, (m/s²)² s: where the motion leaves what its record has
+    /// seen, an uncertain law must not bind the state.
+    fn doubt(&self) -> f64 {
+        let slopes = &self.slopes;
+        let rows = self.covariance.chunks_exact(slopes.len()).zip(slopes);
         let variance: f64 = rows
-            .map(|(row, input)| input[1] * row.iter().zip(inputs).map(|(entry, other)| entry * other[1]).sum::<f64>())
+            .map(|(row, slope)| slope * row.iter().zip(slopes).map(|(entry, other)| entry * other).sum::<f64>())
             .sum();
-        DISTRUST * variance.max(0.0) / (dt * dt) * self.lasting
+        DISTRUST * variance.max(0.0) * self.lasting
     }
 
     /// Takes over the stage's estimate and the run that led to it.
@@ -72,11 +90,13 @@ impl Live {
         stage.hand_over(problem, window, &mut self.pass);
         self.all.copy_from_slice(&stage.all);
         self.active.copy_from_slice(&stage.active);
+        self.loudness.refer(&self.noise, &stage.noise);
         self.noise = stage.noise;
         self.covariance.copy_from_slice(&stage.solution.covariance);
         let [before, last] = [window.ready() - 2, window.ready() - 1].map(|number| window.sample(number).t);
         self.lasting = stage.scales.natural_time().min(LONGEST_ERROR * (last - before));
         if !self.running {
+            self.loudness = Loudness::USUAL;
             self.restart_prediction(last);
         }
         self.next = window.ready();

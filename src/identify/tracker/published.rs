@@ -30,8 +30,14 @@ impl Tracker {
                 Some(free) => self.publish_free(free, coefficient),
             }
         }
-        output.noise_q = problem.channels.q.then(|| self.stage.noise.sensor[0].sqrt());
-        output.noise_qd = problem.channels.qd.then(|| self.stage.noise.sensor[1].sqrt());
+        self.noise_known = true;
+        let std = |channel: usize| {
+            let lately = self.live.loudness.lately(channel).filter(|_| self.live.running);
+            let louder = lately.map(|lately| lately * self.live.noise.sensor[channel]);
+            louder.unwrap_or(self.stage.noise.sensor[channel]).sqrt()
+        };
+        output.noise_q = problem.channels.q.then(|| std(0));
+        output.noise_qd = problem.channels.qd.then(|| std(1));
         if self.stage.stands() && self.stage.stated_error() < VOUCHED {
             output.valid = true;
             output.identified_time.get_or_insert(self.now());

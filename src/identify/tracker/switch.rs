@@ -14,6 +14,10 @@ const NOISE_MEMORY: f64 = 500.0;
 /// record grows.
 const DOUBT: f64 = 2000.0;
 
+/// Neighbouring samples and starts share their noise, and the evidence is a mean over all sizes of a switch: it rises by chance as if one
+/// sample in so many were a trial of its own.
+const TRIAL: f64 = 80.0;
+
 /// A law that is not vouched for needs this many times the evidence.
 const UNPROVEN: f64 = 10.0;
 
@@ -34,8 +38,8 @@ impl Tracker {
     pub(super) fn judge(&mut self, problem: &Problem, settings: &Settings, suspect: &Suspect, output: &mut Output) {
         let doubt = self.stage.overdispersion * (1.0 + DOUBT / self.stage.length(self.window.ready()).max(1) as f64);
         let doubt = if output.valid { doubt } else { UNPROVEN * doubt };
-        let level = doubt * (settings.false_alarm_interval / settings.sample_time).ln().max(3.0);
-        let level = level.max(self.usual.level());
+        let level = doubt * (settings.false_alarm_interval / (TRIAL * settings.sample_time)).ln().max(3.0);
+        let level = level.max(self.usual.level(-TRIAL.ln()));
         if output.valid {
             self.usual.add(suspect.evidence);
         }
@@ -67,7 +71,7 @@ impl Tracker {
             *centre = self.live.all[problem.free[index]];
             *change = if plausible { *centre + *change } else { *centre };
         }
-        let acceleration = self.stage.scales.acceleration();
+        let acceleration = self.stage.scales.restoring_acceleration();
         let process = (SWITCH_SIZE * acceleration).powi(2) * 0.1;
         let noise = Noise { sensor: self.live.noise.sensor, process: process.max(self.live.noise.process) };
         self.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);

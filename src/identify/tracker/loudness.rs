@@ -1,0 +1,67 @@
+//! How loud the sensors are now, in terms of what the law's record knows of them: noise that changes is followed at once.
+
+use crate::evidence::{Innovation, Noise};
+use serde::{Deserialize, Serialize};
+
+/// Samples that count for what is weighed now.
+const NOW: f64 = 100.0;
+
+/// Samples that count for what is published.
+const LATELY: f64 = 1000.0;
+
+/// Below this ratio of variances the noise counts as unchanged when switches are weighed: by chance it is exceeded once in 2000 samples.
+const LOUDER: f64 = 1.5;
+
+/// A variance that differs by less than this part lately is unchanged.
+const UNCHANGED: f64 = 0.15;
+
+/// A single innovation counts for no more than this many times its variance.
+const MOST: f64 = 100.0;
+
+/// A reading that was left out counts for so many times its variance.
+const LEFT_OUT: f64 = 36.0;
+
+/// Running means of ε²/s by channel.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Loudness {
+    now: [f64; 2],
+    lately: [f64; 2],
+}
+
+impl Loudness {
+    /// Nothing but what the record knows.
+    pub(super) const USUAL: Loudness = Loudness { now: [1.0; 2], lately: [1.0; 2] };
+
+    /// Takes innovations that were weighed with the sensors' variances times [`Loudness::factor`].
+    #[inline]
+    pub(super) fn add(&mut self, innovations: &[Option<Innovation>; 2], measured: &[Option<f64>; 2]) {
+        for channel in (0..2).filter(|channel| measured[*channel].is_some()) {
+            let factor = self.factor(channel);
+            let square = innovations[channel].map(|said| factor * said.residual * said.residual * said.precision);
+            self.now[channel] += (square.unwrap_or(LEFT_OUT).min(MOST) - self.now[channel]) / NOW;
+            if let Some(square) = square {
+                self.lately[channel] += (square.min(MOST) - self.lately[channel]) / LATELY;
+            }
+        }
+    }
+
+    /// By how much the channel's variance is larger now.
+    #[inline]
+    pub(super) fn factor(&self, channel: usize) -> f64 {
+        if self.now[channel] > LOUDER { self.now[channel] } else { 1.0 }
+    }
+
+    /// By how much the channel's variance has differed lately; none where it has not.
+    pub(super) fn lately(&self, channel: usize) -> Option<f64> {
+        Some(self.lately[channel]).filter(|lately| (lately - 1.0).abs() > UNCHANGED)
+    }
+
+    /// From now on everything is in terms of another noise.
+    pub(super) fn refer(&mut self, old: &Noise, new: &Noise) {
+        for channel in 0..2 {
+            let ratio = old.sensor[channel] / new.sensor[channel];
+            self.now[channel] *= ratio;
+            self.lately[channel] *= ratio;
+        }
+    }
+}

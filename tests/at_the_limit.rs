@@ -1,0 +1,101 @@
+//! What the figures beside their limits say, on few seeds that were fixed beforehand: `figures --against-limits` has the whole of it.
+
+#[path = "../examples/figures/against_limits/disturbed.rs"]
+mod disturbed;
+#[path = "../examples/figures/measure.rs"]
+mod measure;
+#[path = "../examples/figures/against_limits/recorded.rs"]
+mod recorded;
+
+use disturbed::Disturbance;
+use measure::follow;
+use recorded::{Library, Recorded, law, sensors};
+use switchid::identify::{Identifier, Sample, Settings};
+use switchid::limits::{detection, level};
+use switchid::simulate::{Builtin, Reading, Scenario};
+
+type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+fn identify(library: Library, builtin: Builtin, readings: &[Reading]) -> Identifier {
+    let mut identifier = Identifier::new(&library.model(builtin), Settings::default()).unwrap();
+    for reading in readings {
+        let sample = Sample { t: reading.t, q: reading.q, qd: reading.qd, excitation: reading.excitation };
+        identifier.step(sample).unwrap();
+    }
+    identifier
+}
+
+fn first_stage(builtin: Builtin, seed: u64, noise: f64, duration: f64) -> Scenario {
+    let mut scenario = builtin.random(seed).with_noise(noise);
+    scenario.stages.truncate(1);
+    Scenario { duration, ..scenario }
+}
+
+/// Σ ((θ − θ*) ÷ std)² over 16 seeds is χ² with 16 degrees of freedom for each coefficient: 4.1 and 37.7 are left once in 400 times
+/// each way for one, in two hundred for any of the four.
+#[test]
+fn stated_std_are_those_of_the_errors() {
+    let builtin = Builtin::DuffingNoise;
+    let mut squares = [0.0; 4];
+    for seed in 500..516 {
+        let scenario = Scenario { duration: 7.0, ..builtin.random(seed) };
+        let truth = law(&Library::Given.model(builtin), &scenario, 0).unwrap();
+        let found = identify(Library::Given, builtin, &Recorded::of(&scenario).unwrap().readings);
+        for (sum, (found, truth)) in squares.iter_mut().zip(found.coefficients().iter().zip(truth.coefficients())) {
+            *sum += ((found.value - truth) / found.std.unwrap()).powi(2);
+        }
+    }
+    assert!(squares.iter().all(|square| (4.1..37.7).contains(square)), "{squares:?}");
+}
+
+/// After 4 s, on both sensors, and no alarm; noise that has changed 2 s ago nearly.
+#[test]
+fn the_sensors_noise_is_known_whatever_disturbs_it() {
+    for builtin in [Builtin::DuffingWhite, Builtin::VanDerPolSine] {
+        for (disturbance, noise) in Disturbance::ALL.into_iter().zip([0.2, 1e-3, 0.1, 0.01, 0.01]) {
+            let recorded = Recorded::of(&first_stage(builtin, 700, noise, 4.0)).unwrap();
+            let found = identify(Library::Given, builtin, &disturbance.apply(&recorded.readings, noise, 700));
+            let output = found.output();
+            let truth = disturbance.std(noise);
+            for found in [output.noise_q, output.noise_qd] {
+                let error = (found.unwrap() / truth - 1.0).abs();
+                let allowed = if disturbance == Disturbance::Louder { 0.12 } else { 0.08 };
+                assert!(error < allowed, "{} {}: {found:?} of {truth}", builtin.id(), disturbance.id());
+            }
+            assert_eq!(output.switch_count, 0, "{} {}", builtin.id(), disturbance.id());
+        }
+    }
+}
+
+/// (Delay − 3 ms) ÷ limit of every switch, in much noise.
+#[test]
+fn switches_are_seen_about_as_soon_as_the_noise_allows() {
+    for (builtin, library) in [(Builtin::DuffingSine, Library::Given), (Builtin::VanDerPolWhite, Library::Maybe)] {
+        let mut scenario = builtin.random(801).with_noise(0.1);
+        scenario.stages.truncate(3);
+        scenario.duration = scenario.stages[2].start + 6.0;
+        let recorded = Recorded::of(&scenario).unwrap();
+        let mut identifier = Identifier::new(&library.model(builtin), Settings::default()).unwrap();
+        let figures = follow(&mut identifier, &scenario, recorded.readings.iter().copied()).unwrap();
+        assert_eq!(figures.false_alarms, 0);
+        for stage in 1..3 {
+            let model = Library::Given.model(builtin);
+            let [old, new] = [stage - 1, stage].map(|stage| law(&model, &scenario, stage).unwrap());
+            let course = [recorded.course(recorded.stage(&scenario, stage))];
+            let limit = detection(&old, &new, &course, sensors(&scenario), level(1e6, 1e-3)).unwrap();
+            let delay = figures.stages[stage].detection.unwrap();
+            assert!(delay - 3e-3 < 4.0 * limit.at_start.unwrap(), "{}: {delay} s, {limit:?}", builtin.id());
+        }
+    }
+}
+
+/// The level is that of the false-alarm interval: with 10 s there are alarms, by far not one a second.
+#[test]
+fn false_alarms_come_about_as_often_as_asked() {
+    let scenario = first_stage(Builtin::DuffingSine, 900, 0.01, 200.0);
+    let settings = Settings { false_alarm_interval: 10.0, ..Settings::default() };
+    let mut identifier = Identifier::new(&Library::Given.model(Builtin::DuffingSine), settings).unwrap();
+    let recorded = Recorded::of(&scenario).unwrap();
+    let count = follow(&mut identifier, &scenario, recorded.readings).unwrap().false_alarms;
+    assert!((5..=40).contains(&count), "{count} alarms in 200 s");
+}
