@@ -99,6 +99,10 @@ pub struct Output {
     pub detection_time: Option<f64>,
     /// First time at which the present law was vouched for (stated covariance puts e below 0.05²), s.
     pub identified_time: Option<f64>,
+    /// Number of the law in use among those that were vouched for, 1 for the first of all; `None` while there is none.
+    pub law_number: Option<u32>,
+    /// Whether that law was recognised as one seen before, not identified anew.
+    pub recognised: bool,
     /// What the identifier is doing.
     pub status: Status,
     /// Whether the present law is vouched for.
@@ -177,6 +181,8 @@ impl Identifier {
             switch_time: 0.0,
             detection_time: None,
             identified_time: None,
+            law_number: None,
+            recognised: false,
             status: Status::Acquiring,
             valid: false,
             deviation: 0.0,

@@ -9,6 +9,7 @@ mod deviation;
 mod equations;
 mod identification;
 mod identifier;
+mod known;
 mod outputs;
 mod parameters;
 mod problem;
@@ -20,6 +21,7 @@ mod stage;
 mod start;
 mod structure;
 mod tracker;
+mod trials;
 mod usual;
 mod window;
 

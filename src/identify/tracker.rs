@@ -3,14 +3,17 @@
 mod contest;
 mod live;
 mod published;
+mod recognition;
 mod switch;
 
 use super::deviation::Deviation;
 use super::identifier::{Coefficient, Output, Status};
+use super::known::KnownLaws;
 use super::problem::Problem;
 use super::settings::Settings;
 use super::stage::{Stage, TRUSTED};
 use super::start::Start;
+use super::trials::Trials;
 use super::usual::Usual;
 use super::window::Window;
 use crate::evidence::{Bank, Law};
@@ -71,6 +74,16 @@ pub struct Tracker {
     all_active: Vec<bool>,
     change: Vec<f64>,
     centre: Vec<f64>,
+    known: KnownLaws,
+    trials: Trials,
+    /// Place of the known law that the stage was recognised as.
+    recognised: Option<usize>,
+    /// Place of the known law that the bank of hypotheses recognised in this step.
+    in_sight: Option<usize>,
+    /// Start of a record on which the known laws are to be tried as soon as it has begun.
+    trial_due: Option<u64>,
+    /// Samples that the recognised law is known from.
+    experience: u64,
 }
 
 /// Where the identification stands.
@@ -109,6 +122,12 @@ impl Tracker {
             all_active: vec![true; n],
             change: vec![0.0; n],
             centre: vec![0.0; n],
+            known: KnownLaws::new(n),
+            trials: Trials::new(problem),
+            recognised: None,
+            in_sight: None,
+            trial_due: Some(0),
+            experience: 0,
         }
     }
 
@@ -118,6 +137,7 @@ impl Tracker {
         known.then_some(self.stage.likelihood)
     }
 
+    /// Takes an accepted sample.
     pub fn step(
         &mut self,
         problem: &Problem,
@@ -132,12 +152,14 @@ impl Tracker {
         }
         self.window.push(sample);
         self.follow(problem, settings, output);
+        self.begin_trial(problem, settings);
+        let used = self.try_known(problem, settings, published, output);
         if !output.valid {
             self.begin_afresh();
             self.challenge(problem, settings);
         }
         self.challenge_noise(problem, settings);
-        self.refine_challenger(problem, settings);
+        self.refine_challenger(problem, settings, BUDGET[1] - used);
         if self.phase == Phase::Refining {
             self.refine(problem, settings, published, output);
         }
@@ -180,12 +202,15 @@ impl Tracker {
         if suspense || !self.stage.refine(problem, settings, &self.window, budget) {
             return;
         }
+        if self.leave(problem, settings, output) {
+            return;
+        }
         output.missing = self.stage.missing;
         let worth_showing = self.stage.settled() && self.stage.stated_error() < TRUSTED;
         let worth_monitoring = worth_showing && self.stage.stands();
         if worth_showing {
             self.set_spread(problem);
-            self.publish(problem, published, output);
+            self.publish(problem, settings, published, output);
         }
         if worth_monitoring || (self.live.running && self.stage.is_calm()) {
             self.monitor_new_law(problem, output.valid);
@@ -220,4 +245,9 @@ impl Tracker {
             self.spread[index] = if slope > 0.0 { SWITCH_SIZE * acceleration / slope } else { 1e9 };
         }
     }
+}
+
+/// Evidence that chance reaches once in the false-alarm interval, nats.
+fn alarm_level(settings: &Settings) -> f64 {
+    (settings.false_alarm_interval / settings.sample_time).ln().max(3.0)
 }

@@ -1,14 +1,11 @@
 //! Whether the law has switched, and what happens when it has.
 
-use super::{INERTIA_SPREAD, PRIOR_WIDTH, Phase, SWITCH_SIZE, Tracker};
+use super::{INERTIA_SPREAD, PRIOR_WIDTH, Phase, SWITCH_SIZE, Tracker, alarm_level};
 use crate::evidence::{Noise, Suspect};
 use crate::identify::identifier::{Output, Status};
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
-use crate::identify::stage::Prior;
-
-/// For how many samples the sensor noise of the last stage counts in the next one.
-const NOISE_MEMORY: f64 = 500.0;
+use crate::identify::stage::{NOISE_MEMORY, Prior};
 
 /// A law from this many samples needs twice the evidence: its information is that of a linearisation, whose error falls as the
 /// record grows.
@@ -27,14 +24,18 @@ impl Tracker {
         self.start.begin(end);
         (self.phase, self.challenging, self.challenged_from) = (Phase::Gathering, false, end);
         (self.next_guess, self.next_noise_challenge) = (0, 0);
+        self.trials.end();
+        (self.recognised, self.in_sight, self.trial_due, self.experience) = (None, None, Some(end), 0);
+        (output.law_number, output.recognised) = (None, false);
         (output.status, output.valid, output.identified_time) = (Status::Acquiring, false, None);
     }
 
     /// Alarm, suspicion, or neither.
     pub(super) fn judge(&mut self, problem: &Problem, settings: &Settings, suspect: &Suspect, output: &mut Output) {
-        let doubt = self.stage.overdispersion * (1.0 + DOUBT / self.stage.length(self.window.ready()).max(1) as f64);
+        let samples = self.stage.length(self.window.ready()) + self.experience;
+        let doubt = self.stage.overdispersion * (1.0 + DOUBT / samples.max(1) as f64);
         let doubt = if output.valid { doubt } else { UNPROVEN * doubt };
-        let level = doubt * (settings.false_alarm_interval / settings.sample_time).ln().max(3.0);
+        let level = doubt * alarm_level(settings);
         let level = level.max(self.usual.level());
         if output.valid {
             self.usual.add(suspect.evidence);
@@ -42,7 +43,7 @@ impl Tracker {
         let given = settings.deviation_threshold;
         let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
         if suspect.evidence > level || deviates {
-            self.switch(problem, suspect, level, output);
+            self.switch(problem, settings, suspect, level, output);
         } else if output.status == Status::Tracking && suspect.evidence > 0.5 * level {
             output.status = Status::SwitchSuspected;
             if self.renewed {
@@ -54,8 +55,10 @@ impl Tracker {
     }
 
     /// Ends the stage; only data from after the switch enters the new law.
-    fn switch(&mut self, problem: &Problem, suspect: &Suspect, level: f64, output: &mut Output) {
+    fn switch(&mut self, problem: &Problem, settings: &Settings, suspect: &Suspect, level: f64, output: &mut Output) {
+        self.keep_law(problem, output);
         self.bank.look_at_all();
+        self.weigh_at_alarm(problem, settings, output.law_number);
         let suspect = self.bank.suspect().unwrap_or(*suspect);
         let last = self.window.ready() - 1;
         let instant = self.bank.likeliest_start(&suspect, level);
@@ -67,20 +70,10 @@ impl Tracker {
             *centre = self.live.all[problem.free[index]];
             *change = if plausible { *centre + *change } else { *centre };
         }
-        let acceleration = self.stage.scales.acceleration();
-        let process = (SWITCH_SIZE * acceleration).powi(2) * 0.1;
-        let noise = Noise { sensor: self.live.noise.sensor, process: process.max(self.live.noise.process) };
-        self.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
-        keep_inertia(problem, &self.live.all, &mut self.change);
-        self.noise_weight = NOISE_MEMORY;
-        let prior = Prior {
-            centre: &self.centre,
-            std: &self.spread,
-            log_inertia: INERTIA_SPREAD,
-            structure: Some(&self.live.active),
-            noise_weight: self.noise_weight,
-        };
-        self.stage.begin(problem, &self.window, start, &self.change, prior, noise);
+        self.begin_new_law(problem, start);
+        let sensor = self.live.noise.sensor.map(Some);
+        self.trials.begin(&self.known, problem, &self.window, start, sensor);
+        (self.recognised, self.experience) = (None, 0);
         self.start.begin(start);
         (self.challenging, self.challenged_from) = (false, start);
         (self.next_guess, self.next_noise_challenge) = (0, 0);
@@ -95,7 +88,26 @@ impl Tracker {
         output.identified_time = None;
         output.missing = None;
         output.valid = false;
+        (output.law_number, output.recognised) = (None, false);
         output.status = Status::ReIdentifying;
+    }
+
+    /// Begins the stage of a law that nobody has seen, from `change`, believed to lie about `centre`.
+    pub(super) fn begin_new_law(&mut self, problem: &Problem, start: u64) {
+        let acceleration = self.stage.scales.acceleration();
+        let process = (SWITCH_SIZE * acceleration).powi(2) * 0.1;
+        let noise = Noise { sensor: self.live.noise.sensor, process: process.max(self.live.noise.process) };
+        self.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
+        keep_inertia(problem, &self.live.all, &mut self.change);
+        self.noise_weight = NOISE_MEMORY;
+        let prior = Prior {
+            centre: &self.centre,
+            std: &self.spread,
+            log_inertia: INERTIA_SPREAD,
+            structure: Some(&self.live.active),
+            noise_weight: self.noise_weight,
+        };
+        self.stage.begin(problem, &self.window, start, &self.change, prior, noise);
     }
 }
 
