@@ -14,7 +14,8 @@ const SEEDS: u64 = 20;
 const FIRST_SEED: u64 = 1000;
 const TURNS: [usize; 7] = [0, 1, 0, 2, 1, 0, 2];
 const NOISES: [f64; 3] = [0.001, 0.01, 0.1];
-const HEAD: &str = "| plant | noise | returns | detected, s | known, s | known ÷ detected, median | 90 % | known at the alarm \
+const HEAD: &str =
+    "| plant | noise | returns | detected, s | known, s | known ÷ detected, median | 90 % | known at the alarm \
                     | taken for another, for a while | at the end | missed | false |
 |---|---|---|---|---|---|---|---|---|---|---|---|";
 
@@ -109,6 +110,12 @@ fn watch(model: &Model, scenario: &Scenario, tally: &mut Tally) -> Result<(), Fa
             }
         }
         present.see(output, since, &numbers);
+        if (reading.t * 2.0).fract() < 1e-3 && (std::env::var("V").is_ok()) {
+            eprintln!(
+                "t={:.2} stage {stage} valid {} n {:?} rec {} st {:?} cnt {}",
+                reading.t, output.valid, output.law_number, output.recognised, output.status, output.switch_count
+            );
+        }
     }
     tally.close(&present, &mut numbers);
     Ok(())
@@ -136,7 +143,8 @@ impl Tally {
     fn close(&mut self, present: &Present, numbers: &mut [Option<u32>; 3]) {
         let law = TURNS[present.stage];
         self.taken_for_another += usize::from(present.wrong);
-        let others = (0..3).filter(|other| *other != law).any(|other| numbers[other] == present.last && present.last.is_some());
+        let others =
+            (0..3).filter(|other| *other != law).any(|other| numbers[other] == present.last && present.last.is_some());
         self.wrong_at_end += usize::from(others);
         self.missed += usize::from(present.stage > 0 && present.detected.is_none());
         if numbers[law].is_some() {

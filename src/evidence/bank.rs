@@ -64,8 +64,6 @@ struct Hypothesis {
     age: u32,
     next_look: u32,
     evidence: f64,
-    /// Log-evidence of the switch alone, against the coefficients in use as they are, as of the last look.
-    switched: f64,
     /// ∂q/∂δ and ∂q̇/∂δ, each n long and filled up with zeros.
     sensitivity: [Vec<Lane>; 2],
     information: Information,
@@ -110,7 +108,6 @@ impl Bank {
             age: 0,
             next_look: 0,
             evidence: 0.0,
-            switched: 0.0,
             sensitivity: [lanes(), lanes()],
             information: Information::none(n),
             prior: Information::none(n).matrix,
@@ -152,7 +149,7 @@ impl Bank {
         let n = self.n;
         let hypothesis = &mut self.hypotheses[self.count];
         (hypothesis.start, hypothesis.age, hypothesis.next_look) = (start, 0, YOUNGEST);
-        (hypothesis.evidence, hypothesis.switched) = (0.0, 0.0);
+        hypothesis.evidence = 0.0;
         hypothesis.sensitivity.iter_mut().for_each(|channel| channel.fill([0.0; WIDTH]));
         hypothesis.information.clear();
         hypothesis.prior.iter_mut().zip(&law.information.matrix).for_each(|(slot, entry)| *slot = CAUTION * entry);
@@ -257,23 +254,22 @@ impl Bank {
         self.system.solve(change);
     }
 
-    /// Log-evidence of a switch to a law that may be any, nats, against the law in use exactly as it is; as last looked at.
-    pub fn of_any_law(&self) -> f64 {
-        self.hypotheses[..self.count].iter().map(|hypothesis| hypothesis.switched).fold(f64::NEG_INFINITY, f64::max)
-    }
-
-    /// The same of a switch to coefficients that are known beforehand, their offset counted from those in use, at the start that suits
-    /// them best.
-    pub fn of_known_law(&self, belief: &Belief, weighing: &mut Weighing) -> f64 {
-        let fit = |hypothesis: &Hypothesis| likelihood(&hypothesis.information, &belief.offset);
-        let live = self.hypotheses[..self.count].iter().map(|hypothesis| (hypothesis, fit(hypothesis)));
-        let best = live.max_by(|a, b| a.1.total_cmp(&b.1));
-        best.map_or(f64::NEG_INFINITY, |(hypothesis, _)| weighing.evidence(&hypothesis.information, belief))
+    /// Log-evidence, nats, of a switch to coefficients that are known beforehand, their offset counted from those in use, at the start
+    /// that suits them best; and of a switch to any law at that start. Both against the law in use exactly as it is.
+    pub fn of_known_law(&mut self, belief: &Belief, weighing: &mut Weighing) -> [f64; 2] {
+        let fit = |index: usize| likelihood(&self.hypotheses[index].information, &belief.offset);
+        let starts = (0..self.count).map(|index| (index, fit(index)));
+        match starts.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((index, _)) => {
+                let known = weighing.evidence(&self.hypotheses[index].information, belief);
+                [known, self.switched(index)]
+            }
+            None => [f64::NEG_INFINITY, 0.0],
+        }
     }
 
     fn evidence(&mut self, index: usize) -> f64 {
         let switched = self.switched(index);
-        self.hypotheses[index].switched = switched;
         switched - self.unswitched(index)
     }
 

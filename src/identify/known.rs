@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub const ROOM: usize = 16;
 
 /// A change of the law is known to this fraction of itself where its effect is linearised about the law before, as a std.
-const BEND: f64 = 0.1;
+const BEND: f64 = 0.05;
 
 /// A law of the past.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -221,9 +221,9 @@ impl KnownLaws {
         best.1
     }
 
-    /// Whether what is known of a switch from the law in use agrees with the law at `place`: its log-evidence, nats, from the bank's
-    /// hypotheses, which are linear about the law in use. A change of the inertia is told to them by what it does to the acceleration.
-    pub fn at_a_switch(&mut self, place: usize, problem: &Problem, in_use: &[f64], bank: &Bank) -> f64 {
+    /// Weighs the law at `place` by the hypotheses of a switch from the law in use, about which they are linear. A change of the inertia
+    /// is told to them by what it does to the acceleration.
+    pub fn at_a_switch(&mut self, place: usize, problem: &Problem, in_use: &[f64], bank: &mut Bank) -> Weighed {
         let KnownLaws { laws, belief, weighing, .. } = self;
         let law = &laws[place];
         let inertia = problem.free_inertia().map_or(1.0, |free| in_use[problem.inertia] / law.coefficients[free]);
@@ -232,6 +232,7 @@ impl KnownLaws {
         }
         let bent = |free: usize| (BEND * (law.coefficients[free] - in_use[problem.free[free]])).powi(2);
         belief.set_variances((0..problem.n()).map(|free| inertia * inertia * (law.variance(free) + bent(free))));
-        bank.of_known_law(belief, weighing)
+        let [known, any] = bank.of_known_law(belief, weighing);
+        Weighed { known, any }
     }
 }

@@ -18,6 +18,7 @@ use super::usual::Usual;
 use super::window::Window;
 use crate::evidence::{Bank, Law};
 use live::Live;
+use recognition::Lingering;
 use serde::{Deserialize, Serialize};
 
 /// Hypotheses of a switch that are kept.
@@ -78,8 +79,11 @@ pub struct Tracker {
     trials: Trials,
     /// Place of the known law that the stage was recognised as.
     recognised: Option<usize>,
-    /// Place of the known law that the bank of hypotheses recognised in this step.
+    /// Whether that law's trial has confirmed it.
+    confirmed: bool,
+    /// Place of the known law that is to be recognised in this step.
     in_sight: Option<usize>,
+    lingering: Option<Lingering>,
     /// Start of a record on which the known laws are to be tried as soon as it has begun.
     trial_due: Option<u64>,
     /// Samples that the recognised law is known from.
@@ -125,7 +129,9 @@ impl Tracker {
             known: KnownLaws::new(n),
             trials: Trials::new(problem),
             recognised: None,
+            confirmed: false,
             in_sight: None,
+            lingering: None,
             trial_due: Some(0),
             experience: 0,
         }
@@ -231,6 +237,8 @@ impl Tracker {
                 true => self.bank.shift(&self.change),
                 false => self.bank.clear(),
             }
+        } else {
+            self.end_lingering();
         }
         self.live.adopt(problem, &mut self.stage, &self.window);
         self.set_spread(problem);

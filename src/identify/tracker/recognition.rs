@@ -5,42 +5,84 @@
 
 use super::{Phase, Tracker, alarm_level};
 use crate::identify::identifier::{Coefficient, Output, Status};
-use crate::identify::known::KnownLaw;
+use crate::identify::known::{KnownLaw, Weighed};
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
+use serde::{Deserialize, Serialize};
 
 /// Evidence against any other law that makes a known one recognised in the step of the alarm, in alarm levels: it is more likely
 /// beforehand than all others together, and it is taken back when it was wrong.
-const AT_ALARM: f64 = 0.1;
+const AT_ALARM: f64 = 0.05;
 
 /// The same on trial, where the state is known from the new record alone.
 const ON_TRIAL: f64 = 0.25;
 
 /// Evidence against the next best known law, in alarm levels.
-const AMONG_KNOWN: f64 = 0.25;
+const AMONG_KNOWN: f64 = 0.15;
+
+/// The bank goes on after an alarm for this many times as long as it had watched the switch.
+const LINGER: u64 = 3;
 
 /// Evidence of any other law at which a recognised one is left, in alarm levels.
 const CONTRADICTED: f64 = 0.15;
 
+/// The time after an alarm in which the bank still speaks for known laws.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Lingering {
+    /// Number of the sample at which it ends.
+    until: u64,
+    /// Number of the law that was left.
+    number: Option<u32>,
+}
+
 impl Tracker {
-    /// Weighs every known law in the step of an alarm, before the bank forgets; remembers the one that stands out. Every hypothesis has
-    /// been looked at.
-    pub(super) fn weigh_at_alarm(&mut self, problem: &Problem, settings: &Settings, number: Option<u32>) {
-        let any = self.bank.of_any_law();
-        let (mut best, mut next) = ((f64::NEG_INFINITY, None), f64::NEG_INFINITY);
+    /// After an alarm the bank of hypotheses goes on for as long as it has watched the switch, about the law that was in use until
+    /// then: it carries the state over the switch, which the new record alone does not know.
+    pub(super) fn linger(&mut self, since: u64, number: Option<u32>) {
+        let end = self.window.ready();
+        let until = end + LINGER * (end - since);
+        let others = self.known.laws().iter().any(|law| Some(law.number) != number);
+        match others {
+            true => self.lingering = Some(Lingering { until, number }),
+            false => self.end_lingering(),
+        }
+    }
+
+    /// Weighs every known law by the bank after an alarm.
+    pub(super) fn weigh_after_alarm(&mut self, problem: &Problem, settings: &Settings) {
+        let Some(lingering) = self.lingering else { return };
+        while self.live.next < self.window.ready() {
+            let innovations = self.live.step(problem, &self.window.observation(self.live.next));
+            self.bank.step(&self.live.pass.map, &innovations);
+            self.live.next += 1;
+        }
+        self.in_sight = self.in_sight(problem, settings, lingering.number);
+        if self.in_sight.is_none() && self.window.ready() >= lingering.until {
+            self.end_lingering();
+        }
+    }
+
+    pub(super) fn end_lingering(&mut self) {
+        self.lingering = None;
+        self.bank.clear();
+    }
+
+    /// The place of the known law that the bank's hypotheses speak for, other than the one of that number.
+    fn in_sight(&mut self, problem: &Problem, settings: &Settings, number: Option<u32>) -> Option<usize> {
+        let (mut best, mut next) = ((f64::NEG_INFINITY, 0.0, None), f64::NEG_INFINITY);
         for place in 0..self.known.laws().len() {
             if Some(self.known.laws()[place].number) == number {
                 continue;
             }
-            let evidence = self.known.at_a_switch(place, problem, &self.live.all, &self.bank);
-            match evidence > best.0 {
-                true => (best, next) = ((evidence, Some(place)), best.0),
-                false => next = next.max(evidence),
+            let Weighed { known, any } = self.known.at_a_switch(place, problem, &self.live.all, &mut self.bank);
+            match known > best.0 {
+                true => (best, next) = ((known, any, Some(place)), best.0),
+                false => next = next.max(known),
             }
         }
+        let (known, any, place) = best;
         let level = alarm_level(settings);
-        let stands_out = best.0 - any > AT_ALARM * level && best.0 - next > AMONG_KNOWN * level;
-        self.in_sight = best.1.filter(|_| stands_out);
+        place.filter(|_| known - any > AT_ALARM * level && known - next > AMONG_KNOWN * level)
     }
 
     /// Carries the trial of the known laws on; returns how many samples it ran, of [`super::BUDGET`] at most.
@@ -51,6 +93,7 @@ impl Tracker {
         published: &mut [Coefficient],
         output: &mut Output,
     ) -> usize {
+        self.weigh_after_alarm(problem, settings);
         if let Some(place) = self.in_sight.take() {
             self.recognise(problem, place, published, output);
         }
@@ -62,9 +105,9 @@ impl Tracker {
         let found = verdict
             .filter(|verdict| verdict.against_any > ON_TRIAL * level && verdict.against_known > AMONG_KNOWN * level);
         match (self.recognised, found) {
-            (Some(place), Some(found)) if place == found.place => {}
+            (Some(place), Some(found)) if place == found.place => self.confirmed = true,
             (Some(place), _) if self.is_contradicted(place, level) => {
-                self.withdraw(problem, output);
+                self.withdraw(problem, self.stage.start, output);
                 self.in_sight = found.map(|found| found.place);
             }
             (None, Some(found)) if !output.valid => self.recognise(problem, found.place, published, output),
@@ -79,12 +122,12 @@ impl Tracker {
 
     /// The law at `place` is the law in use from now on, until the stage's own estimate takes over from it.
     fn recognise(&mut self, problem: &Problem, place: usize, published: &mut [Coefficient], output: &mut Output) {
-        self.recognised = Some(place);
+        (self.recognised, self.confirmed) = (Some(place), false);
+        self.end_lingering();
         let law = &self.known.laws()[place];
         self.stage.begin_known(problem, &self.window, self.stage.start, law, self.trials.noise(place));
         (self.phase, self.challenging) = (Phase::Refining, false);
         self.live.running = false;
-        self.bank.clear();
         self.spread.copy_from_slice(&law.spread);
         self.bank.set_spread(&self.spread);
         self.experience = law.samples;
@@ -106,14 +149,13 @@ impl Tracker {
     }
 
     /// The record contradicts the recognised law: the stage is that of a new one after all.
-    fn withdraw(&mut self, problem: &Problem, output: &mut Output) {
-        self.recognised = None;
+    fn withdraw(&mut self, problem: &Problem, start: u64, output: &mut Output) {
+        (self.recognised, self.confirmed) = (None, false);
         self.experience = 0;
         (output.law_number, output.recognised) = (None, false);
         (output.valid, output.identified_time) = (false, None);
         self.live.running = false;
         self.bank.clear();
-        let start = self.stage.start;
         self.start.begin(start);
         (self.challenging, self.challenged_from) = (false, start);
         (self.next_guess, self.next_noise_challenge) = (0, 0);
@@ -129,6 +171,19 @@ impl Tracker {
             }
             false => (output.status, self.phase) = (Status::Acquiring, Phase::Gathering),
         }
+    }
+
+    /// An alarm under a law that its trial has not confirmed yet speaks against the law, not for one more switch: the stage goes on as
+    /// that of another law, from sample `start`.
+    pub(super) fn take_back(&mut self, problem: &Problem, start: u64, output: &mut Output) {
+        self.withdraw(problem, start, output);
+        let sensor = self.live.noise.sensor.map(Some);
+        self.trials.begin(&self.known, problem, &self.window, start, sensor);
+    }
+
+    /// Whether the law in use was recognised and its trial has not confirmed it yet.
+    pub(super) fn is_unconfirmed(&self) -> bool {
+        self.recognised.is_some() && !self.confirmed
     }
 
     /// Gives a law that is vouched for its number: that of the known law which it is, or a new one.
@@ -157,7 +212,7 @@ impl Tracker {
         let against_any = (weighed.known - weighed.any) / self.stage.overdispersion;
         let contradicted = against_any < -CONTRADICTED * alarm_level(settings);
         if contradicted {
-            self.withdraw(problem, output);
+            self.withdraw(problem, self.stage.start, output);
         }
         contradicted
     }

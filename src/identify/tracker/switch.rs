@@ -25,7 +25,9 @@ impl Tracker {
         (self.phase, self.challenging, self.challenged_from) = (Phase::Gathering, false, end);
         (self.next_guess, self.next_noise_challenge) = (0, 0);
         self.trials.end();
-        (self.recognised, self.in_sight, self.trial_due, self.experience) = (None, None, Some(end), 0);
+        self.lingering = None;
+        (self.recognised, self.confirmed, self.in_sight) = (None, false, None);
+        (self.trial_due, self.experience) = (Some(end), 0);
         (output.law_number, output.recognised) = (None, false);
         (output.status, output.valid, output.identified_time) = (Status::Acquiring, false, None);
     }
@@ -43,7 +45,7 @@ impl Tracker {
         let given = settings.deviation_threshold;
         let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
         if suspect.evidence > level || deviates {
-            self.switch(problem, settings, suspect, level, output);
+            self.switch(problem, suspect, level, output);
         } else if output.status == Status::Tracking && suspect.evidence > 0.5 * level {
             output.status = Status::SwitchSuspected;
             if self.renewed {
@@ -55,14 +57,16 @@ impl Tracker {
     }
 
     /// Ends the stage; only data from after the switch enters the new law.
-    fn switch(&mut self, problem: &Problem, settings: &Settings, suspect: &Suspect, level: f64, output: &mut Output) {
-        self.keep_law(problem, output);
+    fn switch(&mut self, problem: &Problem, suspect: &Suspect, level: f64, output: &mut Output) {
         self.bank.look_at_all();
-        self.weigh_at_alarm(problem, settings, output.law_number);
         let suspect = self.bank.suspect().unwrap_or(*suspect);
         let last = self.window.ready() - 1;
         let instant = self.bank.likeliest_start(&suspect, level);
         let start = (self.bank.after(&suspect, level) + 1).min(last);
+        if self.is_unconfirmed() {
+            return self.take_back(problem, start, output);
+        }
+        self.keep_law(problem, output);
         self.bank.change(&suspect, &mut self.change);
         self.set_spread(problem);
         let plausible = self.change.iter().zip(&self.spread).all(|(change, spread)| change.abs() < 2.0 * spread);
@@ -73,12 +77,12 @@ impl Tracker {
         self.begin_new_law(problem, start);
         let sensor = self.live.noise.sensor.map(Some);
         self.trials.begin(&self.known, problem, &self.window, start, sensor);
-        (self.recognised, self.experience) = (None, 0);
+        (self.recognised, self.confirmed, self.experience) = (None, false, 0);
         self.start.begin(start);
         (self.challenging, self.challenged_from) = (false, start);
         (self.next_guess, self.next_noise_challenge) = (0, 0);
         self.live.running = false;
-        self.bank.clear();
+        self.linger(instant, output.law_number);
         self.deviation.clear();
         self.usual_deviation = 0.0;
         self.usual.clear();
