@@ -110,12 +110,6 @@ fn watch(model: &Model, scenario: &Scenario, tally: &mut Tally) -> Result<(), Fa
             }
         }
         present.see(output, since, &numbers);
-        if (reading.t * 2.0).fract() < 1e-3 && (std::env::var("V").is_ok()) {
-            eprintln!(
-                "t={:.2} stage {stage} valid {} n {:?} rec {} st {:?} cnt {}",
-                reading.t, output.valid, output.law_number, output.recognised, output.status, output.switch_count
-            );
-        }
     }
     tally.close(&present, &mut numbers);
     Ok(())

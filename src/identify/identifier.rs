@@ -2,6 +2,7 @@
 
 use super::problem::Problem;
 use super::publication::Publication;
+use super::saved::{SavedLaws, SavedLawsError};
 use super::settings::{Method, Settings, SettingsError};
 use super::tracker::Tracker;
 use crate::evidence::Missing;
@@ -132,6 +133,9 @@ pub enum BuildError {
     /// The model is refused.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// The known laws are refused.
+    #[error(transparent)]
+    Laws(#[from] SavedLawsError),
 }
 
 /// The procedure at work.
@@ -241,6 +245,25 @@ impl Identifier {
             Some(previous) if t - previous < 0.5 * self.settings.sample_time => Err(Skipped::TooSoon { t }),
             _ => Ok(()),
         }
+    }
+
+    /// The laws that it knows, the present one among them where it is vouched for; none of the publication's method.
+    pub fn known_laws(&self) -> SavedLaws {
+        match &self.engine {
+            Engine::Default(tracker) => tracker.known_laws(&self.problem, &self.output),
+            Engine::Publication(_) => SavedLaws::default(),
+        }
+    }
+
+    /// The same identifier with laws to recognise, from before its first sample; the publication's method recognises none.
+    ///
+    /// # Errors
+    /// [`SavedLawsError`] where they belong to another model or make no sense.
+    pub fn with_known_laws(mut self, saved: &SavedLaws) -> Result<Identifier, SavedLawsError> {
+        if let Engine::Default(tracker) = &mut self.engine {
+            tracker.learn(&self.problem, saved)?;
+        }
+        Ok(self)
     }
 
     /// The settings it was built with.

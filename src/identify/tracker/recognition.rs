@@ -5,8 +5,9 @@
 
 use super::{Phase, Tracker, alarm_level};
 use crate::identify::identifier::{Coefficient, Output, Status};
-use crate::identify::known::{KnownLaw, Weighed};
+use crate::identify::known::{KnownLaw, ROOM, Weighed};
 use crate::identify::problem::Problem;
+use crate::identify::saved::{SavedLaw, SavedLaws, SavedLawsError};
 use crate::identify::settings::Settings;
 use serde::{Deserialize, Serialize};
 
@@ -169,7 +170,10 @@ impl Tracker {
                 }
                 self.begin_new_law(problem, start);
             }
-            false => (output.status, self.phase) = (Status::Acquiring, Phase::Gathering),
+            false => {
+                self.stage.start = start;
+                (output.status, self.phase) = (Status::Acquiring, Phase::Gathering);
+            }
         }
     }
 
@@ -192,6 +196,30 @@ impl Tracker {
             let found = self.known.same_as(&self.stage, ON_TRIAL * alarm_level(settings));
             output.law_number = Some(found.unwrap_or_else(|| self.known.new_number()));
         }
+    }
+
+    /// Takes laws to recognise.
+    ///
+    /// # Errors
+    /// [`SavedLawsError`].
+    pub fn learn(&mut self, problem: &Problem, saved: &SavedLaws) -> Result<(), SavedLawsError> {
+        for law in &saved.laws {
+            let taken = self.known.position(law.number).is_some() || self.known.laws().len() == ROOM;
+            if taken {
+                return Err(SavedLawsError::TooMany { law: law.number, room: ROOM });
+            }
+            self.known.push(&law.known(problem)?);
+        }
+        Ok(())
+    }
+
+    /// Every known law, the present one among them where it is vouched for.
+    pub fn known_laws(&self, problem: &Problem, output: &Output) -> SavedLaws {
+        let mut after = self.clone();
+        after.keep_law(problem, output);
+        let mut laws: Vec<SavedLaw> = after.known.laws().iter().map(|law| SavedLaw::of(law, problem)).collect();
+        laws.sort_by_key(|law| law.number);
+        SavedLaws { laws }
     }
 
     /// Keeps the law that is vouched for, as the stage has it.
