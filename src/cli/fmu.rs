@@ -2,19 +2,20 @@
 
 use super::error::CommandError;
 use super::output;
-use crate::data;
-use crate::fmu::{Fmu, FmuError, identifier, plant_of_model};
+use crate::data::{self, DataError};
+use crate::fmu::{Fmu, FmuError, identifier_knowing, plant_of_model};
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 const EXAMPLE: &str = r#"Examples:
   switchid fmu --model axis.toml -o Axis.fmu
+  switchid fmu --model axis.toml -o Axis.fmu --known-laws laws.toml
   switchid fmu --model axis.toml -o AxisPlant.fmu --plant
   switchid fmu --model axis.toml -o Axis.fmu --binaries target/release
 
-The first identifies the model's law in any simulator that imports FMI 2.0 for co-simulation; the second is a
-plant with the model's law, whose terms must all have numbers. Ports are in SI units: where the model's [units]
+The first identifies the model's law in any simulator that imports FMI 2.0 for co-simulation, the second recognises
+laws that `switchid identify --save-laws` saved, from its first sample on; the third is a plant with the model's law, whose terms must all have numbers. Ports are in SI units: where the model's [units]
 name a quantity, they declare its SI unit.
 
 The binaries come from `cargo build --release -p switchid-fmu-identifier -p switchid-fmu-plant`."#;
@@ -29,6 +30,9 @@ pub(super) struct Arguments {
     /// Where to write the FMU; it is named after the file
     #[arg(short, long, value_name = "X.fmu")]
     output: PathBuf,
+    /// Laws that the identifier recognises from its first sample on, as `identify --save-laws` wrote them
+    #[arg(long, value_name = "FILE", conflicts_with = "plant")]
+    known_laws: Option<PathBuf>,
     /// Make a plant with the model's law in place of an identifier
     #[arg(long)]
     plant: bool,
@@ -56,9 +60,18 @@ struct Report {
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let model = data::open_model(&arguments.model)?;
     let name = name(&arguments.output);
-    let make = if arguments.plant { plant_of_model } else { identifier };
-    let refused = |source: FmuError| CommandError::Fmu { model: arguments.model.display().to_string(), source };
-    let fmu = make(&name, &model).map_err(refused)?;
+    let refused = |source: FmuError| match (source, &arguments.known_laws) {
+        (FmuError::Laws(source), Some(path)) => {
+            CommandError::Data(DataError::Laws { file: path.display().to_string(), source })
+        }
+        (source, _) => CommandError::Fmu { model: arguments.model.display().to_string(), source },
+    };
+    let known = arguments.known_laws.as_deref().map(data::open_laws).transpose()?;
+    let fmu = match arguments.plant {
+        true => plant_of_model(&name, &model),
+        false => identifier_knowing(&name, &model, &known.unwrap_or_default()),
+    };
+    let fmu = fmu.map_err(refused)?;
     let (fmu, platforms) = with_binaries(fmu, arguments)?;
     let bytes = fmu.to_bytes().map_err(|source| refused(source.into()))?;
     let file = arguments.output.display().to_string();

@@ -6,18 +6,20 @@ use super::output;
 use super::progress::{Progress, Waiting};
 use super::stage_limit::{StageLimit, stage_limits};
 use super::trace::Trace;
-use crate::data::{self, Opened};
-use crate::identify::{self, Gap, Identification, Method, Recording, Settings, Stage};
+use crate::data::{self, DataError, Opened};
+use crate::identify::{self, BuildError, Gap, Identification, Method, Recording, Settings, Stage};
 use crate::law::{Hold, Model, Term, Units, unit_of};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const EXAMPLE: &str = r#"Examples:
   switchid identify recording.csv --model model.toml
   switchid identify recording.csv@20:60 --model model.toml --hold linear --json
   switchid identify recording.csv --model model.toml --trace trace.csv
+  switchid identify monday.csv --model model.toml --save-laws laws.toml
+  switchid identify tuesday.csv --model model.toml --known-laws laws.toml
 
 A model file:
   name = "positioning axis"
@@ -53,6 +55,12 @@ pub(super) struct Arguments {
     /// Write every output of the identifier after each sample into this CSV file, as the FMU would show them
     #[arg(long, value_name = "OUT.csv")]
     trace: Option<PathBuf>,
+    /// Laws to recognise from the first sample on, as --save-laws wrote them
+    #[arg(long, value_name = "FILE")]
+    known_laws: Option<PathBuf>,
+    /// Write the laws that were vouched for into this file (TOML), to be recognised in other recordings
+    #[arg(long, value_name = "FILE")]
+    save_laws: Option<PathBuf>,
     /// Print one JSON document instead of text
     #[arg(long)]
     json: bool,
@@ -74,6 +82,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let opened = data::open_recording(&arguments.data, &model)?;
     let (settings, hold_from) = settings(arguments, &model, &opened.recording)?;
     let found = identify(arguments, &model, settings, &opened.recording)?;
+    arguments.save_laws.as_deref().map_or(Ok(()), |path| save(path, &found))?;
     let limits = Waiting::on("looking for the limits", || stage_limits(&found, &opened.recording, &settings));
     let run = Run { opened, settings, hold_from, found, limits };
     warnings(&run).iter().for_each(|warning| output::complain("warning", warning));
@@ -86,9 +95,10 @@ fn identify(
     settings: Settings,
     recording: &Recording,
 ) -> Result<Identification, CommandError> {
+    let known = arguments.known_laws.as_deref().map(data::open_laws).transpose()?.unwrap_or_default();
     let mut progress = Progress::new(recording.count());
     let mut trace = arguments.trace.as_deref().map(|path| Trace::create(path, model)).transpose()?;
-    let found = identify::identify_recording(model, settings, recording, |identifier, index| {
+    let found = identify::identify_knowing(model, settings, &known, recording, |identifier, index| {
         progress.reached(index);
         if let Some(trace) = &mut trace {
             trace.push(recording.t()[index], identifier);
@@ -96,7 +106,23 @@ fn identify(
     });
     progress.finish();
     trace.map_or(Ok(()), Trace::finish)?;
-    found.map_err(|source| CommandError::Build { model: arguments.model.display().to_string(), source })
+    found.map_err(|source| refused(arguments, source))
+}
+
+/// Laws are at fault by their own file's name, all else by the model's.
+fn refused(arguments: &Arguments, source: BuildError) -> CommandError {
+    match (source, &arguments.known_laws) {
+        (BuildError::Laws(source), Some(path)) => {
+            CommandError::Data(DataError::Laws { file: path.display().to_string(), source })
+        }
+        (source, _) => CommandError::Build { model: arguments.model.display().to_string(), source },
+    }
+}
+
+fn save(path: &Path, found: &Identification) -> Result<(), CommandError> {
+    let file = path.display().to_string();
+    let text = found.known_laws.to_toml().map_err(|error| CommandError::write(&file, error))?;
+    std::fs::write(path, text).map_err(|error| CommandError::write(&file, error))
 }
 
 fn settings(
@@ -167,9 +193,15 @@ fn text(run: &Run) -> String {
     }
     for (index, (stage, limit)) in stages(run).enumerate() {
         let law = law(stage, limit, run.settings.channels.excitation, &run.opened.units);
-        let _ = write!(text, "\nstage {}: {law}", index + 1);
+        let _ = write!(text, "\nstage {}{}: {law}", index + 1, again(&run.found.stages[..index], stage));
     }
     text
+}
+
+/// ` (law 1 again)` where the law was known when the stage began.
+fn again(before: &[Stage], stage: &Stage) -> String {
+    let seen = stage.recognised || before.iter().any(|other| other.law_number == stage.law_number);
+    stage.law_number.filter(|_| seen).map_or_else(String::new, |number| format!(" (law {number} again)"))
 }
 
 fn head(run: &Run) -> String {

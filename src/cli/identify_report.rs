@@ -24,6 +24,9 @@ struct StageReport {
     end: f64,
     detected: Option<f64>,
     identified: Option<f64>,
+    /// The same whenever a law returns; null where no law was vouched for.
+    law_number: Option<u32>,
+    recognised: bool,
     law: Option<String>,
     coefficients: Pairs,
     std: Pairs,
@@ -66,6 +69,8 @@ impl StageReport {
             end: stage.end,
             detected: stage.detected,
             identified: stage.identified,
+            law_number: stage.law_number,
+            recognised: stage.recognised,
             law: stage.law(forced),
             coefficients: Pairs(stage.known().map(|(known, _)| (known.term.name(), known.value)).collect()),
             std: Pairs(stage.known().map(|(known, std)| (known.term.name(), std)).collect()),

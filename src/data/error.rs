@@ -1,7 +1,7 @@
 //! Why something that a user brought cannot be used.
 
 use super::kind::FileKind;
-use crate::identify::RecordingError;
+use crate::identify::{RecordingError, SavedLawsError};
 use crate::law::ModelError;
 use crate::simulate::ScenarioError;
 use thiserror::Error;
@@ -363,6 +363,14 @@ pub enum DataError {
         file: String,
         /// Why.
         source: ScenarioError,
+    },
+    /// A file of known laws is refused.
+    #[error("{file}: {source}")]
+    Laws {
+        /// The file.
+        file: String,
+        /// Why.
+        source: SavedLawsError,
     },
 }
 

@@ -1,6 +1,7 @@
-//! Model and scenario files.
+//! Model, scenario and law files.
 
 use super::DataError;
+use crate::identify::SavedLaws;
 use crate::law::Model;
 use crate::simulate::Scenario;
 use std::path::Path;
@@ -38,4 +39,13 @@ pub fn open_model(path: &Path) -> Result<Model, DataError> {
 pub fn open_scenario(path: &Path) -> Result<Scenario, DataError> {
     let file = path.display().to_string();
     Scenario::from_toml(&read(path)?).map_err(|source| DataError::Scenario { file, source })
+}
+
+/// Opens a file of known laws.
+///
+/// # Errors
+/// [`DataError`] names the file.
+pub fn open_laws(path: &Path) -> Result<SavedLaws, DataError> {
+    let file = path.display().to_string();
+    SavedLaws::from_toml(&read(path)?).map_err(|source| DataError::Laws { file, source })
 }

@@ -27,7 +27,7 @@ mod section;
 mod stored;
 
 pub use error::DataError;
-pub use files::{open_model, open_scenario};
+pub use files::{open_laws, open_model, open_scenario};
 pub use kind::FileKind;
 pub use open::{Opened, open_recording};
 pub use section::Section;

@@ -17,6 +17,7 @@ use super::filter::Innovation;
 use super::information::Information;
 use super::pass::IntervalMap;
 use super::symmetric::{Lane, System, WIDTH};
+use super::weighing::{Belief, Weighing, likelihood};
 use serde::{Deserialize, Serialize};
 
 /// Pivots this far below their diagonal are rounding.
@@ -257,6 +258,20 @@ impl Bank {
     pub fn change(&mut self, suspect: &Suspect, change: &mut [f64]) {
         self.switched(suspect.index);
         self.system.solve(change);
+    }
+
+    /// Log-evidence, nats, of a switch to coefficients that are known beforehand, their offset counted from those in use, at the start
+    /// that suits them best; and of a switch to any law at that start. Both against the law in use exactly as it is.
+    pub fn of_known_law(&mut self, belief: &Belief, weighing: &mut Weighing) -> [f64; 2] {
+        let fit = |index: usize| likelihood(&self.hypotheses[index].information, &belief.offset);
+        let starts = (0..self.count).map(|index| (index, fit(index)));
+        match starts.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((index, _)) => {
+                let known = weighing.evidence(&self.hypotheses[index].information, belief);
+                [known, self.switched(index)]
+            }
+            None => [f64::NEG_INFINITY, 0.0],
+        }
     }
 
     fn evidence(&mut self, index: usize) -> f64 {

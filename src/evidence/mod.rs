@@ -11,6 +11,7 @@
 //! - [`Pass`]: one run over a record: likelihood, score and Fisher information of the coefficients;
 //! - [`Lack`]: effects that the law does not have, by the score test in the stream;
 //! - [`Information`]: sums of them, and their solution;
+//! - [`Weighing`]: which of two beliefs about the coefficients a record speaks for;
 //! - [`Bank`]: hypotheses that the law switched at one of many instants (Willsky and Jones, IEEE TAC 21, 1976).
 
 mod bank;
@@ -20,6 +21,7 @@ mod information;
 mod lack;
 mod pass;
 mod symmetric;
+mod weighing;
 
 pub use bank::{Bank, Law, Suspect};
 pub use filter::{Channel, Filter, Innovation, Noise};
@@ -27,3 +29,4 @@ pub use guard::Guard;
 pub use information::{Information, Solution};
 pub use lack::{Lack, Missing};
 pub use pass::{IntervalMap, Observation, Pass, RIVALS, Track, gains};
+pub use weighing::{Belief, Weighing};

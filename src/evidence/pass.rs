@@ -61,6 +61,12 @@ impl Track {
         -0.5 * (q.total() + qd.total() + profile[0] + profile[1])
     }
 
+    /// Log-likelihood with the variances as they were stated, up to the same constant.
+    pub fn stated_log_likelihood(&self) -> f64 {
+        let [q, qd] = &self.log_variance;
+        -0.5 * (q.total() + qd.total() + self.squares[0] + self.squares[1])
+    }
+
     /// Geometric mean of s in the channel; 0 where nothing was measured.
     pub fn variance(&self, channel: Channel) -> f64 {
         let count = self.count[channel as usize];

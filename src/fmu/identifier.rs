@@ -1,7 +1,9 @@
 //! The identifier's interface for a model.
 
 use super::{FmuError, ports};
-use crate::identify::{Method, OutputDescription, OutputKind, Outputs, Parameter, Status};
+use crate::identify::{
+    Identifier, Method, OutputDescription, OutputKind, Outputs, Parameter, SavedLaws, Settings, Status,
+};
 use crate::law::{Catalogue, Hold, Model, Term};
 use switchid_fmu_package::variables::{at_least, choice, input, output, real, units, variable};
 use switchid_fmu_package::{Fmu, documentation};
@@ -12,12 +14,33 @@ use switchid_fmu_slave::{Description, Enumeration, Kind, Variable};
 /// # Errors
 /// [`FmuError`] where the model is refused, cannot be identified sample by sample, or `name` is no identifier.
 pub fn identifier(name: &str, model: &Model) -> Result<Fmu, FmuError> {
+    identifier_knowing(name, model, &SavedLaws::default())
+}
+
+/// The same with laws in its resources, which it recognises from its first sample on.
+///
+/// # Errors
+/// [`FmuError`], also where the laws are not the model's.
+pub fn identifier_knowing(name: &str, model: &Model, known: &SavedLaws) -> Result<Fmu, FmuError> {
     model.check()?;
     model.check_inertia()?;
     model.check_streaming()?;
+    let mut resources = vec![("model.toml".into(), model.to_toml().into_bytes())];
+    if !known.laws.is_empty() {
+        check(model, known)?;
+        resources.push(("laws.toml".into(), known.to_toml()?.into_bytes()));
+    }
     let description = identifier_description(name, model);
     let page = documentation::page(&description, &text(model));
-    Ok(Fmu::new(description, vec![("model.toml".into(), model.to_toml().into_bytes())], page)?)
+    Ok(Fmu::new(description, resources, page)?)
+}
+
+/// Laws that no identifier of the model takes are not packed.
+fn check(model: &Model, known: &SavedLaws) -> Result<(), FmuError> {
+    match Identifier::new(model, Settings::default()) {
+        Ok(identifier) => Ok(identifier.with_known_laws(known).map(|_| ())?),
+        Err(_) => Ok(()),
+    }
 }
 
 /// The variables of an identifier for a model: inputs, parameters, outputs.

@@ -9,11 +9,12 @@ mod plant;
 mod plant_of_model;
 mod ports;
 
-pub use identifier::{identifier, identifier_description};
+pub use identifier::{identifier, identifier_description, identifier_knowing};
 pub use plant::{DUFFING, STAGES, VAN_DER_POL, plant, plant_description};
 pub use plant_of_model::plant_of_model;
 pub use switchid_fmu_package::{Fmu, PackageError};
 
+use crate::identify::SavedLawsError;
 use crate::law::ModelError;
 use crate::simulate::ParametricLawError;
 use thiserror::Error;
@@ -24,6 +25,9 @@ pub enum FmuError {
     /// The model is refused.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// The known laws are refused.
+    #[error(transparent)]
+    Laws(#[from] SavedLawsError),
     /// The law of a plant is refused.
     #[error(transparent)]
     Law(#[from] ParametricLawError),

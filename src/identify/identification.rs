@@ -1,6 +1,6 @@
 //! A whole recording through the streaming identifier: its stages, one after the other.
 
-use super::{BuildError, Coefficient, Identifier, Method, Recording, Settings, Skipped};
+use super::{BuildError, Coefficient, Identifier, Method, Recording, SavedLaws, Settings, Skipped};
 use crate::law::{Hold, Model, equation};
 use std::ops::Range;
 
@@ -15,6 +15,10 @@ pub struct Stage {
     pub detected: Option<f64>,
     /// First time at which the identifier vouched for its law, s.
     pub identified: Option<f64>,
+    /// Number of its law among those vouched for, the same whenever a law returns; `None` where none was vouched for.
+    pub law_number: Option<u32>,
+    /// Whether the law was recognised as one seen before, not identified anew.
+    pub recognised: bool,
     /// The last published coefficients, in the order of the model's terms.
     pub coefficients: Vec<Coefficient>,
     /// What its data could not determine.
@@ -43,6 +47,8 @@ pub struct Identification {
     pub noise_q: Option<f64>,
     /// Estimated std of the velocity's sensor noise.
     pub noise_qd: Option<f64>,
+    /// The laws that were vouched for, to be recognised in other recordings.
+    pub known_laws: SavedLaws,
     /// The samples that were not used, and why.
     pub skipped: Vec<Skipped>,
 }
@@ -78,7 +84,7 @@ pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) ->
 }
 
 /// Steps an identifier over every sample and collects the stages. Each gap of the recording starts a new identifier, since
-/// nothing may be integrated over it. `watch` is called after every sample with its index.
+/// nothing may be integrated over it; laws are recognised behind it. `watch` is called after every sample with its index.
 ///
 /// # Errors
 /// [`BuildError`] when settings or model are refused.
@@ -86,12 +92,33 @@ pub fn identify_recording(
     model: &Model,
     settings: Settings,
     recording: &Recording,
+    watch: impl FnMut(&Identifier, usize),
+) -> Result<Identification, BuildError> {
+    identify_knowing(model, settings, &SavedLaws::default(), recording, watch)
+}
+
+/// The same with laws to recognise from the first sample on.
+///
+/// # Errors
+/// [`BuildError`] when settings, model or laws are refused.
+pub fn identify_knowing(
+    model: &Model,
+    settings: Settings,
+    known: &SavedLaws,
+    recording: &Recording,
     mut watch: impl FnMut(&Identifier, usize),
 ) -> Result<Identification, BuildError> {
     let fresh = Identifier::new(model, settings)?;
-    let mut found = Identification { stages: Vec::new(), noise_q: None, noise_qd: None, skipped: Vec::new() };
+    let mut found = Identification {
+        stages: Vec::new(),
+        noise_q: None,
+        noise_qd: None,
+        known_laws: known.clone(),
+        skipped: Vec::new(),
+    };
     for piece in recording.pieces() {
-        follow(fresh.clone(), recording, piece, &mut found, &mut watch);
+        let identifier = fresh.clone().with_known_laws(&found.known_laws)?;
+        follow(identifier, recording, piece, &mut found, &mut watch);
     }
     Ok(found)
 }
@@ -122,6 +149,7 @@ fn follow(
     }
     present.unidentifiable = identifier.unidentifiable();
     found.stages.push(present);
+    found.known_laws = identifier.known_laws();
     found.noise_q = identifier.output().noise_q.or(found.noise_q);
     found.noise_qd = identifier.output().noise_qd.or(found.noise_qd);
 }
@@ -132,6 +160,8 @@ fn begin(identifier: &Identifier, start: f64) -> Stage {
         end: start,
         detected: identifier.output().detection_time,
         identified: None,
+        law_number: None,
+        recognised: false,
         coefficients: identifier.coefficients().to_vec(),
         unidentifiable: identifier.unidentifiable(),
     }
@@ -139,6 +169,8 @@ fn begin(identifier: &Identifier, start: f64) -> Stage {
 
 fn renew(stage: &mut Stage, identifier: &Identifier, t: f64) {
     stage.end = t;
-    stage.identified = identifier.output().identified_time;
+    let output = identifier.output();
+    stage.identified = output.identified_time;
+    (stage.law_number, stage.recognised) = (output.law_number, output.recognised);
     stage.coefficients.copy_from_slice(identifier.coefficients());
 }

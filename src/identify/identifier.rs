@@ -2,6 +2,7 @@
 
 use super::problem::Problem;
 use super::publication::Publication;
+use super::saved::{SavedLaws, SavedLawsError};
 use super::settings::{Method, Settings, SettingsError};
 use super::tracker::Tracker;
 use crate::evidence::Missing;
@@ -99,6 +100,10 @@ pub struct Output {
     pub detection_time: Option<f64>,
     /// First time at which the present law was vouched for (stated covariance puts e below 0.05²), s.
     pub identified_time: Option<f64>,
+    /// Number of the law in use among those that were vouched for, 1 for the first of all; `None` while there is none.
+    pub law_number: Option<u32>,
+    /// Whether that law was recognised as one seen before, not identified anew.
+    pub recognised: bool,
     /// What the identifier is doing.
     pub status: Status,
     /// Whether the present law is vouched for.
@@ -128,6 +133,9 @@ pub enum BuildError {
     /// The model is refused.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// The known laws are refused.
+    #[error(transparent)]
+    Laws(#[from] SavedLawsError),
 }
 
 /// The procedure at work.
@@ -178,6 +186,8 @@ impl Identifier {
             switch_time: 0.0,
             detection_time: None,
             identified_time: None,
+            law_number: None,
+            recognised: false,
             status: Status::Acquiring,
             valid: false,
             deviation: 0.0,
@@ -236,6 +246,25 @@ impl Identifier {
             Some(previous) if t - previous < 0.5 * self.settings.sample_time => Err(Skipped::TooSoon { t }),
             _ => Ok(()),
         }
+    }
+
+    /// The laws that it knows, the present one among them where it is vouched for; none of the publication's method.
+    pub fn known_laws(&self) -> SavedLaws {
+        match &self.engine {
+            Engine::Default(tracker) => tracker.known_laws(&self.problem, &self.output),
+            Engine::Publication(_) => SavedLaws::default(),
+        }
+    }
+
+    /// The same identifier with laws to recognise, from before its first sample; the publication's method recognises none.
+    ///
+    /// # Errors
+    /// [`SavedLawsError`] where they belong to another model or make no sense.
+    pub fn with_known_laws(mut self, saved: &SavedLaws) -> Result<Identifier, SavedLawsError> {
+        if let Engine::Default(tracker) = &mut self.engine {
+            tracker.learn(&self.problem, saved)?;
+        }
+        Ok(self)
     }
 
     /// The settings it was built with.

@@ -7,6 +7,7 @@
 //! becomes the maximum likelihood of the trajectory without passing through its wrong minima.
 
 use super::blocks::Blocks;
+use super::known::KnownLaw;
 use super::problem::Problem;
 use super::scales::Scales;
 use super::settings::Settings;
@@ -54,6 +55,9 @@ const NOISE_FLOOR: f64 = 3e-7;
 
 /// Noise levels that move by less than this part have come to rest, whatever a level out of reach promises.
 const AT_REST: f64 = 0.05;
+
+/// For how many samples the sensor noise of the last stage counts in the next one.
+pub const NOISE_MEMORY: f64 = 500.0;
 
 /// The record of a stage is folded into a prior when it fills this fraction of the window.
 const FULL: f64 = 0.9;
@@ -241,6 +245,21 @@ impl Stage {
         self.begin_pass(problem, window);
     }
 
+    /// Begins a stage at sample `start` with a law that is known: its coefficients, and its information beside the record's.
+    pub fn begin_known(&mut self, problem: &Problem, window: &Window, start: u64, law: &KnownLaw, noise: Noise) {
+        let prior = Prior {
+            centre: &law.coefficients,
+            std: &law.spread,
+            log_inertia: 1.0,
+            structure: Some(&law.active),
+            noise_weight: NOISE_MEMORY,
+        };
+        self.begin(problem, window, start, &law.coefficients, prior, noise);
+        self.active.copy_from_slice(&law.active);
+        self.prior.clone_from_slices(&law.information);
+        self.inertia_prior = None;
+    }
+
     /// Number of samples in the stage's record up to `end`.
     pub fn length(&self, end: u64) -> u64 {
         end.saturating_sub(self.start)
@@ -277,6 +296,11 @@ impl Stage {
         }
         self.close(problem, settings, window);
         true
+    }
+
+    /// What the record of the pass just closed says about `coefficients`, without the prior; until the next one begins.
+    pub fn record(&self) -> &Information {
+        &self.pass.information
     }
 
     /// Whether the last passes agree: the estimate is at the likelihood's maximum, to within a fraction of its std.
@@ -490,7 +514,7 @@ fn differ_by(new: &[f64], old: &[f64]) -> f64 {
 }
 
 /// The state at the first sample, from that sample and the next alone.
-fn first_state(problem: &Problem, window: &Window, start: u64, noise: &Noise) -> Filter {
+pub(super) fn first_state(problem: &Problem, window: &Window, start: u64, noise: &Noise) -> Filter {
     let [first, second] = [start, (start + 1).min(window.end() - 1)].map(|number| *window.sample(number));
     let [q, qd] = noise.sensor;
     let dt = (second.t - first.t).max(f64::MIN_POSITIVE);

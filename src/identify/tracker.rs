@@ -4,19 +4,23 @@ mod contest;
 mod live;
 mod loudness;
 mod published;
+mod recognition;
 mod switch;
 
 use super::deviation::Deviation;
 use super::identifier::{Coefficient, Output, Status};
+use super::known::KnownLaws;
 use super::problem::Problem;
 use super::roughness::Roughness;
 use super::settings::Settings;
 use super::stage::{Stage, TRUSTED};
 use super::start::Start;
+use super::trials::Trials;
 use super::usual::Usual;
 use super::window::Window;
 use crate::evidence::{Bank, Law};
 use live::Live;
+use recognition::Lingering;
 use serde::{Deserialize, Serialize};
 
 /// Hypotheses of a switch that are kept.
@@ -79,6 +83,19 @@ pub struct Tracker {
     all_active: Vec<bool>,
     change: Vec<f64>,
     centre: Vec<f64>,
+    known: KnownLaws,
+    trials: Trials,
+    /// Place of the known law that the stage was recognised as.
+    recognised: Option<usize>,
+    /// Whether that law's trial has confirmed it.
+    confirmed: bool,
+    /// Place of the known law that is to be recognised in this step.
+    in_sight: Option<usize>,
+    lingering: Option<Lingering>,
+    /// Start of a record on which the known laws are to be tried as soon as it has begun.
+    trial_due: Option<u64>,
+    /// Samples that the recognised law is known from.
+    experience: u64,
 }
 
 /// Where the identification stands.
@@ -119,6 +136,14 @@ impl Tracker {
             all_active: vec![true; n],
             change: vec![0.0; n],
             centre: vec![0.0; n],
+            known: KnownLaws::new(n),
+            trials: Trials::new(problem),
+            recognised: None,
+            confirmed: false,
+            in_sight: None,
+            lingering: None,
+            trial_due: Some(0),
+            experience: 0,
         }
     }
 
@@ -128,6 +153,7 @@ impl Tracker {
         known.then_some(self.stage.likelihood)
     }
 
+    /// Takes an accepted sample.
     pub fn step(
         &mut self,
         problem: &Problem,
@@ -143,12 +169,14 @@ impl Tracker {
         self.window.push(sample);
         self.measure_roughness(problem, output);
         self.follow(problem, settings, output);
+        self.begin_trial(problem, settings);
+        let used = self.try_known(problem, settings, published, output);
         if !output.valid {
             self.begin_afresh();
             self.challenge(problem, settings);
         }
         self.challenge_noise(problem, settings);
-        self.refine_challenger(problem, settings);
+        self.refine_challenger(problem, settings, BUDGET[1] - used);
         if self.phase == Phase::Refining {
             self.refine(problem, settings, published, output);
         }
@@ -204,12 +232,15 @@ impl Tracker {
         if suspense || !self.stage.refine(problem, settings, &self.window, budget) {
             return;
         }
+        if self.leave(problem, settings, output) {
+            return;
+        }
         output.missing = self.stage.missing;
         let worth_showing = self.stage.settled() && self.stage.stated_error() < TRUSTED;
         let worth_monitoring = worth_showing && self.stage.stands();
         if worth_showing {
             self.set_spread(problem);
-            self.publish(problem, published, output);
+            self.publish(problem, settings, published, output);
         }
         if worth_monitoring || (self.live.running && self.stage.is_calm()) {
             self.monitor_new_law(problem, output.valid);
@@ -230,6 +261,8 @@ impl Tracker {
                 true => self.bank.shift(&self.change),
                 false => self.bank.clear(),
             }
+        } else {
+            self.end_lingering();
         }
         self.live.adopt(problem, &mut self.stage, &self.window);
         self.set_spread(problem);
@@ -248,4 +281,9 @@ impl Tracker {
             self.spread[index] = if slope > 0.0 { SWITCH_SIZE * acceleration / slope } else { 1e9 };
         }
     }
+}
+
+/// Evidence that chance reaches once in the false-alarm interval, nats.
+fn alarm_level(settings: &Settings) -> f64 {
+    (settings.false_alarm_interval / settings.sample_time).ln().max(3.0)
 }

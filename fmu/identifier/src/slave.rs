@@ -3,13 +3,16 @@
 use crate::parameters::{Parameters, position};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use switchid::identify::{Identifier, OutputValue, Outputs, Sample, Skipped};
+use switchid::identify::{Identifier, OutputValue, Outputs, Sample, SavedLaws, SavedLawsError, Skipped};
 use switchid::law::{Model, ModelError, Term};
 use switchid_fmu_slave::{Category, Description, Log, Slave, SlaveError, Value, Values};
 use thiserror::Error;
 
 /// The model's file in the resources.
 const MODEL_FILE: &str = "model.toml";
+
+/// The known laws' file in the resources, where there is one.
+const LAWS_FILE: &str = "laws.toml";
 
 /// Why the resources are refused.
 #[derive(Debug, Error)]
@@ -30,12 +33,21 @@ pub enum ResourceError {
         /// Why.
         source: ModelError,
     },
+    /// The known laws are refused.
+    #[error("{path}: {source}")]
+    Laws {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: SavedLawsError,
+    },
 }
 
 /// The identifier with the places of its variables.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct IdentifierSlave {
     library: Model,
+    known: SavedLaws,
     inputs: [usize; 3],
     parameters: Parameters,
     /// Value references in the order of [`Outputs::describe`].
@@ -62,13 +74,14 @@ impl Slave for IdentifierSlave {
             parameters: Parameters::find(description)?,
             output_references,
             library,
+            known: read_laws(&resources.join(LAWS_FILE))?,
             running: None,
         })
     }
 
     fn start(&mut self, _time: f64, values: &mut Values, _log: &mut Log) -> Result<(), SlaveError> {
         let model = self.parameters.model(&self.library, values)?;
-        let identifier = Identifier::new(&model, self.parameters.settings(values))?;
+        let identifier = Identifier::new(&model, self.parameters.settings(values))?.with_known_laws(&self.known)?;
         let outputs = Outputs::new(&terms(&self.library), &identifier);
         let running = Running { identifier, outputs, thinning_said: false };
         running.publish(&self.output_references, values);
@@ -140,4 +153,13 @@ fn read_model(path: &Path) -> Result<Model, ResourceError> {
     let text =
         std::fs::read_to_string(path).map_err(|source| ResourceError::Missing { path: path.to_path_buf(), source })?;
     Model::from_toml(&text).map_err(|source| ResourceError::Model { path: path.to_path_buf(), source })
+}
+
+fn read_laws(path: &Path) -> Result<SavedLaws, ResourceError> {
+    if !path.exists() {
+        return Ok(SavedLaws::default());
+    }
+    let text =
+        std::fs::read_to_string(path).map_err(|source| ResourceError::Missing { path: path.to_path_buf(), source })?;
+    SavedLaws::from_toml(&text).map_err(|source| ResourceError::Laws { path: path.to_path_buf(), source })
 }

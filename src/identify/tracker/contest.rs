@@ -1,6 +1,6 @@
 //! Challengers of the law that a stage stands on: from the weak rows of its record, and with its error in the sensors.
 
-use super::{BUDGET, INERTIA_SPREAD, PRIOR_WIDTH, Phase, Tracker};
+use super::{INERTIA_SPREAD, PRIOR_WIDTH, Phase, Tracker};
 use crate::evidence::Noise;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
@@ -109,8 +109,8 @@ impl Tracker {
     }
 
     /// Refines the challenger; it takes the stage's place when it explains the record better.
-    pub(super) fn refine_challenger(&mut self, problem: &Problem, settings: &Settings) {
-        if !self.challenging || !self.challenger.refine(problem, settings, &self.window, BUDGET[1]) {
+    pub(super) fn refine_challenger(&mut self, problem: &Problem, settings: &Settings, budget: usize) {
+        if !self.challenging || !self.challenger.refine(problem, settings, &self.window, budget) {
             return;
         }
         if self.challenger.settled() {

@@ -4,8 +4,10 @@ use super::loudness::Loudness;
 use super::{Stage, Tracker};
 use crate::evidence::{Innovation, Noise, Observation, Pass};
 use crate::identify::identifier::Output;
+use crate::identify::known::KnownLaw;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
+use crate::identify::trials::Trials;
 use crate::identify::window::Window;
 use crate::law::{Motion, State};
 use serde::{Deserialize, Serialize};
@@ -99,6 +101,27 @@ impl Live {
             self.loudness = Loudness::USUAL;
             self.restart_prediction(last);
         }
+        self.next = window.ready();
+        self.running = true;
+    }
+
+    /// Takes over a known law and the run of its trial.
+    pub(super) fn adopt_known(
+        &mut self,
+        problem: &Problem,
+        law: &KnownLaw,
+        trials: &mut Trials,
+        place: usize,
+        window: &Window,
+    ) {
+        self.noise = trials.noise(place);
+        trials.hand_over(place, problem, window, &mut self.pass);
+        self.pass.information.merge(&law.information);
+        self.all.copy_from_slice(&problem.known);
+        problem.scatter(&law.coefficients, &mut self.all);
+        self.active.copy_from_slice(&law.active);
+        self.covariance.copy_from_slice(&law.covariance);
+        self.restart_prediction(window.sample(window.ready() - 1).t);
         self.next = window.ready();
         self.running = true;
     }

@@ -3,6 +3,7 @@
 use super::{Phase, Tracker};
 use crate::identify::identifier::{Coefficient, Output, Status};
 use crate::identify::problem::Problem;
+use crate::identify::settings::Settings;
 use crate::identify::stage::TRUSTED;
 
 /// e below this square vouches for a law.
@@ -23,7 +24,13 @@ impl Tracker {
         directions.iter().map(|direction| problem.together(direction)).collect()
     }
 
-    pub(super) fn publish(&mut self, problem: &Problem, published: &mut [Coefficient], output: &mut Output) {
+    pub(super) fn publish(
+        &mut self,
+        problem: &Problem,
+        settings: &Settings,
+        published: &mut [Coefficient],
+        output: &mut Output,
+    ) {
         for (index, coefficient) in published.iter_mut().enumerate() {
             match problem.free.iter().position(|free| *free == index) {
                 None => (coefficient.value, coefficient.std) = (problem.known[index], Some(0.0)),
@@ -40,6 +47,7 @@ impl Tracker {
         output.noise_qd = problem.channels.qd.then(|| std(1));
         if self.stage.stands() && self.stage.stated_error() < VOUCHED {
             output.valid = true;
+            self.number_law(settings, output);
             output.identified_time.get_or_insert(self.now());
             if output.status != Status::SwitchSuspected {
                 output.status = Status::Tracking;

@@ -5,10 +5,7 @@ use crate::evidence::{Noise, Suspect};
 use crate::identify::identifier::{Output, Status};
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
-use crate::identify::stage::Prior;
-
-/// For how many samples the sensor noise of the last stage counts in the next one.
-const NOISE_MEMORY: f64 = 500.0;
+use crate::identify::stage::{NOISE_MEMORY, Prior};
 
 /// A law from this many samples needs twice the evidence: its information is that of a linearisation, whose error falls as the
 /// record grows.
@@ -31,12 +28,18 @@ impl Tracker {
         self.start.begin(end);
         (self.phase, self.challenging, self.challenged_from) = (Phase::Gathering, false, end);
         (self.next_guess, self.next_noise_challenge) = (0, 0);
+        self.trials.end();
+        self.lingering = None;
+        (self.recognised, self.confirmed, self.in_sight) = (None, false, None);
+        (self.trial_due, self.experience) = (Some(end), 0);
+        (output.law_number, output.recognised) = (None, false);
         (output.status, output.valid, output.identified_time) = (Status::Acquiring, false, None);
     }
 
     /// Alarm, suspicion, or neither.
     pub(super) fn judge(&mut self, problem: &Problem, settings: &Settings, suspect: &Suspect, output: &mut Output) {
-        let doubt = self.stage.overdispersion * (1.0 + DOUBT / self.stage.length(self.window.ready()).max(1) as f64);
+        let samples = self.stage.length(self.window.ready()) + self.experience;
+        let doubt = self.stage.overdispersion * (1.0 + DOUBT / samples.max(1) as f64);
         let doubt = if output.valid { doubt } else { UNPROVEN * doubt };
         let level = doubt * (settings.false_alarm_interval / (TRIAL * settings.sample_time)).ln().max(3.0);
         let level = level.max(self.usual.level(-TRIAL.ln()));
@@ -64,6 +67,10 @@ impl Tracker {
         let last = self.window.ready() - 1;
         let instant = self.bank.likeliest_start(&suspect, level);
         let start = (self.bank.after(&suspect, level) + 1).min(last);
+        if self.is_unconfirmed() {
+            return self.take_back(problem, start, output);
+        }
+        self.keep_law(problem, output);
         self.bank.change(&suspect, &mut self.change);
         self.set_spread(problem);
         let plausible = self.change.iter().zip(&self.spread).all(|(change, spread)| change.abs() < 2.0 * spread);
@@ -71,6 +78,30 @@ impl Tracker {
             *centre = self.live.all[problem.free[index]];
             *change = if plausible { *centre + *change } else { *centre };
         }
+        self.begin_new_law(problem, start);
+        let sensor = self.live.noise.sensor.map(Some);
+        self.trials.begin(&self.known, problem, &self.window, start, sensor);
+        (self.recognised, self.confirmed, self.experience) = (None, false, 0);
+        self.start.begin(start);
+        (self.challenging, self.challenged_from) = (false, start);
+        (self.next_guess, self.next_noise_challenge) = (0, 0);
+        self.live.running = false;
+        self.linger(instant, output.law_number);
+        self.deviation.clear();
+        self.usual_deviation = 0.0;
+        self.usual.clear();
+        output.switch_count += 1;
+        output.switch_time = self.window.sample(instant).t;
+        output.detection_time = Some(self.now());
+        output.identified_time = None;
+        output.missing = None;
+        output.valid = false;
+        (output.law_number, output.recognised) = (None, false);
+        output.status = Status::ReIdentifying;
+    }
+
+    /// Begins the stage of a law that nobody has seen, from `change`, believed to lie about `centre`.
+    pub(super) fn begin_new_law(&mut self, problem: &Problem, start: u64) {
         let acceleration = self.stage.scales.restoring_acceleration();
         let process = (SWITCH_SIZE * acceleration).powi(2) * 0.1;
         let noise = Noise { sensor: self.live.noise.sensor, process: process.max(self.live.noise.process) };
@@ -85,21 +116,6 @@ impl Tracker {
             noise_weight: self.noise_weight,
         };
         self.stage.begin(problem, &self.window, start, &self.change, prior, noise);
-        self.start.begin(start);
-        (self.challenging, self.challenged_from) = (false, start);
-        (self.next_guess, self.next_noise_challenge) = (0, 0);
-        self.live.running = false;
-        self.bank.clear();
-        self.deviation.clear();
-        self.usual_deviation = 0.0;
-        self.usual.clear();
-        output.switch_count += 1;
-        output.switch_time = self.window.sample(instant).t;
-        output.detection_time = Some(self.now());
-        output.identified_time = None;
-        output.missing = None;
-        output.valid = false;
-        output.status = Status::ReIdentifying;
     }
 }
 
