@@ -6,6 +6,7 @@
 mod blocks;
 mod capture;
 mod deviation;
+mod drift;
 mod equations;
 mod identification;
 mod identifier;
@@ -15,6 +16,7 @@ mod problem;
 mod publication;
 mod recording;
 mod scales;
+mod section;
 mod settings;
 mod stage;
 mod start;

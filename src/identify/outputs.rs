@@ -69,7 +69,7 @@ pub struct Outputs {
     places: Vec<Option<usize>>,
 }
 
-const SCALARS: [(&str, OutputKind, &str); 14] = [
+const SCALARS: [(&str, OutputKind, &str); 15] = [
     ("switch.count", OutputKind::Count, "Switches detected so far"),
     ("switch.time", OutputKind::Real(Some("s")), "Estimated instant at which the present stage began"),
     (
@@ -100,6 +100,7 @@ const SCALARS: [(&str, OutputKind, &str); 14] = [
         OutputKind::Real(None),
         "Log-likelihood that missing.effect would gain, less that of chance among all candidates, nats",
     ),
+    ("drifting", OutputKind::Flag, "Whether the coefficients move: they are followed as they go"),
 ];
 
 impl Outputs {
@@ -155,6 +156,7 @@ fn scalars(identifier: &Identifier) -> [OutputValue; SCALARS.len()] {
         or_unknown(output.identified_time),
         OutputValue::Effect(output.missing.map_or(1, |missing| missing.entry as u8 + 2)),
         OutputValue::Real(output.missing.map_or(0.0, |missing| missing.evidence)),
+        OutputValue::Flag(output.drifting),
     ]
 }
 

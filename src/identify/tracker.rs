@@ -1,11 +1,13 @@
 //! Our method: acquire → track → suspect → re-identify.
 
 mod contest;
+mod drifting;
 mod live;
 mod published;
 mod switch;
 
 use super::deviation::Deviation;
+use super::drift::Drift;
 use super::identifier::{Coefficient, Output, Status};
 use super::problem::Problem;
 use super::settings::Settings;
@@ -52,6 +54,9 @@ const SUSPENSE: u64 = 1000;
 pub struct Tracker {
     window: Window,
     start: Start,
+    drift: Drift,
+    /// Whether coefficients that moved are being tried for a constant law.
+    resting: bool,
     stage: Stage,
     challenger: Stage,
     challenging: bool,
@@ -90,6 +95,8 @@ impl Tracker {
         Tracker {
             window: Window::new(capacity, problem.channels, problem.hold),
             start: Start::new(problem, capacity),
+            drift: Drift::new(problem, capacity),
+            resting: false,
             stage: Stage::new(problem),
             challenger: Stage::new(problem),
             challenging: false,
@@ -132,7 +139,20 @@ impl Tracker {
         }
         self.window.push(sample);
         self.follow(problem, settings, output);
-        if !output.valid {
+        if !output.drifting || self.resting {
+            self.seek_constant_law(problem, settings, published, output);
+        }
+        self.track_drift(problem, settings, published, output);
+    }
+
+    fn seek_constant_law(
+        &mut self,
+        problem: &Problem,
+        settings: &Settings,
+        published: &mut [Coefficient],
+        output: &mut Output,
+    ) {
+        if !output.valid || output.drifting {
             self.begin_afresh();
             self.challenge(problem, settings);
         }

@@ -24,6 +24,10 @@ impl Tracker {
     }
 
     pub(super) fn publish(&mut self, problem: &Problem, published: &mut [Coefficient], output: &mut Output) {
+        let vouched = self.stage.stands() && self.stage.stated_error() < VOUCHED;
+        if output.drifting && !vouched {
+            return;
+        }
         for (index, coefficient) in published.iter_mut().enumerate() {
             match problem.free.iter().position(|free| *free == index) {
                 None => (coefficient.value, coefficient.std) = (problem.known[index], Some(0.0)),
@@ -32,8 +36,8 @@ impl Tracker {
         }
         output.noise_q = problem.channels.q.then(|| self.stage.noise.sensor[0].sqrt());
         output.noise_qd = problem.channels.qd.then(|| self.stage.noise.sensor[1].sqrt());
-        if self.stage.stands() && self.stage.stated_error() < VOUCHED {
-            output.valid = true;
+        if vouched {
+            (output.valid, output.drifting) = (true, false);
             output.identified_time.get_or_insert(self.now());
             if output.status != Status::SwitchSuspected {
                 output.status = Status::Tracking;

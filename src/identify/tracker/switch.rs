@@ -42,7 +42,10 @@ impl Tracker {
         let given = settings.deviation_threshold;
         let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
         if suspect.evidence > level || deviates {
-            self.switch(problem, suspect, level, output);
+            match self.drift.is_moving() {
+                true => self.begin_drift(output),
+                false => self.switch(problem, suspect, level, output),
+            }
         } else if output.status == Status::Tracking && suspect.evidence > 0.5 * level {
             output.status = Status::SwitchSuspected;
             if self.renewed {
@@ -82,6 +85,7 @@ impl Tracker {
         };
         self.stage.begin(problem, &self.window, start, &self.change, prior, noise);
         self.start.begin(start);
+        self.drift.restart(start);
         (self.challenging, self.challenged_from) = (false, start);
         (self.next_guess, self.next_noise_challenge) = (0, 0);
         self.live.running = false;
