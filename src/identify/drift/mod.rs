@@ -37,7 +37,7 @@ const MEMORY: f64 = 16.0;
 const SEEN: f64 = 20.0;
 
 /// Evidence of wandering, nats, that must have lasted …
-const MOVING: f64 = 10.0;
+const MOVING: f64 = 6.0;
 
 /// … for this many rows: a jump is far from every constant law for the length of a variation.
 const LASTING: u32 = 2 * OVERLAP as u32;
