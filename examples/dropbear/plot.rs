@@ -43,7 +43,7 @@ pub fn svg(beam: &Beam, modes: &[Option<Mode>]) -> Drawn<String> {
         let measured = (0..beam.t.len()).step_by(STRIDE).map(|k| (beam.t[k], beam.frequency[k]));
         let style = MEASURED.stroke_width(2);
         chart
-            .draw_series(LineSeries::new(measured, style))?
+            .draw_series([PathElement::new(measured.collect::<Vec<_>>(), style)])?
             .label("from the measured roller")
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
         let style = IDENTIFIED.stroke_width(2);
