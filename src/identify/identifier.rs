@@ -108,6 +108,8 @@ pub struct Output {
     pub status: Status,
     /// Whether the present law is vouched for.
     pub valid: bool,
+    /// Whether the coefficients move: they are followed as they go, and vouched for as long as their stated e is below 0.2².
+    pub drifting: bool,
     /// Deviation of eq. (4) over T; 0 before the first law.
     pub deviation: f64,
     /// The deviation that is out of the ordinary.
@@ -190,6 +192,7 @@ impl Identifier {
             recognised: false,
             status: Status::Acquiring,
             valid: false,
+            drifting: false,
             deviation: 0.0,
             threshold: 0.0,
             prediction_q: 0.0,

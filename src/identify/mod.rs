@@ -6,6 +6,7 @@
 mod blocks;
 mod capture;
 mod deviation;
+mod drift;
 mod equations;
 mod identification;
 mod identifier;
@@ -18,6 +19,7 @@ mod recording;
 mod roughness;
 mod saved;
 mod scales;
+mod section;
 mod settings;
 mod stage;
 mod start;

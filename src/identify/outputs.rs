@@ -69,7 +69,7 @@ pub struct Outputs {
     places: Vec<Option<usize>>,
 }
 
-const SCALARS: [(&str, OutputKind, &str); 15] = [
+const SCALARS: [(&str, OutputKind, &str); 16] = [
     ("switch.count", OutputKind::Count, "Switches detected so far"),
     ("switch.time", OutputKind::Real(Some("s")), "Estimated instant at which the present stage began"),
     (
@@ -105,6 +105,7 @@ const SCALARS: [(&str, OutputKind, &str); 15] = [
         OutputKind::Count,
         "Number of the law in use among those vouched for so far, the same whenever it returns; 0 while there is none",
     ),
+    ("drifting", OutputKind::Flag, "Whether the coefficients move: they are followed as they go"),
 ];
 
 impl Outputs {
@@ -161,6 +162,7 @@ fn scalars(identifier: &Identifier) -> [OutputValue; SCALARS.len()] {
         OutputValue::Effect(output.missing.map_or(1, |missing| missing.entry as u8 + 2)),
         OutputValue::Real(output.missing.map_or(0.0, |missing| missing.evidence)),
         OutputValue::Count(output.law_number.unwrap_or(0)),
+        OutputValue::Flag(output.drifting),
     ]
 }
 

@@ -5,9 +5,9 @@
 //! ones have too few rows.
 
 use super::problem::Problem;
+use super::section::SectionBuffer;
 use super::window::Window;
-use crate::law::Hold;
-use crate::weak::{Fit, Regression, Row, Section, Variation};
+use crate::weak::{Fit, Regression, Row, Variation};
 use serde::{Deserialize, Serialize};
 
 /// Samples in the shortest variation.
@@ -47,14 +47,6 @@ struct Scale {
     noise: Vec<[f64; 2]>,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct SectionBuffer {
-    t: Vec<f64>,
-    q: Vec<f64>,
-    qd: Vec<f64>,
-    excitation: Vec<f64>,
-}
-
 /// What the best length says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guess<'a> {
@@ -76,10 +68,9 @@ impl Start {
         let lengths = (0..).map(|octave| SHORTEST << octave).take_while(|length| *length <= longest);
         let scale =
             |length| Scale { length, next: 0, regression: Regression::new(n), norm: 0.0, noise: vec![[0.0; 2]; n] };
-        let empty = vec![0.0; longest + 1];
         Start {
             scales: lengths.map(scale).collect(),
-            section: SectionBuffer { t: empty.clone(), q: empty.clone(), qd: empty.clone(), excitation: empty },
+            section: SectionBuffer::new(longest + 1),
             row: Row::new(problem.terms.len()),
             equation: vec![0.0; n],
             fit: Fit::new(n),
@@ -192,52 +183,5 @@ impl Scale {
         terms
             .map(|index| fit.spread[index] * (self.noise[index][0] * sensor[0] + self.noise[index][1] * sensor[1]))
             .fold(0.0, f64::max)
-    }
-}
-
-impl SectionBuffer {
-    fn load(&mut self, problem: &Problem, window: &Window, first: u64, last: u64) {
-        for (slot, number) in (first..=last).enumerate() {
-            let sample = window.sample(number);
-            self.t[slot] = sample.t;
-            self.q[slot] = sample.q;
-            self.qd[slot] = sample.qd;
-            self.excitation[slot] = if problem.channels.excitation { sample.excitation } else { 0.0 };
-        }
-        let length = (last - first) as usize + 1;
-        if !problem.channels.qd {
-            differentiate(&self.t[..length], &self.q[..length], &mut self.qd[..length]);
-        }
-        if !problem.channels.q {
-            integrate(&self.t[..length], &self.qd[..length], &mut self.q[..length]);
-        }
-    }
-
-    fn view(&self, problem: &Problem, length: usize) -> Section<'_> {
-        Section {
-            t: &self.t[..length],
-            q: &self.q[..length],
-            qd: &self.qd[..length],
-            qd_measured: problem.channels.qd,
-            excitation: &self.excitation[..length],
-            hold: if problem.channels.excitation { problem.hold } else { Hold::Zero },
-        }
-    }
-}
-
-/// Central differences over two samples on each side, fewer at the ends.
-fn differentiate(t: &[f64], q: &[f64], qd: &mut [f64]) {
-    let last = t.len() - 1;
-    for (k, slope) in qd.iter_mut().enumerate() {
-        let (from, to) = (k.saturating_sub(2), (k + 2).min(last));
-        *slope = (q[to] - q[from]) / (t[to] - t[from]);
-    }
-}
-
-/// Trapezoidal sum from 0: the displacement up to a constant.
-fn integrate(t: &[f64], qd: &[f64], q: &mut [f64]) {
-    q[0] = 0.0;
-    for k in 1..t.len() {
-        q[k] = q[k - 1] + 0.5 * (t[k] - t[k - 1]) * (qd[k] + qd[k - 1]);
     }
 }

@@ -1,6 +1,7 @@
 //! Our method: acquire → track → suspect → re-identify.
 
 mod contest;
+mod drifting;
 mod live;
 mod loudness;
 mod published;
@@ -8,6 +9,7 @@ mod recognition;
 mod switch;
 
 use super::deviation::Deviation;
+use super::drift::Drift;
 use super::identifier::{Coefficient, Output, Status};
 use super::known::KnownLaws;
 use super::problem::Problem;
@@ -61,6 +63,9 @@ const ROUGHLY: u64 = 500;
 pub struct Tracker {
     window: Window,
     start: Start,
+    drift: Drift,
+    /// Whether coefficients that moved are being tried for a constant law.
+    resting: bool,
     stage: Stage,
     challenger: Stage,
     challenging: bool,
@@ -115,6 +120,8 @@ impl Tracker {
         Tracker {
             window: Window::new(capacity, problem.channels, problem.hold),
             start: Start::new(problem, capacity),
+            drift: Drift::new(problem, capacity),
+            resting: false,
             stage: Stage::new(problem),
             challenger: Stage::new(problem),
             challenging: false,
@@ -169,9 +176,22 @@ impl Tracker {
         self.window.push(sample);
         self.measure_roughness(problem, output);
         self.follow(problem, settings, output);
+        if !output.drifting || self.resting {
+            self.seek_constant_law(problem, settings, published, output);
+        }
+        self.track_drift(problem, settings, published, output);
+    }
+
+    fn seek_constant_law(
+        &mut self,
+        problem: &Problem,
+        settings: &Settings,
+        published: &mut [Coefficient],
+        output: &mut Output,
+    ) {
         self.begin_trial(problem, settings);
         let used = self.try_known(problem, settings, published, output);
-        if !output.valid {
+        if !output.valid || output.drifting {
             self.begin_afresh();
             self.challenge(problem, settings);
         }

@@ -36,21 +36,39 @@ pub struct Row {
     pub excitation: f64,
     /// ∫ φ² dt, s.
     pub norm: f64,
+    /// What the same noise adds to the variance of the residual of the law that the row was formed about.
+    pub residual_noise: [f64; 2],
+    /// Its covariance of that residual with each term's integral: the bias of least squares (errors in variables).
+    pub shared_noise: Vec<[f64; 2]>,
+    /// The integrands' derivatives by (q, q̇) of one sample.
+    gradients: Vec<[f64; 2]>,
 }
 
 impl Row {
     /// Room for `n` terms.
     pub fn new(n: usize) -> Row {
-        Row { terms: vec![0.0; n], noise: vec![[0.0; 2]; n], excitation: 0.0, norm: 0.0 }
+        let pairs = || vec![[0.0; 2]; n];
+        Row {
+            terms: vec![0.0; n],
+            noise: pairs(),
+            excitation: 0.0,
+            norm: 0.0,
+            residual_noise: [0.0; 2],
+            shared_noise: pairs(),
+            gradients: pairs(),
+        }
     }
 
     /// Integrates over the section. Trapezoidal in the terms, which for an integrand that vanishes smoothly at both ends is of
     /// second order where the excitation jumps at samples and far better where it is smooth; exact in a held or linear
     /// excitation, trapezoidal (spectrally accurate) in a band-limited one.
     pub fn integrate(&mut self, section: &Section, variation: Variation, terms: &[Term]) {
-        self.terms.fill(0.0);
-        self.noise.fill([0.0; 2]);
-        (self.excitation, self.norm) = (0.0, 0.0);
+        self.integrate_about(section, variation, terms, &[]);
+    }
+
+    /// The same with the noise of a law's residual: `law` has a coefficient for each term, or none at all.
+    pub fn integrate_about(&mut self, section: &Section, variation: Variation, terms: &[Term], law: &[f64]) {
+        self.clear();
         let (start, end) = (section.t[0], section.t[section.t.len() - 1]);
         let length = end - start;
         for k in 0..section.t.len() {
@@ -58,11 +76,9 @@ impl Row {
             let weight = half_widths(section.t, k);
             let phi = [weight * value, weight * slope / length, weight * curvature / (length * length)];
             self.norm += phi[0] * value;
-            for ((sum, noise), term) in self.terms.iter_mut().zip(&mut self.noise).zip(terms) {
-                *sum += integrand(*term, section, k, phi);
-                let [by_q, by_qd] = sensitivity(*term, section, k, phi);
-                noise[0] += by_q * by_q;
-                noise[1] += by_qd * by_qd;
+            self.add_sample(section, k, phi, terms);
+            if !law.is_empty() {
+                self.add_residual_noise(law);
             }
             if section.hold == Hold::BandLimited {
                 self.excitation += section.excitation[k] * phi[0];
@@ -70,6 +86,33 @@ impl Row {
         }
         if section.hold != Hold::BandLimited {
             self.excitation = held_excitation(section, variation, start, length);
+        }
+    }
+
+    fn clear(&mut self) {
+        self.terms.fill(0.0);
+        self.noise.fill([0.0; 2]);
+        self.shared_noise.fill([0.0; 2]);
+        (self.excitation, self.norm, self.residual_noise) = (0.0, 0.0, [0.0; 2]);
+    }
+
+    fn add_sample(&mut self, section: &Section, k: usize, phi: [f64; 3], terms: &[Term]) {
+        let sums = self.terms.iter_mut().zip(&mut self.noise).zip(&mut self.gradients);
+        for (((sum, noise), gradient), term) in sums.zip(terms) {
+            *sum += integrand(*term, section, k, phi);
+            *gradient = sensitivity(*term, section, k, phi);
+            noise[0] += gradient[0] * gradient[0];
+            noise[1] += gradient[1] * gradient[1];
+        }
+    }
+
+    fn add_residual_noise(&mut self, law: &[f64]) {
+        for channel in 0..2 {
+            let of_law: f64 = self.gradients.iter().zip(law).map(|(gradient, value)| value * gradient[channel]).sum();
+            self.residual_noise[channel] += of_law * of_law;
+            for (shared, gradient) in self.shared_noise.iter_mut().zip(&self.gradients) {
+                shared[channel] += gradient[channel] * of_law;
+            }
         }
     }
 }

@@ -86,7 +86,9 @@ pub enum Error {
         text: &'static str,
     },
     /// Real records are needed and not there.
-    #[error("{text}: set SWITCHID_DATA to the directory that holds emps/ and silverbox/; in CI no test may be skipped")]
+    #[error(
+        "{text}: set SWITCHID_DATA to the directory that holds emps/, silverbox/ and dropbear/; in CI no test may be skipped"
+    )]
     Data {
         /// What is missing.
         text: String,

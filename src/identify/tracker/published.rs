@@ -31,6 +31,10 @@ impl Tracker {
         published: &mut [Coefficient],
         output: &mut Output,
     ) {
+        let vouched = self.stage.stands() && self.stage.stated_error() < VOUCHED;
+        if output.drifting && !vouched {
+            return;
+        }
         for (index, coefficient) in published.iter_mut().enumerate() {
             match problem.free.iter().position(|free| *free == index) {
                 None => (coefficient.value, coefficient.std) = (problem.known[index], Some(0.0)),
@@ -45,8 +49,8 @@ impl Tracker {
         };
         output.noise_q = problem.channels.q.then(|| std(0));
         output.noise_qd = problem.channels.qd.then(|| std(1));
-        if self.stage.stands() && self.stage.stated_error() < VOUCHED {
-            output.valid = true;
+        if vouched {
+            (output.valid, output.drifting) = (true, false);
             self.number_law(settings, output);
             output.identified_time.get_or_insert(self.now());
             if output.status != Status::SwitchSuspected {

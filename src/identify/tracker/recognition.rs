@@ -68,6 +68,15 @@ impl Tracker {
         self.bank.clear();
     }
 
+    /// No known law is on trial or in use any more.
+    pub(super) fn forget_trials(&mut self, output: &mut Output) {
+        self.trials.end();
+        self.lingering = None;
+        (self.recognised, self.confirmed, self.in_sight) = (None, false, None);
+        (self.trial_due, self.experience) = (None, 0);
+        (output.law_number, output.recognised) = (None, false);
+    }
+
     /// The place of the known law that the bank's hypotheses speak for, other than the one of that number.
     fn in_sight(&mut self, problem: &Problem, settings: &Settings, number: Option<u32>) -> Option<usize> {
         let (mut best, mut next) = ((f64::NEG_INFINITY, 0.0, None), f64::NEG_INFINITY);

@@ -28,11 +28,8 @@ impl Tracker {
         self.start.begin(end);
         (self.phase, self.challenging, self.challenged_from) = (Phase::Gathering, false, end);
         (self.next_guess, self.next_noise_challenge) = (0, 0);
-        self.trials.end();
-        self.lingering = None;
-        (self.recognised, self.confirmed, self.in_sight) = (None, false, None);
-        (self.trial_due, self.experience) = (Some(end), 0);
-        (output.law_number, output.recognised) = (None, false);
+        self.forget_trials(output);
+        self.trial_due = Some(end);
         (output.status, output.valid, output.identified_time) = (Status::Acquiring, false, None);
     }
 
@@ -49,7 +46,10 @@ impl Tracker {
         let given = settings.deviation_threshold;
         let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
         if suspect.evidence > level || deviates {
-            self.switch(problem, suspect, level, output);
+            match self.drift.is_moving() {
+                true => self.begin_drift(output),
+                false => self.switch(problem, suspect, level, output),
+            }
         } else if output.status == Status::Tracking && suspect.evidence > 0.5 * level {
             output.status = Status::SwitchSuspected;
             if self.renewed {
@@ -83,6 +83,7 @@ impl Tracker {
         self.trials.begin(&self.known, problem, &self.window, start, sensor);
         (self.recognised, self.confirmed, self.experience) = (None, false, 0);
         self.start.begin(start);
+        self.drift.restart(start);
         (self.challenging, self.challenged_from) = (false, start);
         (self.next_guess, self.next_noise_challenge) = (0, 0);
         self.live.running = false;

@@ -1,0 +1,174 @@
+//! Coefficients that move while the record runs: slow drift, and moves that are no jumps.
+//!
+//! A stage ([`super::stage`]) has one law. Where none explains its record because the coefficients move, they are tracked here:
+//! weak rows against variations φ with ∫ φ dt = 0, which leave an offset of the sensor out, are the measurements of a random walk
+//! ([`walk`]). How far the coefficients wander and how far the law errs is a bank of rivals ([`length`]), weighed by their predictions.
+//! Long variations keep more noise and faster modes out, short ones follow sooner: the length whose next row is predicted
+//! best, relative to its size, is taken.
+//!
+//! Coefficients that drift are told from constant ones by the likelihood of the rivals that wander to that of those that do not.
+
+mod length;
+mod sensor;
+mod walk;
+
+use super::problem::Problem;
+use super::section::SectionBuffer;
+use super::settings::Settings;
+use super::window::Window;
+use crate::weak::{Row, Variation};
+use length::{Length, OVERLAP};
+use sensor::Sensor;
+use serde::{Deserialize, Serialize};
+
+/// Samples in the shortest variation.
+const SHORTEST: usize = 64;
+
+/// Samples in the longest variation, where the window has room for it.
+const LONGEST: usize = 2048;
+
+/// Odd about its middle, so that its integral is zero; smooth enough to keep faster modes out.
+const VARIATION: Variation = Variation::SmoothSine { mode: 2 };
+
+/// For how many of the longest variations a row counts in the choice of the length.
+const MEMORY: f64 = 16.0;
+
+/// Evidence for any law at all from which on one is shown, nats.
+const SEEN: f64 = 20.0;
+
+/// Evidence of wandering, nats, that must have lasted …
+const MOVING: f64 = 6.0;
+
+/// … for this many rows: a jump is far from every constant law for the length of a variation.
+const LASTING: u32 = 2 * OVERLAP as u32;
+
+/// Coefficients as they move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Drift {
+    lengths: Vec<Length>,
+    sensor: Sensor,
+    section: SectionBuffer,
+    row: Row,
+    chosen: usize,
+    moving: u32,
+}
+
+impl Drift {
+    /// Room for the problem's unknowns and for variations up to a quarter of the window.
+    pub fn new(problem: &Problem, capacity: usize) -> Drift {
+        let longest = LONGEST.min(capacity / 4).max(SHORTEST);
+        let lengths = (0..).map(|octave| SHORTEST << octave).take_while(|samples| *samples <= longest);
+        Drift {
+            lengths: lengths.map(|samples| Length::new(problem, samples)).collect(),
+            sensor: Sensor::default(),
+            section: SectionBuffer::new(longest + 1),
+            row: Row::new(problem.terms.len()),
+            chosen: 0,
+            moving: 0,
+        }
+    }
+
+    /// Forgets the coefficients, but not which length tells most; rows begin at sample `start`.
+    pub fn restart(&mut self, start: u64) {
+        self.lengths.iter_mut().for_each(|length| length.restart(start));
+        self.moving = 0;
+    }
+
+    /// Takes the newest sample of the window and forms at most one row; returns whether the law was renewed. Other lengths than the
+    /// one in use are looked at only when this is to be `thorough`.
+    pub fn step(&mut self, problem: &Problem, settings: &Settings, window: &Window, thorough: bool) -> bool {
+        self.sensor.step(window);
+        if !thorough {
+            self.pass_over(window.end());
+        }
+        let due = |length: &Length| length.next < window.end();
+        let Some(index) = self.lengths.iter().position(due) else { return false };
+        self.form_row(problem, settings, window, index) && self.choose(index)
+    }
+
+    /// Leaves out the rows of the lengths that are not in use.
+    fn pass_over(&mut self, end: u64) {
+        let others = self.lengths.iter_mut().enumerate().filter(|(index, _)| *index != self.chosen);
+        for (_, length) in others.filter(|(_, length)| length.next < end) {
+            length.next += (length.samples / OVERLAP) as u64;
+        }
+    }
+
+    fn form_row(&mut self, problem: &Problem, settings: &Settings, window: &Window, index: usize) -> bool {
+        let longest = self.lengths.last().map_or(0, |length| length.samples) as f64;
+        let length = &mut self.lengths[index];
+        let (first, last) = (length.next - length.samples as u64, length.next);
+        length.next += (length.samples / OVERLAP) as u64;
+        if first < window.oldest() {
+            return false;
+        }
+        self.section.load(problem, window, first, last);
+        let section = self.section.view(problem, length.samples + 1);
+        self.row.integrate_about(&section, VARIATION, &problem.terms, &length.all);
+        let memory = MEMORY * longest * OVERLAP as f64 / length.samples as f64;
+        length.take(problem, &self.row, self.sensor.variances(settings), memory);
+        true
+    }
+
+    /// Takes the length with the best score; returns whether its law is new.
+    fn choose(&mut self, renewed: usize) -> bool {
+        let before = self.chosen;
+        for (index, length) in self.lengths.iter().enumerate() {
+            if length.score() > self.lengths[self.chosen].score() {
+                self.chosen = index;
+            }
+        }
+        if self.chosen != before {
+            self.moving = 0;
+        } else if self.chosen == renewed {
+            self.moving = if self.law().wandering() > MOVING { self.moving + 1 } else { 0 };
+        }
+        self.chosen == renewed
+    }
+
+    fn law(&self) -> &Length {
+        &self.lengths[self.chosen]
+    }
+
+    /// Whether the coefficients move: constant ones have been improbable for some time.
+    pub fn is_moving(&self) -> bool {
+        self.moving >= LASTING
+    }
+
+    /// Whether the record speaks against coefficients that move.
+    pub fn is_at_rest(&self) -> bool {
+        self.law().wandering() < 0.0
+    }
+
+    /// Whether there is a law to be seen at all.
+    pub fn sees(&self) -> bool {
+        self.law().evidence > SEEN
+    }
+
+    /// Free coefficients.
+    pub fn coefficients(&self) -> &[f64] {
+        &self.law().coefficients
+    }
+
+    /// Std of the free coefficient; infinite where the rows do not determine it.
+    pub fn std(&self, free: usize) -> f64 {
+        self.law().variances[free].sqrt()
+    }
+
+    /// Variance that is stated for e of eq. (8), of the coefficients that the rows determine.
+    pub fn stated_error(&self) -> f64 {
+        let law = self.law();
+        let known = law.variances.iter().filter(|variance| variance.is_finite());
+        known.sum::<f64>() / law.all.iter().map(|value| value * value).sum::<f64>()
+    }
+
+    /// Whether the rows say anything of the free coefficient: it is known better than that its term may be as large as the right side.
+    pub fn determines(&self, free: usize) -> bool {
+        self.std(free) < self.law().reach(free)
+    }
+
+    /// One variation of samples, that of the length in use.
+    pub fn length(&self) -> u64 {
+        self.law().samples as u64
+    }
+}

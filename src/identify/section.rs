@@ -1,0 +1,71 @@
+//! A stretch of the window laid out for weak rows, with estimates in place of the channel that is not measured.
+
+use super::problem::Problem;
+use super::window::Window;
+use crate::law::Hold;
+use crate::weak::Section;
+use serde::{Deserialize, Serialize};
+
+/// Room for one section.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SectionBuffer {
+    t: Vec<f64>,
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    excitation: Vec<f64>,
+}
+
+impl SectionBuffer {
+    /// Room for `length` samples.
+    pub fn new(length: usize) -> SectionBuffer {
+        let empty = || vec![0.0; length];
+        SectionBuffer { t: empty(), q: empty(), qd: empty(), excitation: empty() }
+    }
+
+    /// Copies the samples `first` to `last`; a displacement or velocity that is not measured is estimated from the other.
+    pub fn load(&mut self, problem: &Problem, window: &Window, first: u64, last: u64) {
+        for (slot, number) in (first..=last).enumerate() {
+            let sample = window.sample(number);
+            self.t[slot] = sample.t;
+            self.q[slot] = sample.q;
+            self.qd[slot] = sample.qd;
+            self.excitation[slot] = if problem.channels.excitation { sample.excitation } else { 0.0 };
+        }
+        let length = (last - first) as usize + 1;
+        if !problem.channels.qd {
+            differentiate(&self.t[..length], &self.q[..length], &mut self.qd[..length]);
+        }
+        if !problem.channels.q {
+            integrate(&self.t[..length], &self.qd[..length], &mut self.q[..length]);
+        }
+    }
+
+    /// The first `length` samples that were loaded.
+    pub fn view(&self, problem: &Problem, length: usize) -> Section<'_> {
+        Section {
+            t: &self.t[..length],
+            q: &self.q[..length],
+            qd: &self.qd[..length],
+            qd_measured: problem.channels.qd,
+            excitation: &self.excitation[..length],
+            hold: if problem.channels.excitation { problem.hold } else { Hold::Zero },
+        }
+    }
+}
+
+/// Central differences over two samples on each side, fewer at the ends.
+fn differentiate(t: &[f64], q: &[f64], qd: &mut [f64]) {
+    let last = t.len() - 1;
+    for (k, slope) in qd.iter_mut().enumerate() {
+        let (from, to) = (k.saturating_sub(2), (k + 2).min(last));
+        *slope = (q[to] - q[from]) / (t[to] - t[from]);
+    }
+}
+
+/// Trapezoidal sum from 0: the displacement up to a constant.
+fn integrate(t: &[f64], qd: &[f64], q: &mut [f64]) {
+    q[0] = 0.0;
+    for k in 1..t.len() {
+        q[k] = q[k - 1] + 0.5 * (t[k] - t[k - 1]) * (qd[k] + qd[k - 1]);
+    }
+}
