@@ -84,6 +84,26 @@ fn a_full_library_under_noise_is_followed_through_a_switch_without_allocating() 
     assert_silent(Builtin::VanDerPolSine, 0.01, 36.0, &Model::cubic_library());
 }
 
+/// The first stage's law returns in the third.
+#[test]
+fn a_law_is_recognised_without_allocating() {
+    let terms = ["qdd", "qd", "q", "q^3"].map(|name| (Term::parse(name).unwrap(), Given::Fit));
+    let mut scenario = Builtin::DuffingSine.scenario().with_noise(0.01);
+    scenario.stages.truncate(3);
+    scenario.stages[2].coefficients = scenario.stages[0].coefficients.clone();
+    scenario.duration = 40.0;
+    let mut identifier = Identifier::new(&Model::of("duffing", terms), Settings::default()).unwrap();
+    let mut allocating = 0;
+    for row in record(&scenario).unwrap() {
+        let sample = Sample { t: row.t, q: row.q, qd: row.qd, excitation: row.excitation };
+        let before = CALLS.get();
+        identifier.step(sample).unwrap();
+        allocating += CALLS.get() - before;
+    }
+    assert!(identifier.output().recognised, "the law was not recognised");
+    assert_eq!(allocating, 0);
+}
+
 #[test]
 fn an_allocation_is_counted() {
     let before = CALLS.get();
