@@ -2,13 +2,13 @@
 
 #[path = "../examples/figures/against_limits/disturbed.rs"]
 mod disturbed;
-#[path = "../examples/figures/measure.rs"]
-mod measure;
+#[path = "../examples/figures/follow.rs"]
+mod follow;
 #[path = "../examples/figures/against_limits/recorded.rs"]
 mod recorded;
 
 use disturbed::Disturbance;
-use measure::follow;
+use follow::follow;
 use recorded::{Library, Recorded, law, sensors};
 use switchid::identify::{Identifier, Sample, Settings};
 use switchid::limits::{detection, level};
@@ -51,15 +51,15 @@ fn stated_std_are_those_of_the_errors() {
 /// After 4 s, on both sensors, and no alarm; noise that has changed 2 s ago nearly.
 #[test]
 fn the_sensors_noise_is_known_whatever_disturbs_it() {
-    for builtin in [Builtin::DuffingWhite, Builtin::VanDerPolSine] {
+    for (builtin, library) in [(Builtin::DuffingWhite, Library::Fit), (Builtin::VanDerPolSine, Library::Given)] {
         for (disturbance, noise) in Disturbance::ALL.into_iter().zip([0.2, 1e-3, 0.1, 0.01, 0.01]) {
             let recorded = Recorded::of(&first_stage(builtin, 700, noise, 4.0)).unwrap();
-            let found = identify(Library::Given, builtin, &disturbance.apply(&recorded.readings, noise, 700));
+            let found = identify(library, builtin, &disturbance.apply(&recorded.readings, noise, 700));
             let output = found.output();
             let truth = disturbance.std(noise);
             for found in [output.noise_q, output.noise_qd] {
                 let error = (found.unwrap() / truth - 1.0).abs();
-                let allowed = if disturbance == Disturbance::Louder { 0.12 } else { 0.08 };
+                let allowed = if disturbance == Disturbance::Louder { 0.2 } else { 0.08 };
                 assert!(error < allowed, "{} {}: {found:?} of {truth}", builtin.id(), disturbance.id());
             }
             assert_eq!(output.switch_count, 0, "{} {}", builtin.id(), disturbance.id());
@@ -77,7 +77,7 @@ fn switches_are_seen_about_as_soon_as_the_noise_allows() {
         let recorded = Recorded::of(&scenario).unwrap();
         let mut identifier = Identifier::new(&library.model(builtin), Settings::default()).unwrap();
         let figures = follow(&mut identifier, &scenario, recorded.readings.iter().copied()).unwrap();
-        assert_eq!(figures.false_alarms, 0);
+        assert_eq!((figures.missed(), figures.false_alarms), (0, 0), "{} {}", builtin.id(), library.id());
         for stage in 1..3 {
             let model = Library::Given.model(builtin);
             let [old, new] = [stage - 1, stage].map(|stage| law(&model, &scenario, stage).unwrap());

@@ -1,9 +1,12 @@
 //! The truth of the built-in scenarios is found again by the default identifier.
 
+#[path = "../examples/figures/follow.rs"]
+mod follow;
 #[path = "../examples/figures/measure.rs"]
 mod measure;
 
-use measure::{Figures, measure, model};
+use follow::Figures;
+use measure::{measure, model};
 use switchid::simulate::{Builtin, Scenario};
 
 fn figures(builtin: Builtin, scenario: &Scenario) -> Figures {

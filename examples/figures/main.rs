@@ -7,10 +7,12 @@
 //! With `--against-limits [FIRST..END] [ROW] [--threads N]` the figures of DESIGN §7 beside what any method could reach ([`against_limits`]).
 
 mod against_limits;
+mod follow;
 mod measure;
 mod threads;
 
-use measure::{Figures, measure};
+use follow::Figures;
+use measure::measure;
 use switchid::simulate::{Builtin, Scenario};
 
 /// Why a figure could not be measured.

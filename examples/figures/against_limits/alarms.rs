@@ -3,7 +3,7 @@
 use super::Asked;
 use super::recorded::Library;
 use crate::Failure;
-use crate::measure::follow;
+use crate::follow::follow;
 use switchid::identify::{Identifier, Settings};
 use switchid::simulate::{Builtin, record};
 

@@ -4,7 +4,7 @@ use super::Asked;
 use super::recorded::{Library, Recorded, law};
 use super::spread::Spread;
 use crate::Failure;
-use crate::measure::follow;
+use crate::follow::follow;
 use switchid::identify::{Identifier, Settings};
 use switchid::law::Motion;
 use switchid::limits::Law;

@@ -4,7 +4,7 @@ use super::Asked;
 use super::recorded::{Library, Recorded, law, sensors};
 use super::spread::Spread;
 use crate::Failure;
-use crate::measure::{Figures, follow};
+use crate::follow::{Figures, follow};
 use switchid::identify::{Identifier, Settings};
 use switchid::limits::{Start, bound, detection, level};
 use switchid::simulate::{Builtin, Scenario};
