@@ -19,11 +19,13 @@ impl Tracker {
         output: &mut Output,
     ) {
         let thorough = output.drifting || !output.valid;
-        if !problem.channels.q || !self.drift.step(problem, settings, &self.window, thorough) {
+        let least = self.least_noise();
+        if !problem.channels.q || !self.drift.step(problem, settings, &self.window, least, thorough) {
             return;
         }
         let moves = self.drift.is_moving() && self.drift.sees();
-        if !output.drifting && moves && !output.valid && self.drift.stated_error() < TRUSTED {
+        let sure = if output.valid { self.drift_is_credible() } else { self.drift.has_no_rest(&self.window) };
+        if !output.drifting && moves && sure && self.drift.stated_error() < TRUSTED {
             self.begin_drift(output);
         }
         if output.drifting {
@@ -36,10 +38,24 @@ impl Tracker {
         }
     }
 
+    /// Sensor variances under the law in use, where there is one. Differences of q tell its noise by themselves; those of q̇ hold the
+    /// increments of a rough excitation.
+    fn least_noise(&self) -> [f64; 2] {
+        let settled = self.phase == Phase::Refining && self.stage.settled();
+        [f64::INFINITY, if settled { self.stage.noise.sensor[1] } else { f64::INFINITY }]
+    }
+
+    /// Whether coefficients that seem to move end a law that was vouched for: they have moved before in this record, or they do beyond
+    /// doubt and the constant law leaves error that is not the sensors'.
+    pub(super) fn drift_is_credible(&self) -> bool {
+        let error_stays = self.stage.overdispersion > 1.0 || self.stage.process_matters;
+        self.drifted || (error_stays && self.drift.moves_beyond_doubt())
+    }
+
     /// From now on no constant law is monitored.
     pub(super) fn begin_drift(&mut self, output: &mut Output) {
         output.drifting = true;
-        self.resting = false;
+        (self.drifted, self.resting) = (true, false);
         self.live.running = false;
         self.bank.clear();
         self.deviation.clear();
