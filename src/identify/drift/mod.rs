@@ -114,14 +114,7 @@ impl Drift {
         self.form_row(problem, window, self.sensor.variances(settings, most), index, overlap) && self.choose(index)
     }
 
-    fn form_row(
-        &mut self,
-        problem: &Problem,
-        window: &Window,
-        sensor: [f64; 2],
-        index: usize,
-        overlap: usize,
-    ) -> bool {
+    fn form_row(&mut self, problem: &Problem, window: &Window, sensor: [f64; 2], index: usize, overlap: usize) -> bool {
         let longest = self.lengths.last().map_or(0, |length| length.samples);
         let length = &mut self.lengths[index];
         let (first, last) = (length.next - length.samples as u64, length.next);
@@ -179,10 +172,14 @@ impl Drift {
         self.quiet >= QUIET
     }
 
-    /// Whether there is a law to be seen at all: one that predicts, over variations as long as half an oscillation, below which no record
-    /// gives an acceptable law.
-    pub fn sees(&self) -> bool {
-        self.law().evidence > SEEN && self.law().samples as f64 > self.oscillation.half_period()
+    /// Whether the law predicts anything.
+    pub fn predicts(&self) -> bool {
+        self.law().evidence > SEEN
+    }
+
+    /// Whether the variations are longer than this many halves of an oscillation; below one no record of its own gives an acceptable law.
+    pub fn spans(&self, halves: f64) -> bool {
+        self.law().samples as f64 > halves * self.oscillation.half_period()
     }
 
     /// Free coefficients.
