@@ -144,8 +144,10 @@ fn laws_of_another_model_are_refused_by_term() {
     let linear = Model::of("linear", model().terms[..3].iter().map(|entry| (entry.term, Given::Fit)));
     let refused = Identifier::new(&linear, Settings::default()).unwrap().with_known_laws(&stiffening).unwrap_err();
     assert_eq!(refused, SavedLawsError::ForeignTerm { law: 1, term: "q^3".into() });
-    let refused =
-        Identifier::new(&Model::cubic_library(), Settings::default()).unwrap().with_known_laws(&stiffening).unwrap_err();
+    let refused = Identifier::new(&Model::cubic_library(), Settings::default())
+        .unwrap()
+        .with_known_laws(&stiffening)
+        .unwrap_err();
     assert!(matches!(refused, SavedLawsError::MissingTerm { law: 1, .. }), "{refused}");
 }
 

@@ -120,14 +120,16 @@ mod tests {
 
     fn integrated(record: &Information, offset: [f64; 2], std: [f64; 2]) -> f64 {
         let (count, reach) = (400, 6.0);
+        let at_offset = likelihood(record, &offset);
         let place = |k: i32| reach * (2.0 * f64::from(k) / f64::from(count) - 1.0);
         let cell = (2.0 * reach / f64::from(count)).powi(2) / (2.0 * std::f64::consts::PI);
         let term = |a: i32, b: i32| {
             let (a, b) = (place(a), place(b));
             let change = [offset[0] + std[0] * a, offset[1] + std[1] * b];
-            (likelihood(record, &change) - 0.5 * (a * a + b * b)).exp() * cell
+            (likelihood(record, &change) - at_offset - 0.5 * (a * a + b * b)).exp() * cell
         };
         (0..=count).flat_map(|a| (0..=count).map(move |b| (a, b))).map(|(a, b)| term(a, b)).sum::<f64>().ln()
+            + at_offset
     }
 
     #[test]

@@ -66,6 +66,8 @@ pub struct Tracker {
     drift: Drift,
     /// Whether coefficients that moved are being tried for a constant law.
     resting: bool,
+    /// Whether coefficients have moved in this record.
+    drifted: bool,
     stage: Stage,
     challenger: Stage,
     challenging: bool,
@@ -122,6 +124,7 @@ impl Tracker {
             start: Start::new(problem, capacity),
             drift: Drift::new(problem, capacity),
             resting: false,
+            drifted: false,
             stage: Stage::new(problem),
             challenger: Stage::new(problem),
             challenging: false,

@@ -7,14 +7,15 @@ use crate::law::Term;
 use crate::weak::Row;
 use serde::{Deserialize, Serialize};
 
-/// Rows begin this fraction of a variation apart.
-pub const OVERLAP: usize = 8;
-
-/// Rows that overlap share their noise: this many count as one.
-const SHARED: f64 = OVERLAP as f64 / 4.0;
+/// Rows that are less than a quarter of a variation apart share what they say, less than half of one their noise.
+const INDEPENDENT: [f64; 2] = [0.25, 0.5];
 
 /// How far the coefficients wander over a variation, relative to their reach; 0 first: the law is constant.
 const INTENSITIES: [f64; 5] = [0.0, 0.006, 0.02, 0.06, 0.2];
+
+/// Whether the inertia wanders like the others: the excitation fixes the scale of all coefficients, and a law that loosens it is
+/// attenuated.
+const INERTIA_WANDERS: [bool; 2] = [false, true];
 
 /// How large the law's own error is, relative to a row.
 const ERRORS: [f64; 2] = [0.01, 0.1];
@@ -55,8 +56,8 @@ impl Length {
     /// Knows nothing yet.
     pub fn new(problem: &Problem, samples: usize) -> Length {
         let n = problem.n();
-        let walk = |index: usize| Walk::new(n, INTENSITIES[index / ERRORS.len()], ERRORS[index % ERRORS.len()]);
-        let count = INTENSITIES.len() * ERRORS.len();
+        let walks = walks(problem);
+        let count = walks.len();
         Length {
             samples,
             next: samples as u64,
@@ -65,7 +66,7 @@ impl Length {
             all: problem.known.clone(),
             evidence: 0.0,
             rows: 0.0,
-            walks: (0..count).map(walk).collect(),
+            walks,
             weights: vec![(count as f64).recip(); count],
             reach: vec![0.0; n],
             columns: vec![0.0; n],
@@ -102,37 +103,38 @@ impl Length {
         (mean(wandering) / mean(constant)).ln()
     }
 
-    /// Takes a row formed about `all`, with sensor variances by channel; a row counts for `memory` of this length's rows in the
-    /// evidence.
-    pub fn take(&mut self, problem: &Problem, row: &Row, sensor: [f64; 2], memory: f64) {
-        let right = self.load(problem, row, sensor);
-        let variance = noise(row.residual_noise, sensor) / row.norm * OVERLAP as f64 / 2.0;
+    /// Takes a row formed about `all`, with sensor variances by channel. The row ends this `part` of a variation after the last one;
+    /// `memory` is for how many variations it counts in the score.
+    pub fn take(&mut self, problem: &Problem, row: &Row, sensor: [f64; 2], part: f64, memory: f64) {
+        let right = self.load(problem, row, sensor, part);
+        let [share, overlap] = INDEPENDENT.map(|apart| (part / apart).min(1.0));
+        let variance = noise(row.residual_noise, sensor) / row.norm / overlap;
         if !(self.size > 0.0 && variance.is_finite()) {
             return;
         }
         let equation = Equation { left: &self.left, right, variance, bias: &self.bias, size: self.size };
         let mut predicted = 0.0;
         for (walk, weight) in self.walks.iter_mut().zip(&self.weights) {
-            walk.wander(&self.reach, (OVERLAP as f64).recip());
+            walk.wander(&self.reach, part);
             let log_density = walk.learn(&equation);
             predicted += weight * log_density.exp();
-            walk.log_weight += log_density / SHARED - walk.log_weight / (MEMORY * OVERLAP as f64);
+            walk.log_weight += share * log_density - walk.log_weight * part / MEMORY;
         }
-        let kept = 1.0 - memory.recip();
-        self.rows = self.rows * kept + 1.0;
+        let kept = 1.0 - (part / memory).min(1.0);
+        self.rows = self.rows * kept + share;
         // the density of a row of the usual size under no law at all is exp(−½)
-        let gain = (predicted.max(f64::MIN_POSITIVE).ln() + 0.5) / SHARED;
-        self.evidence = (self.evidence * kept + gain).max(0.0);
+        let gain = predicted.max(f64::MIN_POSITIVE).ln() + 0.5;
+        self.evidence = (self.evidence * kept + share * gain).max(0.0);
         self.weigh();
         self.mix(problem);
     }
 
     /// The equation in the free coefficients, normalised; what is usual follows.
-    fn load(&mut self, problem: &Problem, row: &Row, sensor: [f64; 2]) -> f64 {
+    fn load(&mut self, problem: &Problem, row: &Row, sensor: [f64; 2], part: f64) -> f64 {
         let weight = row.norm.sqrt().recip();
         let right = problem.weak_equation(row, &mut self.left) * weight;
         let due = (self.rows + 1.0).recip();
-        let [slow, fast] = [4.0, 1.0].map(|variations| due.max((variations * OVERLAP as f64).recip()));
+        let [slow, fast] = [4.0, 1.0].map(|variations| due.max((part / variations).min(1.0)));
         self.right += slow * (right * right - self.right);
         self.size += fast * (right * right - self.size);
         for (index, free) in problem.free.iter().enumerate() {
@@ -166,7 +168,7 @@ impl Length {
             let pairs = || self.walks.iter().zip(&self.weights);
             let mean: f64 = pairs().map(|(walk, weight)| weight * walk.coefficients[index]).sum();
             let variance = |walk: &Walk| {
-                let since = (walk.intensity * self.reach[index]).powi(2) / 2.0;
+                let since = walk.step(index, self.reach[index]) / 2.0;
                 walk.variance(index) + since + (walk.coefficients[index] - mean).powi(2)
             };
             let variance = pairs().map(|(walk, weight)| weight * variance(walk)).sum();
@@ -175,6 +177,16 @@ impl Length {
         }
         problem.scatter(&self.coefficients, &mut self.all);
     }
+}
+
+/// Constant coefficients first; then all that wander, the inertia with the others or not.
+fn walks(problem: &Problem) -> Vec<Walk> {
+    let inertia = problem.free_inertia();
+    let kinds = if inertia.is_some() { &INERTIA_WANDERS[..] } else { &INERTIA_WANDERS[1..] };
+    let wandering = kinds.iter().flat_map(|wanders| INTENSITIES[1..].iter().map(|intensity| (*intensity, *wanders)));
+    let all = std::iter::once((INTENSITIES[0], true)).chain(wandering);
+    let walk = |intensity, error, wanders: bool| Walk::new(problem.n(), intensity, error, inertia.filter(|_| !wanders));
+    all.flat_map(|(intensity, wanders)| ERRORS.map(|error| walk(intensity, error, wanders))).collect()
 }
 
 fn noise(by_channel: [f64; 2], sensor: [f64; 2]) -> f64 {

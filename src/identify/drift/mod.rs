@@ -9,6 +9,7 @@
 //! Coefficients that drift are told from constant ones by the likelihood of the rivals that wander to that of those that do not.
 
 mod length;
+mod oscillation;
 mod sensor;
 mod walk;
 
@@ -17,7 +18,8 @@ use super::section::SectionBuffer;
 use super::settings::Settings;
 use super::window::Window;
 use crate::weak::{Row, Variation};
-use length::{Length, OVERLAP};
+use length::Length;
+use oscillation::Oscillation;
 use sensor::Sensor;
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +31,9 @@ const LONGEST: usize = 2048;
 
 /// Odd about its middle, so that its integral is zero; smooth enough to keep faster modes out.
 const VARIATION: Variation = Variation::SmoothSine { mode: 2 };
+
+/// Rows begin this fraction of a variation apart.
+const OVERLAP: usize = 8;
 
 /// For how many of the longest variations a row counts in the choice of the length.
 const MEMORY: f64 = 16.0;
@@ -42,15 +47,29 @@ const MOVING: f64 = 6.0;
 /// … for this many rows: a jump is far from every constant law for the length of a variation.
 const LASTING: u32 = 2 * OVERLAP as u32;
 
+/// Rows that must speak against wandering before it has come to an end.
+const QUIET: u32 = 16 * OVERLAP as u32;
+
+/// For how many variations a constant law is waited for.
+const PATIENCE: u64 = 8;
+
+/// Evidence of wandering that ends a law which was vouched for, nats.
+const CERTAIN: f64 = 12.0;
+
 /// Coefficients as they move.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Drift {
     lengths: Vec<Length>,
     sensor: Sensor,
+    oscillation: Oscillation,
     section: SectionBuffer,
     row: Row,
     chosen: usize,
     moving: u32,
+    /// Rows in a row that spoke against wandering.
+    quiet: u32,
+    /// Number of the sample from which on the coefficients are known.
+    since: u64,
 }
 
 impl Drift {
@@ -61,52 +80,53 @@ impl Drift {
         Drift {
             lengths: lengths.map(|samples| Length::new(problem, samples)).collect(),
             sensor: Sensor::default(),
+            oscillation: Oscillation::default(),
             section: SectionBuffer::new(longest + 1),
             row: Row::new(problem.terms.len()),
             chosen: 0,
             moving: 0,
+            quiet: 0,
+            since: 0,
         }
     }
 
     /// Forgets the coefficients, but not which length tells most; rows begin at sample `start`.
     pub fn restart(&mut self, start: u64) {
         self.lengths.iter_mut().for_each(|length| length.restart(start));
-        self.moving = 0;
+        (self.moving, self.quiet, self.since) = (0, 0, start);
     }
 
-    /// Takes the newest sample of the window and forms at most one row; returns whether the law was renewed. Other lengths than the
-    /// one in use are looked at only when this is to be `thorough`.
-    pub fn step(&mut self, problem: &Problem, settings: &Settings, window: &Window, thorough: bool) -> bool {
+    /// Takes the newest sample of the window and forms at most one row, under sensor noise of at most these variances; returns whether
+    /// the law was renewed. Unless it is to be `thorough`, the rows of the lengths that are not in use do not overlap.
+    pub fn step(
+        &mut self,
+        problem: &Problem,
+        settings: &Settings,
+        window: &Window,
+        most: [f64; 2],
+        thorough: bool,
+    ) -> bool {
         self.sensor.step(window);
-        if !thorough {
-            self.pass_over(window.end());
-        }
+        self.oscillation.step(window.sample(window.end() - 1).q);
         let due = |length: &Length| length.next < window.end();
         let Some(index) = self.lengths.iter().position(due) else { return false };
-        self.form_row(problem, settings, window, index) && self.choose(index)
+        let overlap = if thorough || index == self.chosen { OVERLAP } else { 1 };
+        self.form_row(problem, window, self.sensor.variances(settings, most), index, overlap) && self.choose(index)
     }
 
-    /// Leaves out the rows of the lengths that are not in use.
-    fn pass_over(&mut self, end: u64) {
-        let others = self.lengths.iter_mut().enumerate().filter(|(index, _)| *index != self.chosen);
-        for (_, length) in others.filter(|(_, length)| length.next < end) {
-            length.next += (length.samples / OVERLAP) as u64;
-        }
-    }
-
-    fn form_row(&mut self, problem: &Problem, settings: &Settings, window: &Window, index: usize) -> bool {
-        let longest = self.lengths.last().map_or(0, |length| length.samples) as f64;
+    fn form_row(&mut self, problem: &Problem, window: &Window, sensor: [f64; 2], index: usize, overlap: usize) -> bool {
+        let longest = self.lengths.last().map_or(0, |length| length.samples);
         let length = &mut self.lengths[index];
         let (first, last) = (length.next - length.samples as u64, length.next);
-        length.next += (length.samples / OVERLAP) as u64;
+        length.next += (length.samples / overlap) as u64;
         if first < window.oldest() {
             return false;
         }
         self.section.load(problem, window, first, last);
         let section = self.section.view(problem, length.samples + 1);
         self.row.integrate_about(&section, VARIATION, &problem.terms, &length.all);
-        let memory = MEMORY * longest * OVERLAP as f64 / length.samples as f64;
-        length.take(problem, &self.row, self.sensor.variances(settings), memory);
+        let memory = MEMORY * longest as f64 / length.samples as f64;
+        length.take(problem, &self.row, sensor, (overlap as f64).recip(), memory);
         true
     }
 
@@ -119,9 +139,11 @@ impl Drift {
             }
         }
         if self.chosen != before {
-            self.moving = 0;
+            (self.moving, self.quiet) = (0, 0);
         } else if self.chosen == renewed {
-            self.moving = if self.law().wandering() > MOVING { self.moving + 1 } else { 0 };
+            let wandering = self.law().wandering();
+            self.moving = if wandering > MOVING { self.moving + 1 } else { 0 };
+            self.quiet = if wandering < 0.0 { self.quiet + 1 } else { 0 };
         }
         self.chosen == renewed
     }
@@ -135,14 +157,29 @@ impl Drift {
         self.moving >= LASTING
     }
 
-    /// Whether the record speaks against coefficients that move.
-    pub fn is_at_rest(&self) -> bool {
-        self.law().wandering() < 0.0
+    /// Whether that has been so for long enough for a constant law to be found, had there been one.
+    pub fn has_no_rest(&self, window: &Window) -> bool {
+        self.is_moving() && window.end() > self.since + PATIENCE * self.law().samples as u64
     }
 
-    /// Whether there is a law to be seen at all.
-    pub fn sees(&self) -> bool {
+    /// Whether they move beyond doubt, so that even a law that was vouched for is no more.
+    pub fn moves_beyond_doubt(&self) -> bool {
+        self.is_moving() && self.law().wandering() > CERTAIN
+    }
+
+    /// Whether the record has long spoken against coefficients that move.
+    pub fn is_at_rest(&self) -> bool {
+        self.quiet >= QUIET
+    }
+
+    /// Whether the law predicts anything.
+    pub fn predicts(&self) -> bool {
         self.law().evidence > SEEN
+    }
+
+    /// Whether the variations are longer than this many halves of an oscillation; below one no record of its own gives an acceptable law.
+    pub fn spans(&self, halves: f64) -> bool {
+        self.law().samples as f64 > halves * self.oscillation.half_period()
     }
 
     /// Free coefficients.

@@ -39,9 +39,11 @@ impl Sensor {
         }
     }
 
-    /// Variances by channel, those given by the user where there are any.
-    pub fn variances(&self, settings: &Settings) -> [f64; 2] {
+    /// Variances by channel, those given by the user where there are any. They are upper bounds, where an excitation is rough by far: `most`
+    /// is a lower one, if there is one.
+    pub fn variances(&self, settings: &Settings, most: [f64; 2]) -> [f64; 2] {
         let given = [settings.noise_q, settings.noise_qd];
-        std::array::from_fn(|index| if given[index] > 0.0 { given[index].powi(2) } else { self.variance[index] })
+        let seen = |index: usize| self.variance[index].min(most[index]);
+        std::array::from_fn(|index| if given[index] > 0.0 { given[index].powi(2) } else { seen(index) })
     }
 }

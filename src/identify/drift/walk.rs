@@ -36,6 +36,8 @@ pub struct Walk {
     pub intensity: f64,
     /// Std of the law's error, relative to the row's size.
     pub error: f64,
+    /// The coefficient that does not wander.
+    pub fixed: Option<usize>,
     /// θ, n.
     pub coefficients: Vec<f64>,
     /// Logarithm of its probability among its rivals, up to a constant.
@@ -46,10 +48,11 @@ pub struct Walk {
 
 impl Walk {
     /// Knows nothing of `n` coefficients.
-    pub fn new(n: usize, intensity: f64, error: f64) -> Walk {
+    pub fn new(n: usize, intensity: f64, error: f64, fixed: Option<usize>) -> Walk {
         let mut walk = Walk {
             intensity,
             error,
+            fixed,
             coefficients: vec![0.0; n],
             log_weight: 0.0,
             covariance: vec![0.0; n * n],
@@ -73,11 +76,16 @@ impl Walk {
         self.covariance[index * (self.coefficients.len() + 1)]
     }
 
+    /// By how much the coefficient's variance grows over the length of a variation.
+    pub fn step(&self, index: usize, reach: f64) -> f64 {
+        if self.fixed == Some(index) { 0.0 } else { (self.intensity * reach).powi(2) }
+    }
+
     /// Lets the coefficients wander for this part of a variation's length.
     pub fn wander(&mut self, reach: &[f64], part: f64) {
         let n = reach.len();
         for (index, reach) in reach.iter().enumerate() {
-            self.covariance[index * (n + 1)] += (self.intensity * reach).powi(2) * part;
+            self.covariance[index * (n + 1)] += self.step(index, *reach) * part;
             let narrower = WIDEST * reach / self.variance(index).sqrt();
             if narrower < 1.0 {
                 self.covariance[index * n..(index + 1) * n].iter_mut().for_each(|entry| *entry *= narrower);
@@ -122,7 +130,7 @@ mod tests {
 
     /// Rows of q̈ + k q = 0 about a k that wanders; returns the mean of (k − k̂)² ÷ its stated variance.
     fn normalised_error(intensity: f64) -> f64 {
-        let mut walk = Walk::new(1, intensity, 0.02);
+        let mut walk = Walk::new(1, intensity, 0.02, None);
         let (mut stiffness, mut seed, mut sum, mut count) = (30.0, 1_u64, 0.0, 0.0);
         let mut noise = move || {
             let uniform = (0..12).map(|_| {

@@ -9,6 +9,9 @@ use crate::identify::stage::TRUSTED;
 /// A constant law is sought in the record from this many variations back on.
 const REST: u64 = 4;
 
+/// Overdispersion that no model error of a constant law explains where its coefficients seem to move too.
+const LASTING: f64 = 10.0;
+
 impl Tracker {
     /// Follows coefficients that move, and says so where the record does.
     pub(super) fn track_drift(
@@ -19,11 +22,14 @@ impl Tracker {
         output: &mut Output,
     ) {
         let thorough = output.drifting || !output.valid;
-        if !problem.channels.q || !self.drift.step(problem, settings, &self.window, thorough) {
+        let least = self.least_noise();
+        if !problem.channels.q || !self.drift.step(problem, settings, &self.window, least, thorough) {
             return;
         }
-        let moves = self.drift.is_moving() && self.drift.sees();
-        if !output.drifting && moves && !output.valid && self.drift.stated_error() < TRUSTED {
+        let moves = self.drift.is_moving() && self.drift.predicts();
+        let alone = || self.drift.has_no_rest(&self.window) && self.drift.spans(1.0);
+        let sure = if output.valid { self.drift_is_credible() } else { alone() };
+        if !output.drifting && moves && sure && self.drift.stated_error() < TRUSTED {
             self.begin_drift(output);
         }
         if output.drifting {
@@ -36,10 +42,24 @@ impl Tracker {
         }
     }
 
+    /// Sensor variances under the law in use, where there is one. Differences of q tell its noise by themselves; those of q̇ hold the
+    /// increments of a rough excitation.
+    fn least_noise(&self) -> [f64; 2] {
+        let settled = self.phase == Phase::Refining && self.stage.settled();
+        [f64::INFINITY, if settled { self.stage.noise.sensor[1] } else { f64::INFINITY }]
+    }
+
+    /// Whether coefficients that seem to move end a law that was vouched for: they have moved before in this record, or they do beyond
+    /// doubt and the constant law leaves error that lasts.
+    pub(super) fn drift_is_credible(&self) -> bool {
+        self.drifted
+            || (self.stage.overdispersion > LASTING && self.drift.moves_beyond_doubt() && self.drift.spans(0.5))
+    }
+
     /// From now on no constant law is monitored.
     pub(super) fn begin_drift(&mut self, output: &mut Output) {
         output.drifting = true;
-        self.resting = false;
+        (self.drifted, self.resting) = (true, false);
         self.live.running = false;
         self.bank.clear();
         self.deviation.clear();
@@ -68,7 +88,7 @@ impl Tracker {
                 Some(_) => coefficient.std = None,
             }
         }
-        output.valid = self.drift.sees() && self.drift.stated_error() < TRUSTED;
+        output.valid = self.drift.predicts() && self.drift.stated_error() < TRUSTED;
         output.status = if output.valid { Status::Tracking } else { Status::Acquiring };
         if output.valid {
             output.identified_time.get_or_insert(self.now());

@@ -46,7 +46,7 @@ impl Tracker {
         let given = settings.deviation_threshold;
         let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
         if suspect.evidence > level || deviates {
-            match self.drift.is_moving() {
+            match self.drift.is_moving() && self.drift_is_credible() {
                 true => self.begin_drift(output),
                 false => self.switch(problem, suspect, level, output),
             }
