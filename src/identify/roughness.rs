@@ -92,16 +92,20 @@ impl Roughness {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::StandardNormal;
 
     /// A slow motion with noise of std 0.01, one sample in 200 far off, under an excitation that pushes q̇ from sample to sample.
     fn found(push: f64) -> f64 {
-        let scrambled = |k: f64| ((k * 12.9898).sin() * 43758.5453).fract() * f64::sqrt(3.0);
+        let mut generator = ChaCha8Rng::seed_from_u64(1);
+        let mut white = || generator.sample::<f64, _>(StandardNormal);
         let (mut roughness, mut samples, mut qd) = (Roughness::default(), Vec::new(), 0.0);
         for k in 0..4000 {
             let t = 0.001 * f64::from(k);
-            let excitation = push * scrambled(f64::from(k) + 0.3);
+            let excitation = push * white();
             let off = if k % 200 == 77 { 0.3 } else { 0.0 };
-            let noise = 0.01 * scrambled(f64::from(k)) + off;
+            let noise = 0.01 * white() + off;
             samples.push(Sample { t, q: t.sin() + noise, qd: qd + t.cos() + noise, excitation });
             qd += 0.5 * excitation;
         }

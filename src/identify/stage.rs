@@ -282,8 +282,8 @@ impl Stage {
             }
             self.running_scales.add(problem, &self.all, &self.pass, &observation);
             self.blocks.step(&self.pass.information);
-            for (largest, measured) in self.largest.iter_mut().zip(observation.measured) {
-                *largest = largest.max(measured.unwrap_or(0.0).abs());
+            for channel in (0..2).filter(|channel| innovations[*channel].is_some()) {
+                self.largest[channel] = self.largest[channel].max(observation.measured[channel].unwrap_or(0.0).abs());
             }
             self.next += 1;
             if Some(self.next) == self.checkpoint.at {

@@ -160,3 +160,38 @@ fn effects_that_are_unknown_or_there_already_are_refused() {
     bench.refused(&["add", "q^3", "--model", "model.toml", "-o", "new.toml"], &["--data"]);
     assert!(!bench.0.join("new.toml").exists());
 }
+
+#[test]
+fn a_model_without_inertia_is_compared_diagnosed_and_improved_and_refused_where_it_must_move() {
+    let bench = Bench::new("massless");
+    simulate(&bench, "a", 101, 2e-3, "", "");
+    bench.write("model.toml", "hold = \"zero\"\n[terms]\nlinear_damping = \"fit\"\nlinear_stiffness = \"fit\"\n");
+    let compared = bench.json(&["compare", "a.csv", "--model", "model.toml", "--json"]);
+    assert!(compared["error"]["free_run_nrmse"].is_null(), "{compared:#}");
+    assert!(compared["error"]["force_residual"].as_f64().unwrap() > 0.1, "{compared:#}");
+    let found = bench.json(&["diagnose", "a.csv", "--model", "model.toml", "--json"]);
+    assert_eq!((&found["verdict"], &found["effect"]), (&"missing".into(), &"inertia".into()), "{found:#}");
+    let improved = bench.json(&["improve", "a.csv", "--model", "model.toml", "-o", "better.toml", "--json"]);
+    assert_eq!((&improved["verdict"], &improved["steps"][1]["effect"]), (&"adequate".into(), &"inertia".into()));
+    bench.refused(&["limits", "a.csv", "--model", "model.toml"], &["model.toml", "no inertia"]);
+    let readings = std::fs::read_to_string(bench.0.join("a.csv")).unwrap();
+    let without_force = readings.lines().map(|line| line.rsplit_once(',').unwrap().0.to_string() + "\n");
+    bench.write("free.csv", &without_force.collect::<String>());
+    bench.refused(&["diagnose", "free.csv", "--model", "model.toml"], &["free.csv", "no excitation", "inertia = 1.0"]);
+}
+
+#[test]
+fn a_law_with_memory_runs_freely_and_errs_without_it() {
+    let bench = Bench::new("memory");
+    let inner = "yield_displacement = 0.05, share = 0.6, exponent = 2.0";
+    simulate(&bench, "a", 111, 1e-2, &format!("hysteresis = {{ coefficient = 12.0, {inner} }}"), "");
+    let linear = "hold = \"zero\"\n[terms]\ninertia = 1.0\nlinear_damping = 0.6\nlinear_stiffness = 40.0\n";
+    let free_run = |text: &str| {
+        bench.write("model.toml", text);
+        let compared = bench.json(&["compare", "a.csv", "--model", "model.toml", "--json"]);
+        compared["error"]["free_run_nrmse"].as_f64().unwrap()
+    };
+    let without = free_run(linear);
+    let with = free_run(&format!("{linear}hysteresis = {{ coefficient = 12.0, {inner} }}\n"));
+    assert!(with < 0.05 && with < 0.2 * without, "{with} with the loop, {without} without it");
+}
