@@ -193,7 +193,9 @@ fn text(run: &Run) -> String {
     }
     for (index, (stage, limit)) in stages(run).enumerate() {
         let law = law(stage, limit, run.settings.channels.excitation, &run.opened.units);
-        let _ = write!(text, "\nstage {}{}: {law}", index + 1, again(&run.found.stages[..index], stage));
+        let drifting = if stage.drifting { " (drifting; its last coefficients)" } else { "" };
+        let again = again(&run.found.stages[..index], stage);
+        let _ = write!(text, "\nstage {}{again}{drifting}: {law}", index + 1);
     }
     text
 }

@@ -32,6 +32,8 @@ struct StageReport {
     std: Pairs,
     /// By term, where known.
     units: BTreeMap<String, String>,
+    /// Whether the coefficients were moving at the stage's end.
+    drifting: bool,
     unidentifiable: Vec<String>,
     /// What any method could reach on this stage; null where that is not known.
     limit: Option<LimitReport>,
@@ -78,6 +80,7 @@ impl StageReport {
                 .known()
                 .filter_map(|(known, _)| Some((known.term.name(), unit_of(known.term, units)?)))
                 .collect(),
+            drifting: stage.drifting,
             unidentifiable: stage.unidentifiable.clone(),
             limit: limit.map(|limit| LimitReport::of(stage, limit)),
         }

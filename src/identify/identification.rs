@@ -21,6 +21,8 @@ pub struct Stage {
     pub recognised: bool,
     /// The last published coefficients, in the order of the model's terms.
     pub coefficients: Vec<Coefficient>,
+    /// Whether its coefficients were moving at its end: those published are the last ones.
+    pub drifting: bool,
     /// What its data could not determine.
     pub unidentifiable: Vec<String>,
 }
@@ -162,6 +164,7 @@ fn begin(identifier: &Identifier, start: f64) -> Stage {
         identified: None,
         law_number: None,
         recognised: false,
+        drifting: false,
         coefficients: identifier.coefficients().to_vec(),
         unidentifiable: identifier.unidentifiable(),
     }
@@ -172,5 +175,6 @@ fn renew(stage: &mut Stage, identifier: &Identifier, t: f64) {
     let output = identifier.output();
     stage.identified = output.identified_time;
     (stage.law_number, stage.recognised) = (output.law_number, output.recognised);
+    stage.drifting = output.drifting;
     stage.coefficients.copy_from_slice(identifier.coefficients());
 }

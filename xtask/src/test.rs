@@ -76,7 +76,7 @@ fn real_records() -> Result<(), Error> {
 }
 
 fn missing_record(directory: &Path) -> Option<String> {
-    let files = ["emps/emps_train_tidy.csv", "silverbox/silverbox_tidy.csv"];
+    let files = ["emps/emps_train_tidy.csv", "silverbox/silverbox_tidy.csv", "dropbear/dropbear.csv"];
     let missing = files.into_iter().map(|file| directory.join(file)).find(|path| !path.is_file())?;
     Some(missing.display().to_string())
 }

@@ -64,7 +64,7 @@ impl Tracker {
         self.bank.clear();
         self.deviation.clear();
         self.forget_trials(output);
-        output.missing = None;
+        (output.missing, output.law_number, output.recognised) = (None, None, false);
     }
 
     /// The coefficients have come to rest: a constant law is sought in the latest record.
