@@ -28,7 +28,7 @@ impl Tracker {
         }
         let moves = self.drift.is_moving() && self.drift.predicts();
         let alone = || self.drift.has_no_rest(&self.window) && self.drift.spans(1.0);
-        let sure = if output.valid { self.drift_is_credible() } else { alone() };
+        let sure = if output.valid { self.drift_is_credible(output) } else { alone() };
         if !output.drifting && moves && sure && self.drift.stated_error() < TRUSTED {
             self.begin_drift(output);
         }
@@ -50,10 +50,11 @@ impl Tracker {
     }
 
     /// Whether coefficients that seem to move end a law that was vouched for: they have moved before in this record, or they do beyond
-    /// doubt and the constant law leaves error that lasts.
-    pub(super) fn drift_is_credible(&self) -> bool {
-        self.drifted
-            || (self.stage.overdispersion > LASTING && self.drift.moves_beyond_doubt() && self.drift.spans(0.5))
+    /// doubt, the constant law leaves error that lasts, and so did one before it, which an alarm ended. (A law that lacks an effect seems to
+    /// move as well, but lasts.)
+    pub(super) fn drift_is_credible(&self, output: &Output) -> bool {
+        let lasting = self.stage.overdispersion > LASTING && self.drift.moves_beyond_doubt();
+        self.drifted || (output.detection_time.is_some() && lasting && self.drift.spans(0.5))
     }
 
     /// From now on no constant law is monitored.

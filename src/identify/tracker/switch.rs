@@ -38,15 +38,18 @@ impl Tracker {
         let samples = self.stage.length(self.window.ready()) + self.experience;
         let doubt = self.stage.overdispersion * (1.0 + DOUBT / samples.max(1) as f64);
         let doubt = if output.valid { doubt } else { UNPROVEN * doubt };
-        let level = doubt * (settings.false_alarm_interval / (TRIAL * settings.sample_time)).ln().max(3.0);
-        let level = level.max(self.usual.level(-TRIAL.ln()));
+        // what chance brings is known of a law that explains its record; of another all evidence seen counts as its usual one
+        let trial = if self.stage.process_matters { 1.0 } else { TRIAL };
+        let level = doubt * (settings.false_alarm_interval / (trial * settings.sample_time)).ln().max(3.0);
+        let chance = if self.stage.process_matters { f64::NEG_INFINITY } else { -TRIAL.ln() };
+        let level = level.max(self.usual.level(chance));
         if output.valid {
             self.usual.add(suspect.evidence);
         }
         let given = settings.deviation_threshold;
         let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
         if suspect.evidence > level || deviates {
-            match self.drift.is_moving() && self.drift_is_credible() {
+            match self.drift.is_moving() && self.drift_is_credible(output) {
                 true => self.begin_drift(output),
                 false => self.switch(problem, suspect, level, output),
             }
