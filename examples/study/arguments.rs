@@ -5,7 +5,9 @@ use std::path::PathBuf;
 
 /// Measures and draws what docs/study.md shows.
 #[derive(Clone, Debug, Parser)]
-#[command(after_help = "cargo xtask study                     everything\ncargo xtask study --only rapid        one figure, its text on the terminal")]
+#[command(
+    after_help = "cargo xtask study                     everything\ncargo xtask study --only rapid        one figure, its text on the terminal"
+)]
 pub struct Arguments {
     /// Records at each setting of the figures of e; the others take as many as go with it
     #[arg(long, default_value_t = 50)]

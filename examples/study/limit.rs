@@ -141,7 +141,8 @@ mod tests {
     fn more_noise_shows_a_switch_later() {
         let limits = |noise: f64| {
             let scenario = Plant::Duffing.switched(noise, 1);
-            let scenario = Scenario { duration: scenario.stages[2].start, stages: scenario.stages[..2].to_vec(), ..scenario };
+            let scenario =
+                Scenario { duration: scenario.stages[2].start, stages: scenario.stages[..2].to_vec(), ..scenario };
             delays(&scenario, &record(&scenario).unwrap(), 1e6).unwrap()[0]
         };
         let (little, much) = (limits(0.01), limits(0.1));

@@ -5,11 +5,14 @@
 //! and not measured again while the library's sources stay as they are.
 
 mod accuracy;
+mod alarms;
 mod arguments;
 mod chart;
+mod delays;
 mod figure;
 mod follow;
 mod limit;
+mod loops;
 mod page;
 mod plant;
 mod statistics;
@@ -17,9 +20,12 @@ mod store;
 mod study;
 
 use accuracy::Accuracy;
+use alarms::Alarms;
 use arguments::Arguments;
 use clap::Parser;
+use delays::Delays;
 use figure::{Figure, Section};
+use loops::Loops;
 use study::Study;
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
@@ -27,7 +33,7 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 /// A figure's name, and what measures it and sums it up.
 type Part = (&'static str, fn(&Study) -> Result<Section, Failure>);
 
-const PARTS: [Part; 1] = [part::<Accuracy>()];
+const PARTS: [Part; 4] = [part::<Accuracy>(), part::<Loops>(), part::<Delays>(), part::<Alarms>()];
 
 const fn part<F: Figure>() -> Part {
     (F::NAME, Study::section::<F>)

@@ -45,9 +45,8 @@ pub fn text(out: &Path, section: &Section) -> String {
 fn head(sections: &[Section], seeds: u64) -> String {
     let claims = sections.iter().flat_map(|section| &section.claims);
     let verdict = |holds: bool| if holds { "confirmed" } else { "refuted" }.to_string();
-    let row = |claim: &Claim| {
-        vec![claim.claim.into(), verdict(claim.published), verdict(claim.ours), claim.evidence.clone()]
-    };
+    let row =
+        |claim: &Claim| vec![claim.claim.into(), verdict(claim.published), verdict(claim.ours), claim.evidence.clone()];
     let table = table(&["claim", "of the published method", "of ours", "figures"], claims.map(row));
     let seeds = if seeds == 50 { String::new() } else { format!(" --seeds {seeds}") };
     format!(

@@ -45,7 +45,11 @@ pub fn falls(values: &[f64]) -> bool {
 
 /// A small number: `2.8e-5`; a dash for none.
 pub fn small(value: impl Into<Option<f64>>) -> String {
-    value.into().map_or("–".into(), |value| format!("{value:.1e}"))
+    match value.into() {
+        None => "–".into(),
+        Some(0.0) => "0".into(),
+        Some(value) => format!("{value:.1e}"),
+    }
 }
 
 /// Seconds to the millisecond; a dash for never.

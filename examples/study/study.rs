@@ -65,5 +65,7 @@ impl Study {
 
 fn bar(name: &'static str, points: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg:10} {bar:40} {pos}/{len}  {elapsed}, {eta} left");
-    ProgressBar::new(points as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar())).with_message(name)
+    ProgressBar::new(points as u64)
+        .with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+        .with_message(name)
 }

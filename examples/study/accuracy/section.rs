@@ -154,7 +154,10 @@ impl<'a> View<'a> {
         };
         Picture {
             name: format!("{}-noise", self.plant.id()),
-            caption: format!("{}: mean e against noise, by integral interval; thin lines: the limit", self.plant.name()),
+            caption: format!(
+                "{}: mean e against noise, by integral interval; thin lines: the limit",
+                self.plant.name()
+            ),
             panels: vec![panel("published method", PUBLISHED), panel("ours", OURS)],
         }
     }
@@ -262,7 +265,9 @@ fn two_periods(views: &[View]) -> Claim {
             let two = 2.0 * view.plant.period();
             let [ours, published] = [OURS, PUBLISHED].map(|method| factor(gain(view, method)));
             let limit = factor(view.limit(NOISE, two) / view.limit(NOISE, view.longest()));
-            format!("beyond {two:.1} s the median at σ = {NOISE} still falls by {published} (published), {ours} (ours), {limit} (limit)")
+            format!(
+                "beyond {two:.1} s the median at σ = {NOISE} still falls by {published} (published), {ours} (ours), {limit} (limit)"
+            )
         }),
     }
 }
