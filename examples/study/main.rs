@@ -8,6 +8,7 @@ mod accuracy;
 mod alarms;
 mod arguments;
 mod chart;
+mod cost;
 mod delays;
 mod figure;
 mod follow;
@@ -15,6 +16,7 @@ mod limit;
 mod loops;
 mod page;
 mod plant;
+mod rapid;
 mod statistics;
 mod store;
 mod study;
@@ -23,9 +25,11 @@ use accuracy::Accuracy;
 use alarms::Alarms;
 use arguments::Arguments;
 use clap::Parser;
+use cost::Cost;
 use delays::Delays;
 use figure::{Figure, Section};
 use loops::Loops;
+use rapid::Rapid;
 use study::Study;
 
 type Failure = Box<dyn std::error::Error + Send + Sync>;
@@ -33,7 +37,8 @@ type Failure = Box<dyn std::error::Error + Send + Sync>;
 /// A figure's name, and what measures it and sums it up.
 type Part = (&'static str, fn(&Study) -> Result<Section, Failure>);
 
-const PARTS: [Part; 4] = [part::<Accuracy>(), part::<Loops>(), part::<Delays>(), part::<Alarms>()];
+const PARTS: [Part; 6] =
+    [part::<Accuracy>(), part::<Loops>(), part::<Delays>(), part::<Alarms>(), part::<Rapid>(), part::<Cost>()];
 
 const fn part<F: Figure>() -> Part {
     (F::NAME, Study::section::<F>)

@@ -145,7 +145,7 @@ impl<'a> View<'a> {
         let panel = |title: &str, method: Method| Panel {
             title: title.into(),
             x: Axis::log("σ of the sensor noise", &[0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2]),
-            y: Axis::decades("mean e", [least, 1.0]),
+            y: Axis::decades("mean e", [0.3 * least, 1.0]),
             legend: SeriesLabelPosition::UpperLeft,
             lines: numbered()
                 .map(|(number, length)| line(number, length, method))
@@ -174,7 +174,7 @@ impl<'a> View<'a> {
         let panel = |noise: f64| Panel {
             title: format!("σ = {noise}"),
             x: Axis::log("record, s", &ticks(self.plant)),
-            y: Axis::decades("median e", [self.limit(noise, self.longest()), 10.0]),
+            y: Axis::decades("median e", [0.1 * self.limit(noise, self.longest()), 10.0]),
             legend: SeriesLabelPosition::UpperRight,
             lines: vec![
                 line("ours", 0, OURS, noise),
@@ -186,7 +186,7 @@ impl<'a> View<'a> {
         Picture {
             name: format!("{}-length", self.plant.id()),
             caption: format!(
-                "{}: median e against the length of the record; the natural period is {} s",
+                "{}: median e against the length of the record; the natural period is {} s; e = 1 where nothing is known yet",
                 self.plant.name(),
                 self.plant.period()
             ),
