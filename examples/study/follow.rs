@@ -27,10 +27,14 @@ pub struct Stage {
     pub worst: f64,
     /// Share of its samples at which its law is vouched for and e is above 0.05².
     pub wrong: f64,
+    /// Share of its samples at which a law is vouched for that ended unnoticed.
+    pub stale: f64,
     /// (θ − θ*) ÷ std of the coefficients last vouched for; none where the law never was.
     pub normalised: Vec<f64>,
-    /// The same of whatever has a std at the stage's end, vouched for or not; none where its switch was not detected.
+    /// The same of whatever has a std at the stage's end, vouched for or not, its switch detected or not.
     pub stated: Vec<f64>,
+    /// Share of the coefficients that have a std then.
+    pub told: f64,
 }
 
 /// A whole record, as an identifier saw it.
@@ -102,8 +106,10 @@ impl<'a> Watch<'a> {
             error: BEYOND,
             worst: 0.0,
             wrong: 0.0,
+            stale: 0.0,
             normalised: Vec::new(),
             stated: Vec::new(),
+            told: 0.0,
         };
         Watch {
             terms: &scenario.terms,
@@ -125,8 +131,10 @@ impl<'a> Watch<'a> {
         self.alarms = identifier.output().switch_count;
         self.stage.error = error(identifier.coefficients(), self.terms, self.truth);
         self.stage.tracking = (self.stage.error < RIGHT).then(|| self.stage.tracking.unwrap_or(since));
-        if identifier.output().valid && self.is_known() {
-            self.vouched(identifier, since);
+        match (identifier.output().valid, self.is_known()) {
+            (true, true) => self.vouched(identifier, since),
+            (true, false) => self.stage.stale += 1.0,
+            (false, _) => {}
         }
         Ok(())
     }
@@ -149,18 +157,25 @@ impl<'a> Watch<'a> {
     }
 
     fn finish(self, identifier: &Identifier, samples: usize) -> Stage {
-        let known = self.is_known();
-        let stated = if known { normalised(identifier.coefficients(), self.terms, self.truth) } else { Vec::new() };
-        Stage { wrong: self.stage.wrong / samples.max(1) as f64, stated, ..self.stage }
+        let part = |count: f64| count / samples.max(1) as f64;
+        let published = identifier.coefficients();
+        let told = published.iter().filter(|known| known.std.is_some()).count();
+        Stage {
+            wrong: part(self.stage.wrong),
+            stale: part(self.stage.stale),
+            stated: normalised(published, self.terms, self.truth),
+            told: told as f64 / published.len() as f64,
+            ..self.stage
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::plant::Plant;
-    use super::*;
-    use switchid::identify::Settings;
-    use switchid::simulate::record;
+    use super::{BEYOND, Identifier, RIGHT, Scenario, Term, error, follow, normalised};
+    use switchid::identify::{Coefficient, Settings};
+    use switchid::simulate::{Stage, record};
 
     fn known(value: f64, std: Option<f64>) -> [Coefficient; 2] {
         let absent = Coefficient { term: Term::power(2, 0), value: 1.0, std: Some(0.0) };
@@ -188,9 +203,11 @@ mod tests {
         assert_eq!((first.detection, run.false_alarms), (None, 0));
         assert!(second.detection.is_some_and(|delay| delay > 0.0 && delay < 1.0), "{second:?}");
         assert!(second.tracking >= second.detection && second.error < RIGHT, "{second:?}");
-        assert_eq!(second.stated.len(), 4);
+        assert_eq!((second.stated.len(), second.told), (4, 1.0));
+        assert!((8.0 * second.stale - second.detection.unwrap()).abs() < 0.002 && second.wrong == 0.0, "{second:?}");
         let mut blind = Identifier::new(&Plant::Duffing.model(), Settings::default()).unwrap();
-        let wrong = Scenario { stages: vec![scenario.stages[1].clone(), scenario.stages[1].clone()], ..scenario };
+        let other = scenario.stages[1].clone();
+        let wrong = Scenario { stages: vec![Stage { start: 0.0, ..other.clone() }, other], ..scenario };
         let run = follow(&mut blind, &wrong, &readings[..9000]).unwrap();
         let vouched = (9000.0 - 1000.0 * run.stages[0].vouched.unwrap()) / 9000.0;
         assert!((run.stages[0].wrong - vouched).abs() < 1e-3 && run.stages[0].worst >= RIGHT, "{run:?}");

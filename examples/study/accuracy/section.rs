@@ -6,7 +6,7 @@ use super::super::figure::{Claim, Picture, Section, table};
 use super::super::follow::RIGHT;
 use super::super::limit;
 use super::super::plant::Plant;
-use super::super::statistics::{factor, falls, mean, median, percent, share, small};
+use super::super::statistics::{factor, falls, mean, median, percent, quantile, share, small};
 use super::{Errors, NOISES, Point, lengths};
 use plotters::prelude::SeriesLabelPosition;
 
@@ -51,8 +51,9 @@ pub fn section(measured: &[(Point, Errors)]) -> Result<Section, Failure> {
          at 40 s it has seen the last 30). The published method identifies from a first window of that length. e is the mean over the seeds, the \
          median in brackets; the limit is the Cramér–Rao bound of e, a mean as well: \
          half of it is a good median. For van der Pol both methods are given the full cubic library of 11 terms; the limit is that of the four true terms, \
-         beside it that of all 11.\n\n{tables}",
+         beside it that of all 11.\n\n{}\n\n{tables}",
         small(views[0].median(PUBLISHED, NOISE, 12.0)),
+        by_plant(&views, |view| view.against_limit()) + ".",
     );
     let pictures = views.iter().flat_map(|view| [view.against_noise(), view.against_length()]).collect();
     let claims = vec![rises(&views), short(&views), two_periods(&views), half_a_period(&views)];
@@ -95,6 +96,23 @@ impl<'a> View<'a> {
     /// Mean of e after the plant's longest record.
     fn longest(&self) -> f64 {
         self.lengths.last().copied().unwrap_or_default()
+    }
+
+    /// How far both methods stay from the limit, over the rows of the table.
+    fn against_limit(&self) -> String {
+        let rows = || {
+            self.plant.intervals().into_iter().flat_map(|length| NOISES[1..].iter().map(move |noise| (length, *noise)))
+        };
+        let words = |method: Method| {
+            let ratio = |(length, noise)| Some(self.mean(method, noise, length)? / self.limit(noise, length));
+            let ratios: Vec<f64> = rows().filter_map(ratio).collect();
+            format!("{} times the limit (worst {})", factor(median(&ratios)), factor(quantile(&ratios, 1.0)))
+        };
+        format!(
+            "mean e of ours is {}, of the published method {}, median over the rows below with noise",
+            words(OURS),
+            words(PUBLISHED)
+        )
     }
 
     fn table(&self) -> String {

@@ -152,8 +152,10 @@ mod tests {
             error: 1.0,
             worst: 0.0,
             wrong: 0.0,
+            stale: 0.0,
             normalised: Vec::new(),
             stated: Vec::new(),
+            told: 0.0,
         };
         Run { stages: [None].iter().chain(delays).map(|delay| stage(*delay)).collect(), false_alarms }
     }
