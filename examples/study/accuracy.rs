@@ -2,6 +2,7 @@
 //!
 //! One run of ours over the longest record gives e at every length; the published method identifies from a first window of each length.
 
+mod claims;
 mod section;
 
 use super::Failure;

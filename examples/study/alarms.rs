@@ -49,7 +49,7 @@ impl Figure for Alarms {
         let panel = Panel {
             title: format!("Duffing, σ = {NOISE}"),
             x: Axis::log("false-alarm interval, s", &[10.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8]),
-            y: Axis::linear("median detection delay, s", &[0.0, 0.05, 0.1, 0.15, 0.2]),
+            y: Axis::linear("median detection delay, s", &[0.0, 0.02, 0.04, 0.06, 0.08]),
             legend: SeriesLabelPosition::UpperLeft,
             lines: vec![
                 line("ours", 0, Kind::Marked, |group| median_delay(&group.detections(OURS))),

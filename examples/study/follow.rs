@@ -27,7 +27,7 @@ pub struct Stage {
     pub worst: f64,
     /// Share of its samples at which its law is vouched for and e is above 0.05².
     pub wrong: f64,
-    /// Share of its samples at which a law is vouched for that ended unnoticed.
+    /// Share of its samples at which a law is vouched for without an alarm since the switch, and e is above 0.05².
     pub stale: f64,
     /// (θ − θ*) ÷ std of the coefficients last vouched for; none where the law never was.
     pub normalised: Vec<f64>,
@@ -133,7 +133,7 @@ impl<'a> Watch<'a> {
         self.stage.tracking = (self.stage.error < RIGHT).then(|| self.stage.tracking.unwrap_or(since));
         match (identifier.output().valid, self.is_known()) {
             (true, true) => self.vouched(identifier, since),
-            (true, false) => self.stage.stale += 1.0,
+            (true, false) => self.stage.stale += f64::from(u8::from(self.stage.error >= RIGHT)),
             (false, _) => {}
         }
         Ok(())

@@ -11,6 +11,9 @@ use std::path::Path;
 /// Where the library's sources are, from the workspace's root.
 const SOURCES: &str = "src";
 
+/// Points with their outcomes.
+type Measured<F> = Vec<(<F as Figure>::Point, <F as Figure>::Outcome)>;
+
 /// A study under way.
 pub struct Study {
     store: Store,
@@ -44,7 +47,7 @@ impl Study {
             bar.inc(1);
             Ok((point, outcome?))
         };
-        let measured: Result<Vec<(F::Point, F::Outcome)>, Failure> = match F::ALONE {
+        let measured: Result<Measured<F>, Failure> = match F::ALONE {
             true => points.into_iter().map(measure).collect(),
             false => self.pool.install(|| points.into_par_iter().map(measure).collect()),
         };

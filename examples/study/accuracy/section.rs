@@ -2,29 +2,21 @@
 
 use super::super::Failure;
 use super::super::chart::{Axis, Kind, Line, Panel};
-use super::super::figure::{Claim, Picture, Section, table};
-use super::super::follow::RIGHT;
+use super::super::figure::{Picture, Section, table};
 use super::super::limit;
 use super::super::plant::Plant;
-use super::super::statistics::{factor, falls, mean, median, percent, quantile, share, small};
+use super::super::statistics::{factor, mean, median, quantile, small};
+use super::claims::{by_plant, claims};
 use super::{Errors, NOISES, Point, lengths};
 use plotters::prelude::SeriesLabelPosition;
 
 /// Noise at which lengths of record are compared.
-const NOISE: f64 = 0.1;
-
-/// Little noise, where a short record has its best chance.
-const LITTLE: f64 = 0.002;
-
-/// A gain in e below this factor is little.
-const LITTLE_GAIN: f64 = 2.0;
-
-/// A law is acceptable where at least this share of the records gives one with e < 0.05².
-const ACCEPTABLE: f64 = 0.5;
+pub const NOISE: f64 = 0.1;
 
 /// Points of one plant, with its limits.
-struct View<'a> {
-    plant: Plant,
+pub struct View<'a> {
+    /// The plant.
+    pub plant: Plant,
     measured: Vec<&'a (Point, Errors)>,
     lengths: Vec<f64>,
     /// Limits of e at noise 1 of the true terms …
@@ -33,10 +25,13 @@ struct View<'a> {
     whole_model: Vec<f64>,
 }
 
-type Method = fn(&Errors) -> &[f64];
+/// One of the two methods.
+pub type Method = fn(&Errors) -> &[f64];
 
-const OURS: Method = |errors| &errors.ours;
-const PUBLISHED: Method = |errors| &errors.published;
+/// The default one.
+pub const OURS: Method = |errors| &errors.ours;
+/// The published one.
+pub const PUBLISHED: Method = |errors| &errors.published;
 
 pub fn section(measured: &[(Point, Errors)]) -> Result<Section, Failure> {
     let views = Plant::ALL.map(|plant| View::new(plant, measured));
@@ -56,8 +51,8 @@ pub fn section(measured: &[(Point, Errors)]) -> Result<Section, Failure> {
         by_plant(&views, |view| view.against_limit()) + ".",
     );
     let pictures = views.iter().flat_map(|view| [view.against_noise(), view.against_length()]).collect();
-    let claims = vec![rises(&views), short(&views), two_periods(&views), half_a_period(&views)];
-    Ok(Section { title: "Error against noise and length of record", text, pictures, claims })
+    let title = "Error against noise and length of record";
+    Ok(Section { title, text, pictures, claims: claims(&views) })
 }
 
 impl<'a> View<'a> {
@@ -76,25 +71,29 @@ impl<'a> View<'a> {
         self.lengths.partition_point(|other| *other < length - 1e-9).min(self.lengths.len() - 1)
     }
 
-    fn errors(&self, method: Method, noise: f64, length: f64) -> Vec<f64> {
+    /// e of every record with this noise after this length, s.
+    pub fn errors(&self, method: Method, noise: f64, length: f64) -> Vec<f64> {
         let of_noise = self.measured.iter().filter(|(point, _)| point.noise == noise);
         of_noise.map(|(_, errors)| method(errors)[self.at(length)]).collect()
     }
 
+    /// Their mean.
     fn mean(&self, method: Method, noise: f64, length: f64) -> Option<f64> {
         mean(&self.errors(method, noise, length))
     }
 
-    fn median(&self, method: Method, noise: f64, length: f64) -> Option<f64> {
+    /// Their median.
+    pub fn median(&self, method: Method, noise: f64, length: f64) -> Option<f64> {
         median(&self.errors(method, noise, length))
     }
 
-    fn limit(&self, noise: f64, length: f64) -> f64 {
+    /// The limit of e for the true terms.
+    pub fn limit(&self, noise: f64, length: f64) -> f64 {
         self.true_terms[self.at(length)] * noise * noise
     }
 
-    /// Mean of e after the plant's longest record.
-    fn longest(&self) -> f64 {
+    /// The longest record, s.
+    pub fn longest(&self) -> f64 {
         self.lengths.last().copied().unwrap_or_default()
     }
 
@@ -217,95 +216,5 @@ fn ticks(plant: Plant) -> Vec<f64> {
     match plant {
         Plant::Duffing => vec![0.6, 1.0, 2.0, 5.0, 10.0, 30.0],
         Plant::VanDerPol => vec![1.5, 3.0, 6.0, 12.0, 24.0, 40.0],
-    }
-}
-
-/// Whether something holds for both plants.
-fn everywhere(views: &[View], holds: impl Fn(&View) -> bool) -> bool {
-    views.iter().all(holds)
-}
-
-/// One piece of evidence for each plant.
-fn by_plant(views: &[View], evidence: impl Fn(&View) -> String) -> String {
-    views.iter().map(|view| format!("{}: {}", view.plant.name(), evidence(view))).collect::<Vec<_>>().join("; ")
-}
-
-fn rises(views: &[View]) -> Claim {
-    let series = |view: &View, method: Method| -> Vec<f64> {
-        let middle = view.plant.intervals()[2];
-        NOISES.iter().rev().filter_map(|noise| view.median(method, *noise, middle)).collect()
-    };
-    let ends = |values: Vec<f64>| format!("{} to {}", small(values[values.len() - 2]), small(values[0]));
-    Claim {
-        claim: "e rises with noise",
-        published: everywhere(views, |view| falls(&series(view, PUBLISHED))),
-        ours: everywhere(views, |view| falls(&series(view, OURS))),
-        evidence: by_plant(views, |view| {
-            let [ours, published] = [OURS, PUBLISHED].map(|method| ends(series(view, method)));
-            format!("median after {} s, σ 0.002 to 0.2: published {published}, ours {ours}", view.plant.intervals()[2])
-        }),
-    }
-}
-
-fn short(views: &[View]) -> Claim {
-    let ratio = |view: &View, method: Method| {
-        let intervals = view.plant.intervals();
-        let [first, last] = [intervals[0], intervals[4]].map(|length| view.median(method, NOISE, length));
-        first.zip(last).map(|(first, last)| first / last)
-    };
-    let falls = |method: Method| everywhere(views, |view| ratio(view, method).is_some_and(|ratio| ratio > LITTLE_GAIN));
-    Claim {
-        claim: "e falls with the length of the interval",
-        published: falls(PUBLISHED),
-        ours: falls(OURS),
-        evidence: by_plant(views, |view| {
-            let [first, .., last] = view.plant.intervals();
-            let [ours, published] = [OURS, PUBLISHED].map(|method| factor(ratio(view, method)));
-            let limit = factor(view.limit(NOISE, first) / view.limit(NOISE, last));
-            format!(
-                "from {first} to {last} s at σ = {NOISE} the median falls by a factor {published} (published), {ours} (ours), {limit} (limit)"
-            )
-        }),
-    }
-}
-
-fn two_periods(views: &[View]) -> Claim {
-    let gain = |view: &View, method: Method| {
-        let [two, last] = [2.0 * view.plant.period(), view.longest()].map(|length| view.median(method, NOISE, length));
-        two.zip(last).map(|(two, last)| two / last)
-    };
-    let little = |method: Method| everywhere(views, |view| gain(view, method).is_some_and(|gain| gain < LITTLE_GAIN));
-    Claim {
-        claim: "little gain beyond two natural periods",
-        published: little(PUBLISHED),
-        ours: little(OURS),
-        evidence: by_plant(views, |view| {
-            let two = 2.0 * view.plant.period();
-            let [ours, published] = [OURS, PUBLISHED].map(|method| factor(gain(view, method)));
-            let limit = factor(view.limit(NOISE, two) / view.limit(NOISE, view.longest()));
-            format!(
-                "beyond {two:.1} s the median at σ = {NOISE} still falls by {published} (published), {ours} (ours), {limit} (limit)"
-            )
-        }),
-    }
-}
-
-fn half_a_period(views: &[View]) -> Claim {
-    let right = |view: &View, method: Method| {
-        share(&view.errors(method, LITTLE, 0.5 * view.plant.period()), |error| *error < RIGHT)
-    };
-    let none = |method: Method| everywhere(views, |view| right(view, method) < ACCEPTABLE);
-    Claim {
-        claim: "no acceptable law below half a natural period",
-        published: none(PUBLISHED),
-        ours: none(OURS),
-        evidence: by_plant(views, |view| {
-            let half = 0.5 * view.plant.period();
-            let [ours, published] = [OURS, PUBLISHED].map(|method| percent(right(view, method)));
-            let limit = small(view.limit(LITTLE, half));
-            format!(
-                "after {half:.1} s at σ = {LITTLE} e < 0.05² in {published} (published), {ours} (ours) of the records; limit of e {limit}"
-            )
-        }),
     }
 }
