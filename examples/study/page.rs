@@ -54,7 +54,7 @@ fn head(sections: &[Section], seeds: u64) -> String {
          Written by `cargo xtask study{seeds}`, text, tables and pictures. Both methods are switchid's (`--method publication` and the default), \
          ours with one default configuration throughout; limits are those of `switchid limits`. Seeds are others than any that \
          something was chosen by. e is eq. (8) of the publication: Σ(θ − θ*)² ÷ Σθ*².\n\n\
-         ## The publication's claims\n\n{table}"
+         ## The publication's claims\n\nA claim is confirmed where it holds for both plants.\n\n{table}"
     )
 }
 
