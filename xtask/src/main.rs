@@ -1,4 +1,4 @@
-//! Chores of the project: `cargo xtask crosscheck | test | fmu | bench`.
+//! Chores of the project: `cargo xtask crosscheck | test | fmu | bench | study`.
 
 mod command;
 mod crosscheck;
@@ -24,7 +24,9 @@ usage: cargo xtask CHORE
   fmu                builds SwitchedIdentifier.fmu, Duffing.fmu, VanDerPol.fmu into target/fmu,
                      and modelDescription.xml at the root anew
   bench [ARGUMENT..] cost per sample by phase, terms and window; arguments go to the
-                     benchmark (--help lists them)";
+                     benchmark (--help lists them)
+  study [--help]     the published method, ours and what is possible: measures what is missing in
+                     target/study, writes docs/study.md and its pictures";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -43,14 +45,16 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         ("crosscheck", rest) => crosscheck::crosscheck(rest),
         ("test", []) => test::test(),
         ("fmu", []) => fmu::renew(),
-        ("bench", rest) => {
-            let bench = ["bench", "--package", "switchid", "--bench", "step", "--"];
-            command::run(command::cargo(&bench).args(rest), "install Rust from https://rustup.rs")
-        }
+        ("bench", rest) => cargo(&["bench", "--package", "switchid", "--bench", "step", "--"], rest),
+        ("study", rest) => cargo(&["run", "--quiet", "--release", "--example", "study", "--"], rest),
         ("--help" | "-h" | "help", _) => {
             println!("{USAGE}");
             Ok(())
         }
         _ => Err(Error::Usage { text: format!("no such chore: \"{}\"", arguments.join(" ")) }),
     }
+}
+
+fn cargo(chore: &[&str], arguments: &[String]) -> Result<(), Error> {
+    command::run(command::cargo(chore).args(arguments), "install Rust from https://rustup.rs")
 }

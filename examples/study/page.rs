@@ -1,0 +1,98 @@
+//! The page: claims first, then section by section, pictures beside it in a folder of its name.
+
+use super::Failure;
+use super::chart;
+use super::figure::{Claim, Section, table};
+use std::path::{Path, PathBuf};
+
+/// Where the page of a folder of pictures stands.
+pub fn path(out: &Path) -> PathBuf {
+    out.with_extension("md")
+}
+
+/// Writes pictures and page.
+///
+/// # Errors
+/// What drawing or writing says.
+pub fn write(out: &Path, sections: &[Section], seeds: u64) -> Result<(), Failure> {
+    sections.iter().try_for_each(|section| pictures(out, section))?;
+    let parts = sections.iter().map(|section| text(out, section));
+    let page = [head(sections, seeds)].into_iter().chain(parts).collect::<Vec<_>>().join("\n");
+    Ok(std::fs::write(path(out), page)?)
+}
+
+/// Writes the pictures of a section.
+///
+/// # Errors
+/// What drawing or writing says.
+pub fn pictures(out: &Path, section: &Section) -> Result<(), Failure> {
+    std::fs::create_dir_all(out)?;
+    for picture in &section.pictures {
+        std::fs::write(out.join(format!("{}.svg", picture.name)), chart::draw(&picture.panels)?)?;
+    }
+    Ok(())
+}
+
+/// A section in Markdown.
+pub fn text(out: &Path, section: &Section) -> String {
+    let folder = out.file_name().unwrap_or_default().to_string_lossy();
+    let pictures = section.pictures.iter().map(|picture| {
+        format!("![{caption}]({folder}/{}.svg)\n\n*{caption}*\n\n", picture.name, caption = picture.caption)
+    });
+    format!("## {}\n\n{}{}\n", section.title, pictures.collect::<String>(), section.text.trim_end())
+}
+
+fn head(sections: &[Section], seeds: u64) -> String {
+    let claims = sections.iter().flat_map(|section| &section.claims);
+    let verdict = |holds: bool| if holds { "confirmed" } else { "refuted" }.to_string();
+    let row =
+        |claim: &Claim| vec![claim.claim.into(), verdict(claim.published), verdict(claim.ours), claim.evidence.clone()];
+    let table = table(&["claim", "of the published method", "of ours", "figures"], claims.map(row));
+    let seeds = if seeds == 50 { String::new() } else { format!(" --seeds {seeds}") };
+    format!(
+        "# The published method, ours, and what is possible\n\n\
+         Written by `cargo xtask study{seeds}`, text, tables and pictures. Both methods are switchid's (`--method publication` and the default), \
+         ours with one default configuration throughout; limits are those of `switchid limits`. Seeds are others than any that \
+         something was chosen by. e is eq. (8) of the publication: Σ(θ − θ*)² ÷ Σθ*².\n\n\
+         ## The publication's claims\n\nA claim is confirmed where it holds for both plants.\n\n{table}"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::chart::{Axis, Kind, Line, Panel};
+    use super::super::figure::Picture;
+    use super::*;
+    use plotters::prelude::SeriesLabelPosition;
+
+    fn section(points: &[(f64, f64)]) -> Section {
+        let line = Line::new("ours", 0, Kind::Marked, points.iter().map(|(x, y)| (*x, Some(*y))));
+        let axes = [Axis::log("σ", &[0.01, 0.1]), Axis::decades("e", points.iter().map(|point| point.1))];
+        let [x, y] = axes;
+        let panel = Panel { title: "t".into(), x, y, legend: SeriesLabelPosition::UpperLeft, lines: vec![line] };
+        Section {
+            title: "Title",
+            text: "words".into(),
+            pictures: vec![Picture { name: "p".into(), caption: "c".into(), panels: vec![panel] }],
+            claims: vec![Claim { claim: "x", published: true, ours: false, evidence: "0.1".into() }],
+        }
+    }
+
+    #[test]
+    fn the_page_links_its_pictures_and_tells_the_verdicts() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("study");
+        write(&out, &[section(&[(0.01, 1e-6), (0.1, 1e-2)])], 3).unwrap();
+        let page = std::fs::read_to_string(path(&out)).unwrap();
+        assert!(page.contains("| x | confirmed | refuted | 0.1 |"), "{page}");
+        assert!(page.contains("![c](study/p.svg)") && page.contains("--seeds 3`"), "{page}");
+        assert!(std::fs::read_to_string(out.join("p.svg")).unwrap().contains("ours"));
+    }
+
+    #[test]
+    fn values_beyond_the_axes_and_none_at_all_are_drawn_too() {
+        for points in [&[(0.001, 1e-300), (0.05, f64::NAN), (0.1, f64::INFINITY)][..], &[]] {
+            assert!(chart::draw(&section(points).pictures[0].panels).unwrap().starts_with("<svg"));
+        }
+    }
+}
