@@ -55,7 +55,7 @@ pub(super) fn conclude(base: &Fit, evidence: &Evidence, found: &Search, singles:
     let explained = |trial: &Trial| share(base, &trial.fit);
     let enough = first.filter(|first| explained(first) >= ENOUGH);
     // beside one effect that is enough, only a set that leaves nothing could be the answer
-    let explains: &dyn Fn(&Fit, &Fit) -> bool = if enough.is_some() { &leaves_nothing } else { &explains };
+    let explains: &Explains = if enough.is_some() { &leaves_nothing } else { &explains };
     let mut reached: Vec<(Trial, Vec<Member>)> = Vec::new();
     for size in 2..=DEPTH {
         let (trials, best) = together(base, evidence, found, sound, (size, explains));
@@ -132,14 +132,20 @@ fn replaced(one: &Trial, other: &Trial) -> Option<(String, String)> {
     }
 }
 
+/// Whether a law with several candidates explains what the one without them does not.
+type Explains<'a> = dyn Fn(&Fit, &Fit) -> bool + 'a;
+
+/// Sets of candidates in the law, and the best of them with its members.
+type Sets = (Vec<Trial>, Option<(Trial, Vec<Member>)>);
+
 /// All sets of that size in the law, and the best sound one of which each member is significant.
 fn together(
     base: &Fit,
     evidence: &Evidence,
     found: &Search,
     sound: &Sound,
-    (size, explains): (usize, &dyn Fn(&Fit, &Fit) -> bool),
-) -> (Vec<Trial>, Option<(Trial, Vec<Member>)>) {
+    (size, explains): (usize, &Explains),
+) -> Sets {
     let trials = found.sets(size, explains);
     let needed = |trial: &Trial| {
         if !explains(base, &trial.fit) {

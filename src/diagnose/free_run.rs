@@ -62,7 +62,7 @@ pub struct FreeRun<'a> {
 /// How a law is integrated.
 enum Law<'a> {
     /// By its state alone.
-    OfState(Compiled),
+    OfState(Box<Compiled>),
     /// With what it remembers.
     WithMemory(MemoryRun<'a>),
 }
@@ -109,7 +109,7 @@ impl<'a> FreeRun<'a> {
             true => {
                 let mut law = Compiled::default();
                 law.compile(&motion);
-                Law::OfState(law)
+                Law::OfState(Box::new(law))
             }
             false => Law::WithMemory(MemoryRun::new(prepared, motion, expressions, largest)?),
         };

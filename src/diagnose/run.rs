@@ -152,9 +152,9 @@ impl Sums {
 
     /// Says energies and log-likelihood under variances that are these times as large, by channel.
     pub fn rescale(&mut self, scale: [f64; 2]) {
-        for channel in 0..2 {
-            self.energy[channel] /= scale[channel];
-            self.log_variance += self.count[channel] * scale[channel].ln();
+        for ((energy, count), scale) in self.energy.iter_mut().zip(self.count).zip(scale) {
+            *energy /= scale;
+            self.log_variance += count * scale.ln();
         }
     }
 

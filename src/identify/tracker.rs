@@ -264,6 +264,9 @@ impl Tracker {
         if worth_showing {
             self.set_spread(problem);
             self.publish(problem, settings, published, output);
+        } else if !output.valid && !output.drifting {
+            // the last law's std are none of this one's
+            problem.free.iter().for_each(|index| published[*index].std = None);
         }
         if worth_monitoring || (self.live.running && self.stage.is_calm()) {
             self.monitor_new_law(problem, output.valid);
