@@ -108,6 +108,17 @@ fn saved_laws_are_recognised_in_another_record_soon_after_its_first_samples() {
     assert_eq!(knowing.output().switch_count, 0);
 }
 
+/// What is recognised among several laws stays in use.
+#[test]
+fn a_saved_law_is_recognised_among_others_once() {
+    let mut identifier = fresh();
+    run(&mut identifier, &samples(&[A, B], 1));
+    let mut knowing = fresh().with_known_laws(&identifier.known_laws()).unwrap();
+    let outputs = run(&mut knowing, &samples(&[B], 6));
+    let changes = outputs.windows(2).filter(|pair| pair[0].valid != pair[1].valid).count();
+    assert_eq!((outputs.last().unwrap().law_number, changes), (Some(2), 1));
+}
+
 #[test]
 fn a_first_law_that_no_saved_one_explains_is_a_new_one() {
     let mut identifier = fresh().with_known_laws(&after_a()).unwrap();

@@ -96,6 +96,8 @@ pub struct Tracker {
     recognised: Option<usize>,
     /// Whether that law's trial has confirmed it.
     confirmed: bool,
+    /// Whether a recognised law was taken back in this step.
+    retracted: bool,
     /// Place of the known law that is to be recognised in this step.
     in_sight: Option<usize>,
     lingering: Option<Lingering>,
@@ -150,6 +152,7 @@ impl Tracker {
             trials: Trials::new(problem),
             recognised: None,
             confirmed: false,
+            retracted: false,
             in_sight: None,
             lingering: None,
             trial_due: Some(0),
@@ -203,6 +206,7 @@ impl Tracker {
         if self.phase == Phase::Refining {
             self.refine(problem, settings, published, output);
         }
+        self.retract(problem, published);
     }
 
     /// Before any law the sensors' noise is known from differences.

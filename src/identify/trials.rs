@@ -176,6 +176,11 @@ impl Trials {
         }
     }
 
+    /// Whether the record rules the law at `place` out.
+    pub fn is_out(&self, place: usize) -> bool {
+        self.trials[place].out
+    }
+
     /// The noise levels under which the law at `place` is on trial.
     pub fn noise(&self, place: usize) -> Noise {
         self.trials[place].noise

@@ -6,5 +6,6 @@ mod compare;
 mod diagnose;
 mod fmu;
 mod good_input;
+mod known_laws;
 mod limits;
 mod units;

@@ -7,7 +7,7 @@ use crate::identify::settings::Settings;
 use crate::identify::stage::TRUSTED;
 
 /// e below this square vouches for a law.
-const VOUCHED: f64 = 0.05 * 0.05;
+pub(super) const VOUCHED: f64 = 0.05 * 0.05;
 
 impl Tracker {
     /// What the record since the stage's start leaves open: combinations of terms while the weak rows of a first law are

@@ -3,6 +3,7 @@
 //! At the alarm the bank of hypotheses has seen the switch already, with the state carried on from before: each known law is weighed
 //! by it at once. Where that does not decide, the laws go on trial over the record since the stage's start.
 
+use super::published::VOUCHED;
 use super::{Phase, Tracker, alarm_level};
 use crate::identify::identifier::{Coefficient, Output, Status};
 use crate::identify::known::{KnownLaw, ROOM, Weighed};
@@ -116,7 +117,7 @@ impl Tracker {
             .filter(|verdict| verdict.against_any > ON_TRIAL * level && verdict.against_known > AMONG_KNOWN * level);
         match (self.recognised, found) {
             (Some(place), Some(found)) if place == found.place => self.confirmed = true,
-            (Some(place), _) if self.is_contradicted(place, level) => {
+            (Some(place), _) if self.is_contradicted(place, verdict.is_some(), level) => {
                 self.withdraw(problem, self.stage.start, output);
                 self.in_sight = found.map(|found| found.place);
             }
@@ -126,8 +127,10 @@ impl Tracker {
         used
     }
 
-    fn is_contradicted(&self, place: usize, level: f64) -> bool {
-        self.trials.is_running() && self.trials.against_rest(place, &self.known) < -CONTRADICTED * level
+    /// Whether the record rules the recognised law out, or what has just been weighed speaks for another one.
+    fn is_contradicted(&self, place: usize, weighed: bool, level: f64) -> bool {
+        let against = || self.trials.against_rest(place, &self.known) < -CONTRADICTED * level;
+        self.trials.is_running() && (self.trials.is_out(place) || weighed && against())
     }
 
     /// The law at `place` is the law in use from now on, until the stage's own estimate takes over from it.
@@ -161,6 +164,7 @@ impl Tracker {
     /// The record contradicts the recognised law: the stage is that of a new one after all.
     fn withdraw(&mut self, problem: &Problem, start: u64, output: &mut Output) {
         (self.recognised, self.confirmed) = (None, false);
+        self.retracted = true;
         self.experience = 0;
         (output.law_number, output.recognised) = (None, false);
         (output.valid, output.identified_time) = (false, None);
@@ -199,6 +203,13 @@ impl Tracker {
         self.recognised.is_some() && !self.confirmed
     }
 
+    /// Coefficients of a law that was taken back are not known any more.
+    pub(super) fn retract(&mut self, problem: &Problem, published: &mut [Coefficient]) {
+        if std::mem::take(&mut self.retracted) {
+            problem.free.iter().for_each(|index| published[*index].std = None);
+        }
+    }
+
     /// Gives a law that is vouched for its number: that of the known law which it is, or a new one.
     pub(super) fn number_law(&mut self, settings: &Settings, output: &mut Output) {
         if output.law_number.is_none() {
@@ -234,7 +245,8 @@ impl Tracker {
     /// Keeps the law that is vouched for, as the stage has it.
     pub(super) fn keep_law(&mut self, problem: &Problem, output: &Output) {
         let known_better = self.recognised.is_none() || self.stage.settled();
-        let number = output.law_number.filter(|_| output.valid && self.stage.passes > 0 && known_better);
+        let exact = self.stage.passes > 0 && self.stage.stated_error() < VOUCHED;
+        let number = output.law_number.filter(|_| output.valid && exact && known_better);
         if let Some(number) = number {
             self.set_spread(problem);
             let samples = self.stage.length(self.window.ready());
