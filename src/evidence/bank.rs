@@ -23,8 +23,11 @@ use serde::{Deserialize, Serialize};
 /// Pivots this far below their diagonal are rounding.
 const TOLERANCE: f64 = 1e-13;
 
-/// The law in use is trusted with this fraction of its information: its covariance is that of a linearisation.
+/// A law that explains its record is trusted with this fraction of its information: its covariance is that of a linearisation.
 const CAUTION: f64 = 0.3;
+
+/// One that does not, with this: what it leaves comes and goes with the motion.
+const MORE_CAUTION: f64 = 0.03;
 
 /// Evidence of this many levels at once comes from the last samples alone.
 const OVERWHELMING: f64 = 10.0;
@@ -45,6 +48,8 @@ pub struct Law<'a> {
     pub information: &'a Information,
     /// Which of them the law has.
     pub active: &'a [bool],
+    /// Whether it explains its record down to the sensors' noise.
+    pub explains: bool,
 }
 
 /// A switch that the data speak for.
@@ -156,12 +161,13 @@ impl Bank {
         (hypothesis.evidence, hypothesis.unexplained) = (0.0, 0.0);
         hypothesis.sensitivity.iter_mut().for_each(|channel| channel.fill([0.0; WIDTH]));
         hypothesis.information.clear();
-        hypothesis.prior.iter_mut().zip(&law.information.matrix).for_each(|(slot, entry)| *slot = CAUTION * entry);
+        let trust = if law.explains { CAUTION } else { MORE_CAUTION };
+        hypothesis.prior.iter_mut().zip(&law.information.matrix).for_each(|(slot, entry)| *slot = trust * entry);
         for (index, (slot, active)) in hypothesis.active.iter_mut().zip(law.active).enumerate() {
             *slot = *active && law.information.matrix[index * n + index] > 0.0;
         }
         for ((pull, score), active) in hypothesis.pull.iter_mut().zip(&law.information.score).zip(&hypothesis.active) {
-            *pull = if *active { CAUTION * score } else { 0.0 };
+            *pull = if *active { trust * score } else { 0.0 };
         }
         self.system.load(&hypothesis.prior, None);
         self.system.set_right(hypothesis.pull.iter().copied());

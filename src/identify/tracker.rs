@@ -239,7 +239,8 @@ impl Tracker {
             self.bank.step(&self.live.pass.map, &innovations);
             self.predict(problem, settings, number, &observation, output);
             if number.is_multiple_of(SPAWN_EVERY) {
-                let law = Law { information: &self.live.pass.information, active: &self.all_active };
+                let (information, active) = (&self.live.pass.information, &self.all_active);
+                let law = Law { information, active, explains: !self.stage.process_matters };
                 self.bank.spawn(number, &law);
             }
             let oldest = number.saturating_sub((OLDEST / settings.sample_time) as u64);
