@@ -240,7 +240,7 @@ impl Tracker {
             self.predict(problem, settings, number, &observation, output);
             if number.is_multiple_of(SPAWN_EVERY) {
                 let (information, active) = (&self.live.pass.information, &self.all_active);
-                let law = Law { information, active, explains: !self.stage.process_matters };
+                let law = Law { information, active, explains: self.explains() };
                 self.bank.spawn(number, &law);
             }
             let oldest = number.saturating_sub((OLDEST / settings.sample_time) as u64);
@@ -251,6 +251,11 @@ impl Tracker {
                 self.judge(problem, settings, &suspect, output);
             }
         }
+    }
+
+    /// Whether the law in use explains its record down to the sensors' noise, and the record is long enough to tell.
+    fn explains(&self) -> bool {
+        !self.stage.process_matters && self.stage.length(self.window.ready()) + self.experience >= YOUNG
     }
 
     fn refine(&mut self, problem: &Problem, settings: &Settings, published: &mut [Coefficient], output: &mut Output) {

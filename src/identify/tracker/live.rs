@@ -30,7 +30,7 @@ pub(super) struct Live {
     covariance: Vec<f64>,
     /// For how long an error of the law acts one way, s.
     lasting: f64,
-    /// Mean of ∂q̈/∂θ over that time, by free coefficient.
+    /// ∂q̈/∂θ by free coefficient, the inertia's as a mean over that time.
     slopes: Vec<f64>,
     pub(super) next: u64,
     pub(super) running: bool,
@@ -64,14 +64,16 @@ impl Live {
         let noise = Noise { process: self.noise.process + self.doubt(), sensor };
         let innovations = self.pass.step(&motion, &problem.free_terms, &noise, observation);
         self.loudness.add(&innovations, &observation.measured);
-        self.smooth_slopes(observation.dt);
+        self.follow_slopes(observation.dt, problem.free_inertia());
         innovations
     }
 
-    /// Errors that a rough excitation turns around faster than the motion follows do not last.
-    fn smooth_slopes(&mut self, dt: f64) {
+    /// Slopes after an interval. The inertia's goes with the acceleration, which a rough excitation turns around faster than the motion
+    /// follows: such errors do not last.
+    fn follow_slopes(&mut self, dt: f64, inertia: Option<usize>) {
         let share = dt / (self.lasting + dt);
-        for (slope, input) in self.slopes.iter_mut().zip(&self.pass.map.input) {
+        for (index, (slope, input)) in self.slopes.iter_mut().zip(&self.pass.map.input).enumerate() {
+            let share = if inertia == Some(index) { share } else { 1.0 };
             *slope += share * (input[1] / dt - *slope);
         }
     }

@@ -39,9 +39,10 @@ impl Tracker {
         let doubt = self.stage.overdispersion * (1.0 + DOUBT / samples.max(1) as f64);
         let doubt = if output.valid { doubt } else { UNPROVEN * doubt };
         // what chance brings is known of a law that explains its record; of another all evidence seen counts as its usual one
-        let trial = if self.stage.process_matters { 1.0 } else { TRIAL };
+        let explains = self.explains();
+        let trial = if explains { TRIAL } else { 1.0 };
         let level = doubt * (settings.false_alarm_interval / (trial * settings.sample_time)).ln().max(3.0);
-        let chance = if self.stage.process_matters { f64::NEG_INFINITY } else { -TRIAL.ln() };
+        let chance = if explains { -TRIAL.ln() } else { f64::NEG_INFINITY };
         let level = level.max(self.usual.level(chance));
         if output.valid {
             self.usual.add(suspect.evidence);
