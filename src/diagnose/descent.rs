@@ -3,7 +3,7 @@
 use super::beside::Beside;
 use super::fit::{Fit, Form, Parts, Solved, solve, solve_damped};
 use super::inner_slopes::{self, Sought};
-use super::levels::{self, GAIN};
+use super::levels::{self, GAIN, Signals};
 use super::piece::Piece;
 use super::run::{self, Law, Outcome, Place, Sums};
 use super::smooth::smooth;
@@ -58,8 +58,7 @@ pub(super) struct Descent<'a> {
     pub(super) form: Form,
     pub(super) pieces: &'a [Piece],
     pub(super) places: Vec<Place>,
-    /// The largest value measured by channel.
-    pub(super) largest: [f64; 2],
+    pub(super) signals: Signals,
     pub(super) parts: Parts,
     pub(super) inner: Vec<Sought>,
     /// Between which values of each the motion can tell; empty before there is a motion.
@@ -113,7 +112,7 @@ impl<'a> Descent<'a> {
                 fit.noise = levels::calibrated(&self.noise, &outcomes);
                 (fit, self.clone())
             });
-            let steady = levels::follow(&mut self.noise, &mut self.ratios, &outcomes, self.largest) && followed;
+            let steady = levels::follow(&mut self.noise, &mut self.ratios, &outcomes, self.signals) && followed;
             calm = if steady && decrement < SETTLED.max(1e-9 * sums.measurements()) { calm + 1 } else { 0 };
             if calm < 2 {
                 (last, needed) = (Some(self.clone()), log_likelihood);
@@ -174,7 +173,7 @@ impl<'a> Descent<'a> {
             let gained = log_likelihood - reached;
             reached = reached.max(log_likelihood);
             let Some(solved) = solve(&sums.information, &sums.score) else { return reached };
-            levels::follow(&mut self.noise, &mut self.ratios, &outcomes, self.largest);
+            levels::follow(&mut self.noise, &mut self.ratios, &outcomes, self.signals);
             if gained.abs() < GAIN || loud - reached > HOPELESS * gained {
                 return reached;
             }

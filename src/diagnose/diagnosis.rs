@@ -281,12 +281,21 @@ impl Candidate {
 
 /// Whether the record speaks for an error of the law that is worth the word.
 pub fn is_evident(fit: &Fit) -> bool {
-    fit.lack() > EVIDENT && excess(fit) > TOLERATED
+    is_error(fit.lack(), fit.measurements)
+}
+
+/// Whether so much log-likelihood, nats, in so many measurements is that of an error worth the word.
+pub(super) fn is_error(lack: f64, measurements: f64) -> bool {
+    lack > EVIDENT && relative(lack, measurements) > TOLERATED
 }
 
 /// Part by which the law's error exceeds the sensors' noise, as energy of its innovations.
 pub fn excess(fit: &Fit) -> f64 {
-    (2.0 * fit.lack() / fit.measurements.max(1.0)).exp() - 1.0
+    relative(fit.lack(), fit.measurements)
+}
+
+fn relative(lack: f64, measurements: f64) -> f64 {
+    (2.0 * lack / measurements.max(1.0)).exp() - 1.0
 }
 
 /// Share of the unexplained acceleration that goes away between two fits.

@@ -8,6 +8,7 @@ use super::beside::Beside;
 use super::descent::Descent;
 use super::diagnosis::effect_name;
 use super::inner_slopes;
+use super::levels::Signals;
 use super::means::is_series;
 use super::piece::Piece;
 use super::run::{Place, Sums};
@@ -192,7 +193,7 @@ pub fn refit(form: &Form, pieces: &[Piece], coefficients: &[f64], noise: Noise) 
         form: form.clone(),
         pieces,
         places: Place::of(pieces),
-        largest: start::largest(pieces),
+        signals: Signals { largest: start::largest(pieces), sample_time: pieces.first()?.observations.first()?.dt },
         parts,
         inner,
         limits: Vec::new(),

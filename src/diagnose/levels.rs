@@ -19,6 +19,15 @@ const NOISE_FLOOR: f64 = 1e-7;
 /// Relative change of a variance below which it stays.
 const STEADY: f64 = 0.02;
 
+/// What the signals are like.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Signals {
+    /// The largest value measured by channel.
+    pub(super) largest: [f64; 2],
+    /// Time between samples, s.
+    pub(super) sample_time: f64,
+}
+
 /// The noise with the scale that the innovations have: the likelihood is that of the best scale, whatever the noise was.
 pub(super) fn calibrated(noise: &Noise, outcomes: &[Outcome]) -> Noise {
     let [squares, count] = totals(outcomes);
@@ -45,12 +54,12 @@ fn totals(outcomes: &[Outcome]) -> [[f64; 2]; 2] {
 /// Sensor noise follows the innovations, process noise the likelihood of rivals at these ratios to it; returns whether both stayed.
 ///
 /// Where a sensor's noise would fall below its floor, all noise is lifted with it: the likelihood depends on the ratios alone.
-pub(super) fn follow(noise: &mut Noise, ratios: &mut [f64; 2], outcomes: &[Outcome], largest: [f64; 2]) -> bool {
+pub(super) fn follow(noise: &mut Noise, ratios: &mut [f64; 2], outcomes: &[Outcome], signals: Signals) -> bool {
     let old = *noise;
     *noise = calibrated(&old, outcomes);
     noise.process *= towards(outcomes, ratios);
     let measured = [0, 1].map(|channel| outcomes.iter().any(|outcome| outcome.count[channel] > 0.0));
-    let floor = |channel: usize| (NOISE_FLOOR * largest[channel]).powi(2).max(f64::MIN_POSITIVE);
+    let floor = |channel: usize| (NOISE_FLOOR * signals.largest[channel]).powi(2).max(f64::MIN_POSITIVE);
     let lift = (0..2)
         .filter(|channel| measured[*channel])
         .map(|channel| floor(channel) / noise.sensor[channel])
@@ -59,7 +68,14 @@ pub(super) fn follow(noise: &mut Noise, ratios: &mut [f64; 2], outcomes: &[Outco
         noise.sensor[channel] *= lift;
     }
     // once there is less than the motion itself could show, it is none
-    noise.process = (noise.process * lift).max(start::negligible(noise));
+    noise.process *= lift;
+    let dt = signals.sample_time;
+    let [to_q, to_qd] = [noise.process * dt.powi(3) / 3.0, noise.process * dt];
+    let seen = if measured[1] { to_qd >= floor(1) } else { to_q >= floor(0) };
+    if !seen {
+        noise.process = 0.0;
+    }
+    noise.process = noise.process.max(start::negligible(noise));
     let near = |new: f64, old: f64| (new / old - 1.0).abs() < STEADY;
     let none = noise.process <= start::negligible(noise);
     let settled = |channel: usize| !measured[channel] || near(noise.sensor[channel], old.sensor[channel]);

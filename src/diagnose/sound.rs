@@ -4,10 +4,14 @@ use super::fit::Fit;
 use super::judge::Trial;
 use super::piece::Piece;
 use super::screen;
-use crate::law::{Catalogue, Expression, State, Term};
+use super::variants::Scale;
+use crate::law::{Catalogue, Expression, InnerParameter, InnerRange, State, Term};
 
 /// Forces of a sound law are at most this many times as large as the largest of the law that it begins from: beyond, they cancel.
 pub(super) const CANCELLING: f64 = 4.0;
+
+/// Relative distance at which an inner parameter is at its limit.
+const AT: f64 = 1e-6;
 
 /// What a law's forces were before candidates joined.
 #[derive(Clone, Debug)]
@@ -15,6 +19,7 @@ pub(super) struct Sound<'a> {
     base: &'a Fit,
     pieces: &'a [Piece],
     largest: f64,
+    scale: Scale,
 }
 
 /// Whether physics allows the sign of that coefficient.
@@ -25,7 +30,7 @@ pub(super) fn is_physical(fit: &Fit, index: usize) -> bool {
 impl<'a> Sound<'a> {
     pub(super) fn new(base: &'a Fit, pieces: &'a [Piece]) -> Sound<'a> {
         let largest = forces(base, pieces).into_iter().fold(0.0, f64::max);
-        Sound { base, pieces, largest }
+        Sound { base, pieces, largest, scale: Scale::of(pieces, &base.states) }
     }
 
     /// Whether no coefficient of the law turned to a sign that physics does not allow it, by more than its std, and no forces are so large
@@ -46,7 +51,20 @@ impl<'a> Sound<'a> {
     /// Whether physics allows all its candidates, and the law with them is plausible.
     pub(super) fn is(&self, trial: &Trial) -> bool {
         let count = trial.fit.form.terms.len();
-        (count - trial.count..count).all(|index| is_physical(&trial.fit, index)) && self.is_plausible(&trial.fit)
+        let physical = (count - trial.count..count).all(|index| is_physical(&trial.fit, index));
+        physical && trial.terms().iter().all(|term| self.is_told(*term)) && self.is_plausible(&trial.fit)
+    }
+
+    /// Whether no inner parameter stands where the motion can no longer tell it, the effect being another one or none there.
+    fn is_told(&self, term: Term) -> bool {
+        let Some(effect) = term.effect() else { return true };
+        let values = effect.inner_values().into_iter().zip(effect.inner()).enumerate();
+        let told = |(index, (value, parameter)): (usize, (f64, &InnerParameter))| {
+            let [low, high] = self.scale.limits(effect, index);
+            let least = matches!(parameter.range, InnerRange::AtLeast(least) if value == least);
+            (least || value > low * (1.0 + AT)) && value < high * (1.0 - AT)
+        };
+        values.into_iter().all(told)
     }
 
     /// Trials with the sound ones first; among those that the record cannot tell apart the simplest.

@@ -1,13 +1,16 @@
 //! Records that switch, diagnosed stage by stage.
 //!
 //! The streaming identifier says where the law switches. An effect that the model lacks can raise alarms of its own, so the stages are
-//! taken only where their laws, each with the effect that it lacks, explain the record better than one law with the effect that it lacks:
-//! by likelihood, every coefficient counted with ½ ln N (Schwarz 1978).
+//! taken only where the coefficients of that law differ between them, and where their laws, each with the effect that it lacks, explain the
+//! record better than one law with the effect that it lacks: by likelihood, every coefficient counted with ½ ln N (Schwarz 1978).
 
-use super::diagnosis::{Diagnosis, Evidence, Finding, diagnose_model};
-use super::fit::Fit;
+use super::diagnosis::{Diagnosis, Evidence, Finding, diagnose_model, is_error};
+use super::fit::{Fit, Form, refit};
 use crate::identify::{Recording, Settings, identify_recording, settings_for};
 use crate::law::{Given, Hold, Model};
+
+/// What coefficients that differ from stage to stage explain of what one law leaves, at the least: where it leaves much, they follow its error.
+const PART: f64 = 0.03;
 
 /// One stage of a recording, diagnosed alone.
 #[derive(Clone, Debug)]
@@ -38,7 +41,8 @@ pub fn diagnose_stages(model: &Model, recordings: &[(&Recording, Hold)]) -> Swit
     let evidence = Evidence::new(recordings);
     let whole = diagnose_model(model, &evidence);
     let stages = stages(model, recordings);
-    if stages.len() <= recordings.len() {
+    let one_law = whole.as_ref().is_some_and(|whole| !differ(last(whole), &stages));
+    if stages.len() <= recordings.len() || one_law {
         return Switched { whole, stages: Vec::new() };
     }
     let diagnosed: Vec<StageDiagnosis> = stages.into_iter().map(|stage| alone(model, stage)).collect();
@@ -103,6 +107,20 @@ fn alone(model: &Model, stage: Found) -> StageDiagnosis {
     let diagnosis = diagnose_model(model, &evidence);
     let (start, end) = (samples.t()[0], samples.t()[samples.count() - 1]);
     StageDiagnosis { recording, start, end, samples, diagnosis }
+}
+
+/// Whether the law's coefficients, fitted to each stage, explain more than those of the whole record by what would be an error of the law. Noise
+/// is each stage's own in both: that a real record's error comes and goes is no switch.
+fn differ(law: &Fit, stages: &[Found]) -> bool {
+    let held = Form { held: law.coefficients.iter().map(|value| Some(*value)).collect(), ..law.form.clone() };
+    let held = Form { open: vec![Vec::new(); held.terms.len()], ..held };
+    let gain = |stage: &Found| {
+        let pieces = Evidence::new(&[(&stage.samples, stage.hold)]).pieces;
+        let [free, held] = [&law.form, &held].map(|form| refit(form, &pieces, &law.coefficients, law.noise));
+        free.zip(held).map_or(0.0, |(free, held)| free.log_likelihood - held.log_likelihood)
+    };
+    let gained: f64 = stages.iter().map(gain).sum();
+    is_error(gained, law.measurements) && gained > PART * law.lack()
 }
 
 /// Whether the stages' laws explain the record better than one law.

@@ -81,7 +81,7 @@ impl Scale {
             (Effect::Hysteresis { .. }, 1) => [0.5, 4.0],
             (Effect::Hysteresis { .. }, _) => [1.0, 8.0],
             (Effect::HiddenResonator { .. }, 0) => [0.1 * slow, 3.0 / self.sample_time],
-            (Effect::HiddenResonator { .. }, _) => [1e-4, 2.0],
+            (Effect::HiddenResonator { .. }, _) => [5e-3, 2.0],
             _ => [0.0, f64::INFINITY],
         }
     }

@@ -62,8 +62,10 @@ fn numbers(subject: &Subject, instance: &Instance) -> Vec<f64> {
     let read = |name: &str| {
         let reference = subject.reference(name);
         match name {
-            "switch.count" | "status" | "missing.effect" => f64::from(instance.integer(reference).unwrap()),
-            "valid" => f64::from(instance.boolean(reference).unwrap()),
+            "switch.count" | "status" | "missing.effect" | "law.number" => {
+                f64::from(instance.integer(reference).unwrap())
+            }
+            "valid" | "drifting" => f64::from(instance.boolean(reference).unwrap()),
             _ => instance.reals(&[reference]).unwrap()[0],
         }
     };

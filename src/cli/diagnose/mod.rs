@@ -10,7 +10,7 @@ use super::error::CommandError;
 use super::input::{Input, ModelArguments};
 use super::output;
 use super::progress::Waiting;
-use crate::diagnose::{Decision, Dependence, Diagnosis, Evidence, Finding, Visible};
+use crate::diagnose::{Decision, Dependence, Diagnosis, Evidence, Finding, StageDiagnosis, Visible};
 use crate::diagnose::{decide, depends_on, diagnose_stages, visible};
 use crate::identify::Recording;
 use crate::law::Hold;
@@ -92,12 +92,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
 fn find(input: &Input) -> Result<Found, CommandError> {
     let recordings = input.recordings();
     let found = diagnose_stages(&input.model, &recordings);
-    let (Some(finding), Some(principal)) = (found.finding(), found.principal().cloned()) else {
+    let (Some(finding), Some(principal)) = (found.finding(), found.principal()) else {
         return Err(input.undetermined());
     };
-    let stage = found.stages.iter().position(|stage| {
-        stage.diagnosis.as_ref().is_some_and(|own| own.finding == finding && own.effect == principal.effect)
-    });
+    let is_principal =
+        |stage: &StageDiagnosis| stage.diagnosis.as_ref().is_some_and(|own| std::ptr::eq(own, principal));
+    let stage = found.stages.iter().position(is_principal);
+    let principal = principal.clone();
     let principal = match stage.map(|index| &found.stages[index]) {
         Some(stage) => Answer::of(principal, &[(&stage.samples, recordings[stage.recording].1)]),
         None => Answer::of(principal, &recordings),
