@@ -45,7 +45,7 @@ fn a_slow_drift_is_said_and_followed_with_one_alarm_at_most() {
     assert!(share > 0.1, "said for {share} of the drift");
     assert!(after.iter().all(|(t, output, ..)| !output.drifting || *t > 20.0));
     assert!(drifting.iter().all(|(_, _, known, _)| known.term == Term::power(1, 0)));
-    let near = |(_, _, known, truth): &&(f64, Output, Coefficient, f64)| (known.value / truth - 1.0).abs() < 0.15;
+    let near = |(_, _, known, truth): &&(f64, Output, Coefficient, f64)| (known.value / truth - 1.0).abs() < 0.2;
     assert!(drifting.iter().all(near));
 }
 
