@@ -12,7 +12,7 @@ use super::variants::same_effect;
 use crate::law::Term;
 
 /// Share of what is unexplained that one effect must explain to be the answer though error is left.
-const ENOUGH: f64 = 0.85;
+const ENOUGH: f64 = 0.75;
 
 /// The same of several effects together, which have more freedom.
 const ENOUGH_TOGETHER: f64 = 0.95;
