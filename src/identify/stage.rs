@@ -47,6 +47,15 @@ const LOOK_AGAIN: f64 = 1.4;
 /// Variance of an innovation ÷ that of its sensor from which on the law's own error counts.
 const PROCESS_SHARE: f64 = 2.0;
 
+/// The same where the state is known from the last 30 samples alone: an innovation's variance is its sensor's times 1 + 1/30.
+const FORGETTING: f64 = 1.0 + 1.0 / 30.0;
+
+/// Nothing tells a process noise from none under which the state is remembered for ten times the longest window, samples.
+const LIFETIME: f64 = 1e7;
+
+/// Overdispersion of a record that its law does not explain: chance does not bring it to any of a dozen coefficients.
+const UNEXPLAINED: f64 = 5.0;
+
 /// Overdispersion that is no chance: with 16 blocks it is 1 ± 0.35 for one coefficient of the right law.
 const LASTING: f64 = 2.5;
 
@@ -89,6 +98,8 @@ pub struct Stage {
     pub likelihood: f64,
     /// Whether the record speaks for process noise: the law does not explain it down to the sensors' noise.
     pub process_matters: bool,
+    /// Whether the law carries the state through the whole record, with no error that lasts.
+    pub explains: bool,
     /// Factor by which error that lasts makes the covariance larger than stated; 1 where the law explains its record.
     pub overdispersion: f64,
     /// Passes closed in this stage.
@@ -182,6 +193,7 @@ impl Stage {
             gain: f64::INFINITY,
             likelihood: f64::NEG_INFINITY,
             process_matters: false,
+            explains: false,
             overdispersion: 1.0,
             blocks: Blocks::new(n),
             passes: 0,
@@ -443,11 +455,13 @@ impl Stage {
 
     /// Sensor noise follows the innovations, process noise the likelihood.
     fn follow_noise(&mut self, problem: &Problem, settings: &Settings, track: &Track) {
-        self.process_matters = Channel::ALL
-            .iter()
-            .any(|channel| track.variance(*channel) > PROCESS_SHARE * self.noise.sensor[*channel as usize]);
+        let exceeds = |factor: f64| {
+            Channel::ALL.iter().any(|channel| track.variance(*channel) > factor * self.noise.sensor[*channel as usize])
+        };
         let overdispersion = self.blocks.overdispersion(&self.pass.information);
         self.overdispersion = if overdispersion > LASTING { overdispersion } else { 1.0 };
+        self.process_matters = exceeds(PROCESS_SHARE);
+        self.explains = !exceeds(FORGETTING) && overdispersion < UNEXPLAINED;
         let given = [settings.noise_q, settings.noise_qd];
         let before = self.noise;
         for channel in Channel::ALL {
@@ -473,12 +487,21 @@ impl Stage {
             _ => 1.0,
         };
         let force = settings.noise_excitation / self.all[problem.inertia];
-        let floor = force * force * settings.sample_time + f64::MIN_POSITIVE;
+        let floor = force * force * settings.sample_time + self.unforgetting(problem, settings.sample_time);
         self.noise.process = (self.noise.process * ratio * mean).max(floor);
         let moved = |new: f64, old: f64| (new / old - 1.0).abs() > AT_REST;
         let pairs = self.noise.sensor.iter().zip(before.sensor);
         if !moved(self.noise.process, before.process) && !pairs.into_iter().any(|(new, old)| moved(*new, old)) {
             self.gain = self.gain.min(0.0);
+        }
+    }
+
+    /// Intensity of process noise below which the state is remembered for [`LIFETIME`] samples.
+    fn unforgetting(&self, problem: &Problem, dt: f64) -> f64 {
+        let [q, qd] = self.noise.sensor;
+        match problem.channels.qd {
+            true => qd / (LIFETIME.powi(2) * dt),
+            false => q / (LIFETIME.powi(4) * dt.powi(3)),
         }
     }
 

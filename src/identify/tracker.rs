@@ -84,6 +84,8 @@ pub struct Tracker {
     next_guess: u64,
     suspected: u64,
     renewed: bool,
+    /// Since which sample the evidence of a switch is more than chance brings now and then.
+    unusual_since: Option<u64>,
     next_noise_challenge: u64,
     spread: Vec<f64>,
     noise_weight: f64,
@@ -105,6 +107,12 @@ pub struct Tracker {
     trial_due: Option<u64>,
     /// Samples that the recognised law is known from.
     experience: u64,
+    /// Whether the last law that was vouched for explained its record.
+    explained: bool,
+    /// Samples that laws of late took to be vouched for.
+    acquaintance: u64,
+    /// Since which sample a law that was vouched for is contested again.
+    doubted_from: u64,
 }
 
 /// Where the identification stands.
@@ -142,6 +150,7 @@ impl Tracker {
             next_guess: 0,
             suspected: 0,
             renewed: true,
+            unusual_since: None,
             next_noise_challenge: 0,
             spread: vec![1.0; n],
             noise_weight: 0.0,
@@ -157,6 +166,9 @@ impl Tracker {
             lingering: None,
             trial_due: Some(0),
             experience: 0,
+            explained: false,
+            acquaintance: 0,
+            doubted_from: 0,
         }
     }
 
@@ -269,7 +281,8 @@ impl Tracker {
             return;
         }
         output.missing = self.stage.missing;
-        let worth_showing = self.stage.settled() && self.stage.stated_error() < TRUSTED;
+        let mixed = self.is_mixed();
+        let worth_showing = self.stage.settled() && self.stage.stated_error() < TRUSTED && !mixed;
         let worth_monitoring = worth_showing && self.stage.stands();
         if worth_showing {
             self.set_spread(problem);
@@ -278,7 +291,11 @@ impl Tracker {
             // the last law's std are none of this one's
             problem.free.iter().for_each(|index| published[*index].std = None);
         }
-        if worth_monitoring || (self.live.running && self.stage.is_calm()) {
+        let waits = self.unusual_since.is_some_and(|since| self.window.end() < since + SUSPENSE);
+        if mixed && output.valid && !waits && !output.drifting {
+            self.doubt_law(output);
+        }
+        if !waits && (worth_monitoring || (self.live.running && self.stage.is_calm() && !mixed)) {
             self.monitor_new_law(problem, output.valid);
         } else {
             self.stage.begin_pass(problem, &self.window);

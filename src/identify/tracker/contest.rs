@@ -2,6 +2,7 @@
 
 use super::{INERTIA_SPREAD, PRIOR_WIDTH, Phase, Tracker};
 use crate::evidence::Noise;
+use crate::identify::identifier::{Output, Status};
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::stage::Prior;
@@ -29,12 +30,29 @@ impl Tracker {
     /// the next challenger knows the latest record alone.
     pub(super) fn begin_afresh(&mut self) {
         let (end, since) = (self.window.end(), self.challenged_from);
-        let patience = FRESH_START + 2 * (since - self.stage.start.min(since));
-        if self.challenging || self.phase == Phase::Gathering || end - since < patience {
+        let due = match self.is_mixed() {
+            true => since.max(self.doubted_from) + self.acquaintance,
+            false => since + FRESH_START + 2 * (since - self.stage.start.min(since)),
+        };
+        if self.challenging || self.phase == Phase::Gathering || end < due {
             return;
         }
         self.start.begin(end);
         (self.challenged_from, self.next_guess) = (end, 0);
+    }
+
+    /// Whether the stage's record seems to hold several laws: a law before explained its own down to the sensors' noise, this one does not.
+    /// A record that stays so for long lacks an effect instead.
+    pub(super) fn is_mixed(&self) -> bool {
+        let unexplained = self.explained && self.recognised.is_none() && !self.stage.explains;
+        unexplained && self.stage.length(self.window.ready()) < FRESH_START
+    }
+
+    /// A law that was vouched for does not explain its record any more, and no switch does: it is contested again.
+    pub(super) fn doubt_law(&mut self, output: &mut Output) {
+        (self.doubted_from, self.next_guess) = (self.window.end(), 0);
+        (output.valid, output.identified_time) = (false, None);
+        (output.law_number, output.status) = (None, Status::ReIdentifying);
     }
 
     /// Begins a stage, or a challenger of the one there is, from what the weak rows of its record say.
@@ -57,7 +75,8 @@ impl Tracker {
         let inertia =
             problem.free_inertia().map_or(problem.known[problem.inertia], |index| guess.fit.coefficients[index]);
         let allowed = if problem.channels.q { START_ERROR } else { START_ERROR_WITHOUT_Q };
-        if guess.relative_error > allowed || !(inertia.is_finite() && inertia != 0.0) {
+        let turned = self.noise_weight > 0.0 && inertia * self.live.all[problem.inertia] < 0.0;
+        if guess.relative_error > allowed || !(inertia.is_finite() && inertia != 0.0) || turned {
             return;
         }
         let process = guess.force_intensity / (inertia * inertia) + f64::MIN_POSITIVE;
@@ -89,7 +108,8 @@ impl Tracker {
     pub(super) fn challenge_noise(&mut self, problem: &Problem, settings: &Settings) {
         let end = self.window.ready();
         let due = end >= self.next_noise_challenge && self.phase == Phase::Refining && !self.challenging;
-        if !due || !self.stage.process_matters || !self.stage.settled() || self.stage.length(end) < ENOUGH {
+        let doubtful = self.stage.process_matters || self.is_mixed();
+        if !due || !doubtful || !self.stage.settled() || self.stage.length(end) < ENOUGH {
             return;
         }
         self.next_noise_challenge = end + self.stage.length(end);

@@ -26,6 +26,8 @@ pub(super) struct Live {
     pub(super) active: Vec<bool>,
     pub(super) noise: Noise,
     pub(super) loudness: Loudness,
+    /// Of its record, as in [`Stage::overdispersion`].
+    pub(super) overdispersion: f64,
     /// Covariance of the free coefficients, n × n.
     covariance: Vec<f64>,
     /// For how long an error of the law acts one way, s.
@@ -48,6 +50,7 @@ impl Live {
             active: vec![true; n],
             noise: Noise { sensor: [1.0; 2], process: 1.0 },
             loudness: Loudness::USUAL,
+            overdispersion: 1.0,
             covariance: vec![0.0; n * n],
             lasting: 0.0,
             slopes: vec![0.0; n],
@@ -96,6 +99,7 @@ impl Live {
         self.active.copy_from_slice(&stage.active);
         self.loudness.refer(&self.noise, &stage.noise);
         self.noise = stage.noise;
+        self.overdispersion = stage.overdispersion;
         self.covariance.copy_from_slice(&stage.solution.covariance);
         let [before, last] = [window.ready() - 2, window.ready() - 1].map(|number| window.sample(number).t);
         self.lasting = stage.scales.natural_time().min(LONGEST_ERROR * (last - before));
@@ -117,6 +121,7 @@ impl Live {
         window: &Window,
     ) {
         self.noise = trials.noise(place);
+        self.overdispersion = 1.0;
         trials.hand_over(place, problem, window, &mut self.pass);
         self.pass.information.merge(&law.information);
         self.all.copy_from_slice(&problem.known);

@@ -1,10 +1,13 @@
 //! How loud the sensors are now, in terms of what the law's record knows of them: noise that changes is followed at once.
+//!
+//! Noise differs from sample to sample; what a switch adds to the innovations lasts. Half the mean square of successive differences
+//! (von Neumann, *Ann. Math. Stat.* 12 (1941), 367) hears the one and hardly the other.
 
 use crate::evidence::{Innovation, Noise};
 use serde::{Deserialize, Serialize};
 
 /// Samples that count for what is weighed now.
-const NOW: f64 = 100.0;
+const NOW: f64 = 150.0;
 
 /// Samples that count for what is published.
 const LATELY: f64 = 1000.0;
@@ -21,27 +24,33 @@ const MOST: f64 = 100.0;
 /// A reading that was left out counts for so many times its variance.
 const LEFT_OUT: f64 = 36.0;
 
-/// Running means of ε²/s by channel.
+/// Running means of half of (ε − the one before)²/s by channel.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Loudness {
+    /// The last innovations ÷ their std.
+    last: [f64; 2],
     now: [f64; 2],
     lately: [f64; 2],
 }
 
 impl Loudness {
     /// Nothing but what the record knows.
-    pub(super) const USUAL: Loudness = Loudness { now: [1.0; 2], lately: [1.0; 2] };
+    pub(super) const USUAL: Loudness = Loudness { last: [0.0; 2], now: [1.0; 2], lately: [1.0; 2] };
 
     /// Takes innovations that were weighed with the sensors' variances times [`Loudness::factor`].
     #[inline]
     pub(super) fn add(&mut self, innovations: &[Option<Innovation>; 2], measured: &[Option<f64>; 2]) {
         for channel in (0..2).filter(|channel| measured[*channel].is_some()) {
             let factor = self.factor(channel);
-            let square = innovations[channel].map(|said| factor * said.residual * said.residual * said.precision);
-            self.now[channel] += (square.unwrap_or(LEFT_OUT).min(MOST) - self.now[channel]) / NOW;
-            if let Some(square) = square {
-                self.lately[channel] += (square.min(MOST) - self.lately[channel]) / LATELY;
-            }
+            let Some(said) = innovations[channel] else {
+                self.now[channel] += (LEFT_OUT - self.now[channel]) / NOW;
+                continue;
+            };
+            let innovation = said.residual * (factor * said.precision).sqrt();
+            let last = std::mem::replace(&mut self.last[channel], innovation);
+            let square = (0.5 * (innovation - last).powi(2)).min(MOST);
+            self.now[channel] += (square - self.now[channel]) / NOW;
+            self.lately[channel] += (square - self.lately[channel]) / LATELY;
         }
     }
 

@@ -52,10 +52,19 @@ impl Tracker {
         if vouched {
             (output.valid, output.drifting) = (true, false);
             self.number_law(settings, output);
+            self.get_acquainted(output);
             output.identified_time.get_or_insert(self.now());
             if output.status != Status::SwitchSuspected {
                 output.status = Status::Tracking;
             }
+        }
+    }
+
+    /// How long a law takes to be known, and what it leaves unexplained then.
+    fn get_acquainted(&mut self, output: &Output) {
+        self.explained = self.stage.explains;
+        if output.identified_time.is_none() {
+            self.acquaintance = self.stage.length(self.window.ready()).max(self.acquaintance / 2);
         }
     }
 

@@ -15,6 +15,9 @@ const DOUBT: f64 = 2000.0;
 /// sample in so many were a trial of its own.
 const TRIAL: f64 = 80.0;
 
+/// Evidence that chance brings once in some ten thousand samples, nats.
+const UNUSUAL: f64 = 5.0;
+
 /// A law that is not vouched for needs this many times the evidence.
 const UNPROVEN: f64 = 10.0;
 
@@ -22,7 +25,7 @@ impl Tracker {
     /// The law in use has left what can be computed: everything begins anew with the next samples.
     pub(super) fn lose(&mut self, output: &mut Output) {
         let end = self.window.end();
-        self.live.running = false;
+        (self.live.running, self.unusual_since) = (false, None);
         self.bank.clear();
         self.deviation.clear();
         self.start.begin(end);
@@ -36,7 +39,7 @@ impl Tracker {
     /// Alarm, suspicion, or neither.
     pub(super) fn judge(&mut self, problem: &Problem, settings: &Settings, suspect: &Suspect, output: &mut Output) {
         let samples = self.stage.length(self.window.ready()) + self.experience;
-        let doubt = self.stage.overdispersion * (1.0 + DOUBT / samples.max(1) as f64);
+        let doubt = self.live.overdispersion * (1.0 + DOUBT / samples.max(1) as f64);
         let doubt = if output.valid { doubt } else { UNPROVEN * doubt };
         // what chance brings is known of a law that explains its record; of another all evidence seen counts as its usual one
         let explains = self.explains();
@@ -49,6 +52,8 @@ impl Tracker {
         }
         let given = settings.deviation_threshold;
         let deviates = given > 0.0 && self.deviation.is_full(self.now()) && output.deviation > given;
+        let unusual = suspect.evidence > (UNUSUAL * doubt).min(0.5 * level);
+        self.unusual_since = unusual.then(|| self.unusual_since.unwrap_or(self.window.end()));
         if suspect.evidence > level || deviates {
             match self.drift.is_moving() && self.drift_is_credible(output) {
                 true => self.begin_drift(output),
@@ -90,7 +95,7 @@ impl Tracker {
         self.drift.restart(start);
         (self.challenging, self.challenged_from) = (false, start);
         (self.next_guess, self.next_noise_challenge) = (0, 0);
-        self.live.running = false;
+        (self.live.running, self.unusual_since) = (false, None);
         self.linger(instant, output.law_number);
         self.deviation.clear();
         self.usual_deviation = 0.0;
