@@ -392,7 +392,7 @@ impl Stage {
         self.move_to_new_coefficients();
         let active = self.active.iter().filter(|active| **active).count().max(1);
         self.decrement = self.information.quadratic(&self.previous) / active as f64;
-        self.follow_noise(problem, settings, &track);
+        self.follow_noise(problem, settings, &track, self.mean_interval(window));
         self.calm = if self.is_calm() { self.calm + 1 } else { 0 };
         self.confirm();
         self.fold(window);
@@ -454,7 +454,7 @@ impl Stage {
     }
 
     /// Sensor noise follows the innovations, process noise the likelihood.
-    fn follow_noise(&mut self, problem: &Problem, settings: &Settings, track: &Track) {
+    fn follow_noise(&mut self, problem: &Problem, settings: &Settings, track: &Track, dt: f64) {
         let exceeds = |factor: f64| {
             Channel::ALL.iter().any(|channel| track.variance(*channel) > factor * self.noise.sensor[*channel as usize])
         };
@@ -487,13 +487,19 @@ impl Stage {
             _ => 1.0,
         };
         let force = settings.noise_excitation / self.all[problem.inertia];
-        let floor = force * force * settings.sample_time + self.unforgetting(problem, settings.sample_time);
+        let floor = force * force * settings.sample_time + self.unforgetting(problem, dt);
         self.noise.process = (self.noise.process * ratio * mean).max(floor);
         let moved = |new: f64, old: f64| (new / old - 1.0).abs() > AT_REST;
         let pairs = self.noise.sensor.iter().zip(before.sensor);
         if !moved(self.noise.process, before.process) && !pairs.into_iter().any(|(new, old)| moved(*new, old)) {
             self.gain = self.gain.min(0.0);
         }
+    }
+
+    /// Time from sample to sample of the record, s.
+    fn mean_interval(&self, window: &Window) -> f64 {
+        let [first, last] = [self.start, self.next - 1].map(|number| window.sample(number).t);
+        (last - first) / (self.next - 1 - self.start).max(1) as f64
     }
 
     /// Intensity of process noise below which the state is remembered for [`LIFETIME`] samples.

@@ -107,7 +107,7 @@ pub struct Tracker {
     trial_due: Option<u64>,
     /// Samples that the recognised law is known from.
     experience: u64,
-    /// Whether the last law that was vouched for explained its record.
+    /// Whether the last law that was vouched for over a long record explained it.
     explained: bool,
     /// Samples that laws of late took to be vouched for.
     acquaintance: u64,

@@ -1,6 +1,6 @@
 //! What a stage makes known, once its law is worth showing.
 
-use super::{Phase, Tracker};
+use super::{Phase, Tracker, YOUNG};
 use crate::identify::identifier::{Coefficient, Output, Status};
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
@@ -62,9 +62,12 @@ impl Tracker {
 
     /// How long a law takes to be known, and what it leaves unexplained then.
     fn get_acquainted(&mut self, output: &Output) {
-        self.explained = self.stage.explains;
+        let length = self.stage.length(self.window.ready());
+        if length >= YOUNG {
+            self.explained = self.stage.explains;
+        }
         if output.identified_time.is_none() {
-            self.acquaintance = self.stage.length(self.window.ready()).max(self.acquaintance / 2);
+            self.acquaintance = length.max(self.acquaintance / 2);
         }
     }
 

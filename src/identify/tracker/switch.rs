@@ -39,7 +39,9 @@ impl Tracker {
     /// Alarm, suspicion, or neither.
     pub(super) fn judge(&mut self, problem: &Problem, settings: &Settings, suspect: &Suspect, output: &mut Output) {
         let samples = self.stage.length(self.window.ready()) + self.experience;
-        let doubt = self.live.overdispersion * (1.0 + DOUBT / samples.max(1) as f64);
+        // a stage that does not explain what a law like it did may hold a switch already
+        let overdispersion = if self.explained { self.live.overdispersion } else { self.stage.overdispersion };
+        let doubt = overdispersion * (1.0 + DOUBT / samples.max(1) as f64);
         let doubt = if output.valid { doubt } else { UNPROVEN * doubt };
         // what chance brings is known of a law that explains its record; of another all evidence seen counts as its usual one
         let explains = self.explains();
