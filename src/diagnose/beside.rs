@@ -7,7 +7,7 @@
 use super::fit::{Form, Parts};
 use super::inner_slopes::{self, Along, Sought};
 use super::piece::Piece;
-use super::run::Sums;
+use super::run::{Span, Sums};
 use crate::law::{Effect, Hold, Line, Motion, State, Term, Trajectory, interval_forces};
 use nalgebra::DMatrix;
 use std::rc::Rc;
@@ -19,12 +19,14 @@ const NUDGE: f64 = 1e-3;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Beside {
     /// By piece and interval: the force of every series per unit of its coefficient, of every inner parameter that is sought per unit of its
-    /// logarithm, then of every beginning per unit of it.
+    /// logarithm, then of every beginning of the piece per unit of it.
     pub(super) rows: Rc<Vec<Vec<Vec<Line>>>>,
     /// By how much each beginning may be expected to differ from rest.
     spreads: Vec<f64>,
     /// Number of inner parameters.
     inner: usize,
+    /// Number of beginnings of one piece.
+    own: usize,
     /// How far from rest the memories began when the rows were made, piece by piece …
     beginnings: Vec<f64>,
     /// … and by how much they changed since.
@@ -40,11 +42,13 @@ impl Beside {
     /// Forces of 0, as long as there is no motion.
     pub(super) fn none(form: &Form, parts: &Parts, inner: &[Sought], pieces: &[Piece]) -> Beside {
         let count = Beside::count(form, parts, pieces);
-        let columns = parts.series.len() + inner.len() + count;
+        let own = count / pieces.len().max(1);
+        let columns = parts.series.len() + inner.len() + own;
         let rows = |piece: &Piece| vec![vec![[0.0; 2]; columns]; if columns > 0 { piece.len() - 1 } else { 0 }];
         Beside {
             rows: Rc::new(pieces.iter().map(rows).collect()),
             inner: inner.len(),
+            own,
             spreads: vec![1.0; count],
             beginnings: vec![0.0; count],
             changes: vec![0.0; count],
@@ -63,8 +67,9 @@ impl Beside {
         let mut all = Beside::none(form, &parts, inner, pieces);
         let rows = Rc::make_mut(&mut all.rows);
         let smooth = Smooth::of(form, &parts, coefficients);
-        let (mut column, mut first) = (parts.series.len() + inner.len(), 0);
+        let mut first = 0;
         for (number, (piece, states)) in pieces.iter().zip(states).enumerate() {
+            let mut column = parts.series.len() + inner.len();
             let course = Course::of(piece, states);
             let bends = smooth.bends(piece, states);
             let begin = |term: usize| own_beginnings(form, &parts, term, &beginnings[first..]);
@@ -101,10 +106,17 @@ impl Beside {
         all
     }
 
-    /// What multiplies the columns of the rows under these coefficients of the form.
-    pub(super) fn weights(&self, parts: &Parts, coefficients: &[f64]) -> Vec<f64> {
-        let own = parts.series.iter().map(|index| coefficients[*index]);
-        own.chain(std::iter::repeat_n(0.0, self.inner)).chain(self.changes.iter().copied()).collect()
+    /// What multiplies the columns of the rows of the piece of that number under these coefficients of the form.
+    pub(super) fn weights(&self, parts: &Parts, coefficients: &[f64], piece: usize) -> Vec<f64> {
+        let series = parts.series.iter().map(|index| coefficients[*index]);
+        let changes = &self.changes[piece * self.own..(piece + 1) * self.own];
+        series.chain(std::iter::repeat_n(0.0, self.inner)).chain(changes.iter().copied()).collect()
+    }
+
+    /// Where the columns of the piece of that number stand among the unknowns of all pieces.
+    pub(super) fn span(&self, parts: &Parts, piece: usize) -> Span {
+        let shared = parts.unknowns.len() + self.inner;
+        Span { shared, first: piece * self.own, all: self.spreads.len() }
     }
 
     /// Changes the beginnings by a fraction of the last unknowns of a step.

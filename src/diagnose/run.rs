@@ -8,7 +8,7 @@
 
 use super::piece::Piece;
 use super::tableau::Gram;
-use crate::evidence::{Channel, Filter, Innovation, Noise, Observation, Pass, gains};
+use crate::evidence::{Channel, Filter, Innovation, LogSum, Noise, Observation, Pass, gains};
 use crate::law::{Drive, Line, Motion, NODES, State, Term};
 use nalgebra::{DMatrix, DVector};
 
@@ -43,7 +43,7 @@ pub struct Sums {
     /// Σ ε²/s by channel.
     pub energy: [f64; 2],
     /// Σ ln s.
-    pub log_variance: f64,
+    pub log_variance: LogSum,
     /// Number of innovations by channel.
     pub count: [f64; 2],
 }
@@ -111,6 +111,24 @@ pub struct Outcome {
     pub finite: bool,
 }
 
+/// Where the unknowns of a piece stand among those of all: first what all pieces share, then each piece's own.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
+    /// Unknowns that all pieces share.
+    pub shared: usize,
+    /// Unknowns of the pieces before, beside them.
+    pub first: usize,
+    /// Unknowns of all pieces, beside them.
+    pub all: usize,
+}
+
+impl Span {
+    /// The place among all of the piece's unknown of that number.
+    pub fn place(self, unknown: usize) -> usize {
+        if unknown < self.shared { unknown } else { self.first + unknown }
+    }
+}
+
 impl Sums {
     /// Nothing seen of `unknowns` and `candidates`.
     pub fn none(unknowns: usize, candidates: usize) -> Sums {
@@ -121,9 +139,26 @@ impl Sums {
             own: DVector::zeros(candidates),
             own_score: DVector::zeros(candidates),
             energy: [0.0; 2],
-            log_variance: 0.0,
+            log_variance: LogSum::default(),
             count: [0.0; 2],
         }
+    }
+
+    /// The same sums among the unknowns of all pieces.
+    fn among(self, span: Span) -> Sums {
+        let own = self.score.len();
+        if own == span.shared + span.all {
+            return self;
+        }
+        let mut all = Sums::none(span.shared + span.all, self.own.len());
+        for row in 0..own {
+            all.score[span.place(row)] = self.score[row];
+            all.cross.row_mut(span.place(row)).copy_from(&self.cross.row(row));
+            for column in 0..own {
+                all.information[(span.place(row), span.place(column))] = self.information[(row, column)];
+            }
+        }
+        Sums { information: all.information, score: all.score, cross: all.cross, ..self }
     }
 
     /// Adds another stretch's.
@@ -133,7 +168,7 @@ impl Sums {
         self.cross += &other.cross;
         self.own += &other.own;
         self.own_score += &other.own_score;
-        self.log_variance += other.log_variance;
+        self.log_variance.add_logarithm(other.log_variance.total());
         for channel in 0..2 {
             self.energy[channel] += other.energy[channel];
             self.count[channel] += other.count[channel];
@@ -147,21 +182,21 @@ impl Sums {
 
     /// Log-likelihood, up to a constant.
     pub fn log_likelihood(&self) -> f64 {
-        -0.5 * (self.log_variance + self.energy[0] + self.energy[1])
+        -0.5 * (self.log_variance.total() + self.energy[0] + self.energy[1])
     }
 
     /// Says energies and log-likelihood under variances that are these times as large, by channel.
     pub fn rescale(&mut self, scale: [f64; 2]) {
         for ((energy, count), scale) in self.energy.iter_mut().zip(self.count).zip(scale) {
             *energy /= scale;
-            self.log_variance += count * scale.ln();
+            self.log_variance.add_logarithm(count * scale.ln());
         }
     }
 
     fn add(&mut self, unknowns: &[f64], candidates: &[f64], channel: Channel, innovation: &Innovation) {
         let (weight, residual) = (innovation.precision, innovation.residual);
         self.energy[channel as usize] += residual * residual * weight;
-        self.log_variance += innovation.variance.ln();
+        self.log_variance.add(innovation.variance);
         self.count[channel as usize] += 1.0;
         for (column, psi) in unknowns.iter().enumerate() {
             let scaled = psi * weight;
@@ -225,8 +260,9 @@ pub fn run(
     let mut unknowns = vec![0.0; n + extra];
     pass.begin(first);
     for (k, observation) in piece.observations.iter().enumerate() {
-        let observation = beside(observation, law.series, series.get(k));
-        let innovations = pass.step(&motion, &free, &law.noise, &observation);
+        let relieved = series.get(k).map(|forces| beside(observation, law.series, forces));
+        let observation = relieved.as_ref().unwrap_or(observation);
+        let innovations = pass.step(&motion, &free, &law.noise, observation);
         let inverse_mass = motion.mass(pass.filter.state.q).recip();
         let gains = gains(&innovations);
         if let Some(forces) = series.get(k) {
@@ -257,6 +293,12 @@ pub fn run(
 }
 
 impl Outcome {
+    /// The same with its sums among the unknowns of all pieces.
+    pub fn among(mut self, span: Span) -> Outcome {
+        self.sums = self.sums.into_iter().map(|sums| sums.among(span)).collect();
+        self
+    }
+
     fn none(first: Filter, [unknowns, candidates]: [usize; 2], samples: usize) -> Outcome {
         Outcome {
             sums: vec![Sums::none(unknowns, candidates); STRETCHES],
@@ -272,8 +314,7 @@ impl Outcome {
 }
 
 /// The observation with the series' forces taken off its excitation.
-fn beside(observation: &Observation, coefficients: &[f64], forces: Option<&Vec<Line>>) -> Observation {
-    let Some(forces) = forces.filter(|_| !coefficients.is_empty()) else { return *observation };
+fn beside(observation: &Observation, coefficients: &[f64], forces: &[Line]) -> Observation {
     let sum = |end: usize| coefficients.iter().zip(forces).map(|(coefficient, line)| coefficient * line[end]).sum();
     let [start, end]: Line = [sum(0), sum(1)];
     let drive = match observation.drive {

@@ -5,6 +5,7 @@
 //! neither of them alone gains much: the search for one after the other takes what imitates their sum.
 
 use super::fit::solve;
+use super::run::Span;
 use crate::evidence::Innovation;
 use nalgebra::{DMatrix, DVector};
 
@@ -18,6 +19,8 @@ const OWN: f64 = 1e-7;
 #[derive(Clone, Debug)]
 pub(super) struct Gram {
     unknowns: usize,
+    /// Where those of the piece that is run stand.
+    span: Span,
     block: DMatrix<f64>,
     filled: usize,
     sum: DMatrix<f64>,
@@ -27,14 +30,23 @@ impl Gram {
     /// Nothing seen of so many columns.
     pub(super) fn none(unknowns: usize, candidates: usize) -> Gram {
         let width = unknowns + candidates + 1;
-        Gram { unknowns, block: DMatrix::zeros(width, BLOCK), filled: 0, sum: DMatrix::zeros(width, width) }
+        let span = Span { shared: unknowns, first: 0, all: 0 };
+        Gram { unknowns, span, block: DMatrix::zeros(width, BLOCK), filled: 0, sum: DMatrix::zeros(width, width) }
+    }
+
+    /// Begins a piece whose unknowns stand there.
+    pub(super) fn begin(&mut self, span: Span) {
+        self.span = span;
     }
 
     /// Adds an innovation with the sensitivities of what was expected.
     pub(super) fn add(&mut self, unknowns: &[f64], candidates: &[f64], innovation: &Innovation) {
         let weight = innovation.precision.sqrt();
-        let entries = unknowns.iter().chain(candidates).chain([&innovation.residual]);
-        self.block.column_mut(self.filled).iter_mut().zip(entries).for_each(|(slot, entry)| *slot = entry * weight);
+        let mut column = self.block.column_mut(self.filled);
+        column.rows_mut(0, self.unknowns).fill(0.0);
+        unknowns.iter().enumerate().for_each(|(index, entry)| column[self.span.place(index)] = entry * weight);
+        let rest = candidates.iter().chain([&innovation.residual]);
+        column.iter_mut().skip(self.unknowns).zip(rest).for_each(|(slot, entry)| *slot = entry * weight);
         self.filled += 1;
         if self.filled == BLOCK {
             self.flush();
