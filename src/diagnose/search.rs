@@ -25,6 +25,9 @@ const NEARLY: f64 = 0.9;
 /// Part of what a set promises that explains the parts of a record below which others are not tried there.
 const FAR: f64 = 0.8;
 
+/// The same of a set that does not explain them.
+const FAR_BEHIND: f64 = 0.5;
+
 /// Gain, nats, inner parameters paid for, that brings a candidate before a law that leaves no evident error.
 const PROMISING: f64 = 3.0;
 
@@ -95,17 +98,18 @@ impl Search<'_> {
     }
 }
 
-/// The sets in the law on parts of a record, best first; once one explains them, no set that promises far less.
+/// The sets in the law on parts of a record, best first; none that promises far less than one before.
 fn previewed(base: &Fit, pieces: &[Piece], proposals: &[Proposal]) -> Vec<Trial> {
     let mut trials: Vec<Trial> = Vec::new();
-    let mut enough = 0.0;
-    for proposal in proposals.iter().filter(|proposal| proposal.gain > 0.0) {
-        if proposal.gain < FAR * enough {
+    let mut least = 0.0_f64;
+    for proposal in proposals {
+        if proposal.gain < least {
             break;
         }
         let Some(trial) = Trial::of(base, pieces, proposal) else { continue };
-        if enough == 0.0 && !is_evident(&trial.fit) && trial.is_physical() {
-            enough = proposal.gain;
+        if trial.is_physical() {
+            let part = if is_evident(&trial.fit) { FAR_BEHIND } else { FAR };
+            least = least.max(part * proposal.gain);
         }
         trials.push(trial);
     }

@@ -188,4 +188,28 @@ mod tests {
         assert!((tableau.shift(&[0, 1], &both.coefficients)[0] - 0.4).abs() < 1e-9);
         assert_eq!(tableau.joint([0, 1, 2]), None);
     }
+
+    /// Two pieces with an unknown of their own each: what one of them sees says nothing of the other's.
+    #[test]
+    fn a_piece_adds_to_its_own_unknowns() {
+        let mut gram = Gram::none(3, 1);
+        for (first, offset) in [(0, 0.4), (1, -0.7)] {
+            gram.begin(Span { shared: 1, first, all: 2 });
+            for k in 0..300 {
+                let (slope, force) = (k as f64 * 0.01, (0.3 * k as f64).sin());
+                let residual = 2.0 * slope + offset + 5.0 * force;
+                gram.add(
+                    &[slope, 1.0],
+                    &[force],
+                    &Innovation { residual, variance: 1.0, precision: 1.0, gain: [0.0; 2] },
+                );
+            }
+        }
+        let tableau = gram.swept().unwrap();
+        let found = tableau.joint([0]).unwrap();
+        assert!((found.coefficients[0] - 5.0).abs() < 1e-9, "{found:?}");
+        let shift = tableau.shift(&[0], &found.coefficients);
+        let expected = [2.0, 0.4, -0.7];
+        assert!(shift.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-9), "{shift}");
+    }
 }
