@@ -195,7 +195,8 @@ impl<'a> Descent<'a> {
         let outcome = |(number, ((piece, rows), place)): (usize, ((&Piece, &Vec<_>), &Place))| {
             let series = self.beside.weights(&self.parts, &self.coefficients, number);
             let (free, noise) = (&self.parts.free, self.noise);
-            let law = Law { terms: &terms, coefficients: &coefficients, free, series: &series, noise };
+            let tangents = &self.beside.tangents[number];
+            let law = Law { terms: &terms, coefficients: &coefficients, free, series: &series, tangents, noise };
             run::run(&law, piece, pass, rows, &[], *place, None).among(self.beside.span(&self.parts, number))
         };
         pieces.map(outcome).collect()
@@ -221,7 +222,7 @@ impl<'a> Descent<'a> {
     /// Renews the series along a motion that the measurements hold: one that the law alone carries from end to end would follow its own errors,
     /// growing from pass to pass where a memory resonates.
     fn follow(&mut self, outcomes: &[Outcome], pass: &mut Pass) {
-        if self.parts.series.is_empty() {
+        if self.parts.series.is_empty() || outcomes.iter().all(|outcome| outcome.smoothed.is_some()) {
             return self.take_series(outcomes);
         }
         let scale = Scale::of(self.pieces, &self.smoothed(outcomes));
@@ -258,7 +259,11 @@ impl<'a> Descent<'a> {
     }
 
     fn smoothed(&self, outcomes: &[Outcome]) -> Vec<Vec<State>> {
-        outcomes.iter().map(|outcome| smooth(&outcome.first, &outcome.steps)).collect()
+        let of = |outcome: &Outcome| match &outcome.smoothed {
+            Some(states) => states.clone(),
+            None => smooth(&outcome.first, &outcome.steps),
+        };
+        outcomes.iter().map(of).collect()
     }
 
     fn summary(&self, log_likelihood: f64, covariance: DMatrix<f64>, measurements: f64) -> Fit {

@@ -6,6 +6,7 @@
 //! through the filter like that of any term, so that its coefficient, its information and what it would gain are those of the
 //! likelihood, with the noise of all samples accounted for.
 
+use super::loop_run;
 use super::piece::Piece;
 use super::tableau::Gram;
 use crate::evidence::{Channel, Filter, Innovation, LogSum, Noise, Observation, Pass, gains};
@@ -23,8 +24,25 @@ pub struct Law<'a> {
     pub free: &'a [usize],
     /// What multiplies the series.
     pub series: &'a [f64],
+    /// How one of the series changes with the displacement, one for every interval; empty where none does.
+    pub tangents: &'a [Tangent],
     /// Variances of the noise.
     pub noise: Noise,
+}
+
+/// How a hysteresis follows a motion beside the one along which its series was computed, in an interval.
+#[derive(Clone, Copy, Debug)]
+pub struct Tangent {
+    /// Which of the series.
+    pub series: usize,
+    /// dz/dq.
+    pub slope: f64,
+    /// What is left at the end of a difference in z at the start.
+    pub kept: f64,
+    /// The displacement as a line with its mean and its first moment …
+    pub displacement: Line,
+    /// … and at the ends.
+    pub ends: [f64; 2],
 }
 
 /// Sums over a stretch of samples: what it says on the unknowns (free terms, then series) and on each candidate beside them.
@@ -109,6 +127,8 @@ pub struct Outcome {
     pub count: [f64; 2],
     /// Whether the motion stayed finite.
     pub finite: bool,
+    /// Smoothed states where the law's memory is part of the state, and the steps do not tell them.
+    pub smoothed: Option<Vec<State>>,
 }
 
 /// Where the unknowns of a piece stand among those of all: first what all pieces share, then each piece's own.
@@ -193,7 +213,7 @@ impl Sums {
         }
     }
 
-    fn add(&mut self, unknowns: &[f64], candidates: &[f64], channel: Channel, innovation: &Innovation) {
+    pub(super) fn add(&mut self, unknowns: &[f64], candidates: &[f64], channel: Channel, innovation: &Innovation) {
         let (weight, residual) = (innovation.precision, innovation.residual);
         self.energy[channel as usize] += residual * residual * weight;
         self.log_variance.add(innovation.variance);
@@ -215,6 +235,18 @@ impl Sums {
                 *entry += scaled * other;
             }
         }
+    }
+}
+
+impl Law<'_> {
+    /// Terms and coefficients; where a series has tangents, with a linear stiffness at the end that they set.
+    pub(super) fn bent(&self) -> (Vec<Term>, Vec<f64>) {
+        let (mut terms, mut coefficients) = (self.terms.to_vec(), self.coefficients.to_vec());
+        if !self.tangents.is_empty() {
+            terms.push(Term::power(1, 0));
+            coefficients.push(0.0);
+        }
+        (terms, coefficients)
     }
 }
 
@@ -249,6 +281,9 @@ pub fn run(
     place: Place,
     mut joint: Option<&mut Gram>,
 ) -> Outcome {
+    if !law.tangents.is_empty() {
+        return loop_run::run(law, piece, pass, series, candidates, place, joint);
+    }
     let free: Vec<Term> = law.free.iter().map(|index| law.terms[*index]).collect();
     let (n, extra) = (free.len(), law.series.len());
     let kinds = candidates.first().map_or(0, Vec::len);
@@ -260,7 +295,7 @@ pub fn run(
     let mut unknowns = vec![0.0; n + extra];
     pass.begin(first);
     for (k, observation) in piece.observations.iter().enumerate() {
-        let relieved = series.get(k).map(|forces| beside(observation, law.series, forces));
+        let relieved = series.get(k).map(|forces| beside(observation, law.series, forces, [0.0; 2]));
         let observation = relieved.as_ref().unwrap_or(observation);
         let innovations = pass.step(&motion, &free, &law.noise, observation);
         let inverse_mass = motion.mass(pass.filter.state.q).recip();
@@ -299,7 +334,7 @@ impl Outcome {
         self
     }
 
-    fn none(first: Filter, [unknowns, candidates]: [usize; 2], samples: usize) -> Outcome {
+    pub(super) fn none(first: Filter, [unknowns, candidates]: [usize; 2], samples: usize) -> Outcome {
         Outcome {
             sums: vec![Sums::none(unknowns, candidates); STRETCHES],
             first,
@@ -309,13 +344,17 @@ impl Outcome {
             squares: [0.0; 2],
             count: [0.0; 2],
             finite: true,
+            smoothed: None,
         }
     }
 }
 
-/// The observation with the series' forces taken off its excitation.
-fn beside(observation: &Observation, coefficients: &[f64], forces: &[Line]) -> Observation {
-    let sum = |end: usize| coefficients.iter().zip(forces).map(|(coefficient, line)| coefficient * line[end]).sum();
+/// The observation with the series' forces, and a force beside them, taken off its excitation.
+pub(super) fn beside(observation: &Observation, coefficients: &[f64], forces: &[Line], besides: Line) -> Observation {
+    let sum = |end: usize| {
+        let forces = coefficients.iter().zip(forces).map(|(coefficient, line)| coefficient * line[end]);
+        forces.sum::<f64>() + besides[end]
+    };
     let [start, end]: Line = [sum(0), sum(1)];
     let drive = match observation.drive {
         Drive::Held(value) => Drive::Line(value - start, value - end),
@@ -329,7 +368,7 @@ fn beside(observation: &Observation, coefficients: &[f64], forces: &[Line]) -> O
 }
 
 /// The state at the first sample, from it and its neighbours alone.
-fn first_state(piece: &Piece, noise: &Noise) -> Filter {
+pub(super) fn first_state(piece: &Piece, noise: &Noise) -> Filter {
     let [q, qd] = noise.sensor;
     let dt = piece.t[1] - piece.t[0];
     match piece.measured() {

@@ -67,7 +67,8 @@ fn run_all(fit: &Fit, pieces: &[Piece], columns: &[Vec<Vec<f64>>], mut joint: Op
         let rows = means::rows(columns);
         let weights = beside.weights(&parts, &fit.coefficients, number);
         let (free, noise) = (&parts.free, fit.noise);
-        let law = Law { terms: &terms, coefficients: &of_state, free, series: &weights, noise };
+        let tangents = &beside.tangents[number];
+        let law = Law { terms: &terms, coefficients: &of_state, free, series: &weights, tangents, noise };
         let span = beside.span(&parts, number);
         if let Some(joint) = joint.as_deref_mut() {
             joint.begin(span);
