@@ -7,8 +7,8 @@
 use super::fit::{Form, Parts};
 use super::inner_slopes::{self, Along, Sought};
 use super::piece::Piece;
-use super::run::Sums;
-use crate::law::{Effect, Hold, Line, Motion, State, Term, Trajectory, interval_forces};
+use super::run::{Span, Sums, Tangent};
+use crate::law::{Effect, Hold, Line, Model, Motion, State, Term, Trajectory, interval_forces};
 use nalgebra::DMatrix;
 use std::rc::Rc;
 
@@ -19,12 +19,16 @@ const NUDGE: f64 = 1e-3;
 #[derive(Clone, Debug, Default)]
 pub(super) struct Beside {
     /// By piece and interval: the force of every series per unit of its coefficient, of every inner parameter that is sought per unit of its
-    /// logarithm, then of every beginning per unit of it.
+    /// logarithm, then of every beginning of the piece per unit of it.
     pub(super) rows: Rc<Vec<Vec<Vec<Line>>>>,
+    /// By piece and interval: how the series of a hysteresis changes where the motion leaves the smoothed one.
+    pub(super) tangents: Rc<Vec<Vec<Tangent>>>,
     /// By how much each beginning may be expected to differ from rest.
     spreads: Vec<f64>,
     /// Number of inner parameters.
     inner: usize,
+    /// Number of beginnings of one piece.
+    own: usize,
     /// How far from rest the memories began when the rows were made, piece by piece …
     beginnings: Vec<f64>,
     /// … and by how much they changed since.
@@ -40,11 +44,14 @@ impl Beside {
     /// Forces of 0, as long as there is no motion.
     pub(super) fn none(form: &Form, parts: &Parts, inner: &[Sought], pieces: &[Piece]) -> Beside {
         let count = Beside::count(form, parts, pieces);
-        let columns = parts.series.len() + inner.len() + count;
+        let own = count / pieces.len().max(1);
+        let columns = parts.series.len() + inner.len() + own;
         let rows = |piece: &Piece| vec![vec![[0.0; 2]; columns]; if columns > 0 { piece.len() - 1 } else { 0 }];
         Beside {
             rows: Rc::new(pieces.iter().map(rows).collect()),
+            tangents: Rc::new(vec![Vec::new(); pieces.len()]),
             inner: inner.len(),
+            own,
             spreads: vec![1.0; count],
             beginnings: vec![0.0; count],
             changes: vec![0.0; count],
@@ -63,8 +70,9 @@ impl Beside {
         let mut all = Beside::none(form, &parts, inner, pieces);
         let rows = Rc::make_mut(&mut all.rows);
         let smooth = Smooth::of(form, &parts, coefficients);
-        let (mut column, mut first) = (parts.series.len() + inner.len(), 0);
+        let mut first = 0;
         for (number, (piece, states)) in pieces.iter().zip(states).enumerate() {
+            let mut column = parts.series.len() + inner.len();
             let course = Course::of(piece, states);
             let bends = smooth.bends(piece, states);
             let begin = |term: usize| own_beginnings(form, &parts, term, &beginnings[first..]);
@@ -80,6 +88,11 @@ impl Beside {
                 let force =
                     |begin: &[f64]| interval_forces(term, &form.expressions, &course.trajectory(), &bends, begin);
                 let own = force(begin);
+                if form.terms.len() < Model::MAX_TERMS
+                    && let Some(tangents) = tangents(position, term, piece, states, &own)
+                {
+                    Rc::make_mut(&mut all.tangents)[number] = tangents;
+                }
                 let spreads = spreads(term, &own, &piece.excitation);
                 put(&mut rows[number], position, &own, |line| *line);
                 for (offset, spread) in spreads.iter().enumerate() {
@@ -101,10 +114,17 @@ impl Beside {
         all
     }
 
-    /// What multiplies the columns of the rows under these coefficients of the form.
-    pub(super) fn weights(&self, parts: &Parts, coefficients: &[f64]) -> Vec<f64> {
-        let own = parts.series.iter().map(|index| coefficients[*index]);
-        own.chain(std::iter::repeat_n(0.0, self.inner)).chain(self.changes.iter().copied()).collect()
+    /// What multiplies the columns of the rows of the piece of that number under these coefficients of the form.
+    pub(super) fn weights(&self, parts: &Parts, coefficients: &[f64], piece: usize) -> Vec<f64> {
+        let series = parts.series.iter().map(|index| coefficients[*index]);
+        let changes = &self.changes[piece * self.own..(piece + 1) * self.own];
+        series.chain(std::iter::repeat_n(0.0, self.inner)).chain(changes.iter().copied()).collect()
+    }
+
+    /// Where the columns of the piece of that number stand among the unknowns of all pieces.
+    pub(super) fn span(&self, parts: &Parts, piece: usize) -> Span {
+        let shared = parts.unknowns.len() + self.inner;
+        Span { shared, first: piece * self.own, all: self.spreads.len() }
     }
 
     /// Changes the beginnings by a fraction of the last unknowns of a step.
@@ -168,6 +188,26 @@ fn put<T>(rows: &mut [Vec<Line>], column: usize, values: &[T], line: impl Fn(&T)
     rows.iter_mut().zip(values).for_each(|(row, value)| row[column] = line(value));
 }
 
+/// How a hysteresis changes with the displacement over every interval; none of any other term.
+fn tangents(series: usize, term: Term, piece: &Piece, states: &[State], forces: &[Line]) -> Option<Vec<Tangent>> {
+    let effect = term.effect().filter(|effect| matches!(effect, Effect::Hysteresis { .. }))?;
+    let tangent = |(k, line): (usize, &Line)| {
+        let (from, to) = (states[k], states[k + 1]);
+        let (z, way) = (0.5 * (line[0] + line[1]), to.q - from.q);
+        let [slope, kept] = effect.loop_tangent(z, way).unwrap_or([0.0, 1.0]);
+        let displacement = displacement(from, to, piece.t[k + 1] - piece.t[k]);
+        Tangent { series, slope, kept, displacement, ends: [from.q, to.q] }
+    };
+    Some(forces.iter().enumerate().map(tangent).collect())
+}
+
+/// The line with the mean and the first moment of the cubic between two states (Hermite).
+fn displacement(from: State, to: State, dt: f64) -> Line {
+    let mean = 0.5 * (from.q + to.q) + dt / 12.0 * (from.qd - to.qd);
+    let moment = 0.1 * (to.q - from.q) - dt / 120.0 * (from.qd + to.qd);
+    [mean - 6.0 * moment, mean + 6.0 * moment]
+}
+
 /// Spreads of a term's beginnings; 1 where the motion is none.
 fn spreads(term: Term, forces: &[Line], excitation: &[f64]) -> Vec<f64> {
     let Some(effect) = term.effect() else { return Vec::new() };
@@ -220,5 +260,20 @@ impl Course<'_> {
     pub(super) fn trajectory(&self) -> Trajectory<'_> {
         let Piece { t, excitation, hold, .. } = self.piece;
         Trajectory { t, q: &self.q, qd: &self.qd, excitation, hold: *hold }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// q = 1 − 2 s + 3 s² + 4 s³ over an interval: ∫ q ds = 2, ∫ q (s − ½) ds = 23 ÷ 60.
+    #[test]
+    fn a_displacement_keeps_the_mean_and_the_moment_of_its_cubic() {
+        let dt = 0.1;
+        let (from, to) = (State { q: 1.0, qd: -2.0 / dt }, State { q: 6.0, qd: 16.0 / dt });
+        let [start, end] = displacement(from, to, dt);
+        assert!((0.5 * (start + end) - 2.0).abs() < 1e-12, "{start}, {end}");
+        assert!(((end - start) / 12.0 - 23.0 / 60.0).abs() < 1e-12, "{start}, {end}");
     }
 }

@@ -59,6 +59,9 @@ pub(super) fn conclude(base: &Fit, evidence: &Evidence, found: &Search, singles:
     let mut reached: Vec<(Trial, Vec<Member>)> = Vec::new();
     for size in 2..=DEPTH {
         let (trials, best) = together(base, evidence, found, sound, (size, explains));
+        if enough.is_some() && trials.is_empty() {
+            break;
+        }
         let Some((trial, members)) = best else { continue };
         if !is_evident(&trial.fit) {
             return several(base, trial, members, &trials, sound);

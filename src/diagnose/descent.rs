@@ -31,8 +31,11 @@ const LARGEST_RATIO: f64 = 2.5;
 /// Rate at which the measurements hold the motion of the series, relative to the motion's own angular frequency.
 const HELD: f64 = 1.0;
 
+/// Gain, nats, that a pass must bring to count as one.
+const PROGRESS: f64 = 0.3;
+
 /// Passes without a gain after which a descent has come to its end.
-const IDLE: usize = 6;
+const IDLE: usize = 5;
 
 /// The same where no step had to be taken back.
 const STILL: usize = 2;
@@ -86,7 +89,7 @@ impl<'a> Descent<'a> {
             let mut sums = total(&outcomes);
             let log_likelihood = self.log_likelihood(&outcomes, &sums);
             let reached = best.as_ref().map_or(f64::NEG_INFINITY, |(best, ..)| best.log_likelihood);
-            let gained = log_likelihood > reached + GAIN;
+            let gained = log_likelihood > reached + PROGRESS;
             idle = if gained { 0 } else { idle + 1 };
             still = if gained || needed == f64::NEG_INFINITY { 0 } else { still + 1 };
             if idle > IDLE || still > STILL {
@@ -112,7 +115,9 @@ impl<'a> Descent<'a> {
                 fit.noise = levels::calibrated(&self.noise, &outcomes);
                 (fit, self.clone())
             });
-            let steady = levels::follow(&mut self.noise, &mut self.ratios, &outcomes, self.signals) && followed;
+            let steady = levels::follow(&mut self.noise, &mut self.ratios, &outcomes, self.signals);
+            let level = (log_likelihood - needed).abs() < GAIN;
+            let steady = (steady || level) && followed;
             calm = if steady && decrement < SETTLED.max(1e-9 * sums.measurements()) { calm + 1 } else { 0 };
             if calm < 2 {
                 (last, needed) = (Some(self.clone()), log_likelihood);
@@ -185,17 +190,16 @@ impl<'a> Descent<'a> {
     fn run(&self, pass: &mut Pass) -> Vec<Outcome> {
         let terms: Vec<Term> = self.parts.of_state.iter().map(|index| self.form.terms[*index]).collect();
         let coefficients: Vec<f64> = self.parts.of_state.iter().map(|index| self.coefficients[*index]).collect();
-        let series = self.beside.weights(&self.parts, &self.coefficients);
-        let law = Law {
-            terms: &terms,
-            coefficients: &coefficients,
-            free: &self.parts.free,
-            series: &series,
-            noise: self.noise,
-        };
         pass.ratios = self.ratios;
-        let pieces = self.pieces.iter().zip(self.beside.rows.iter()).zip(&self.places);
-        pieces.map(|((piece, rows), place)| run::run(&law, piece, pass, rows, &[], *place, None)).collect()
+        let pieces = self.pieces.iter().zip(self.beside.rows.iter()).zip(&self.places).enumerate();
+        let outcome = |(number, ((piece, rows), place)): (usize, ((&Piece, &Vec<_>), &Place))| {
+            let series = self.beside.weights(&self.parts, &self.coefficients, number);
+            let (free, noise) = (&self.parts.free, self.noise);
+            let tangents = &self.beside.tangents[number];
+            let law = Law { terms: &terms, coefficients: &coefficients, free, series: &series, tangents, noise };
+            run::run(&law, piece, pass, rows, &[], *place, None).among(self.beside.span(&self.parts, number))
+        };
+        pieces.map(outcome).collect()
     }
 
     /// Whether the series have followed the motion that they are part of: they are renewed pass by pass.
@@ -218,7 +222,7 @@ impl<'a> Descent<'a> {
     /// Renews the series along a motion that the measurements hold: one that the law alone carries from end to end would follow its own errors,
     /// growing from pass to pass where a memory resonates.
     fn follow(&mut self, outcomes: &[Outcome], pass: &mut Pass) {
-        if self.parts.series.is_empty() {
+        if self.parts.series.is_empty() || outcomes.iter().all(|outcome| outcome.smoothed.is_some()) {
             return self.take_series(outcomes);
         }
         let scale = Scale::of(self.pieces, &self.smoothed(outcomes));
@@ -255,7 +259,11 @@ impl<'a> Descent<'a> {
     }
 
     fn smoothed(&self, outcomes: &[Outcome]) -> Vec<Vec<State>> {
-        outcomes.iter().map(|outcome| smooth(&outcome.first, &outcome.steps)).collect()
+        let of = |outcome: &Outcome| match &outcome.smoothed {
+            Some(states) => states.clone(),
+            None => smooth(&outcome.first, &outcome.steps),
+        };
+        outcomes.iter().map(of).collect()
     }
 
     fn summary(&self, log_likelihood: f64, covariance: DMatrix<f64>, measurements: f64) -> Fit {

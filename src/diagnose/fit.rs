@@ -128,6 +128,11 @@ impl Fit {
         (self.log_likelihood - self.log_likelihood_if_right).max(0.0)
     }
 
+    /// Number of coefficients that are sought.
+    pub(super) fn unknowns(&self) -> usize {
+        Parts::of(&self.form).unknowns.len()
+    }
+
     /// Std of the coefficient of that position; 0 where it is held.
     pub fn std(&self, index: usize) -> f64 {
         let unknowns = Parts::of(&self.form).unknowns;

@@ -9,6 +9,7 @@ use super::diagnosis::is_evident;
 use super::fit::{Fit, refit};
 use super::piece::Piece;
 use super::proposal::Proposal;
+use super::sound::is_physical;
 use crate::law::{Catalogue, Term};
 
 /// Difference of log-likelihood, nats, below which two candidates are equally good.
@@ -67,6 +68,12 @@ impl Trial {
         alone && Catalogue::is_contained(&name(simpler), &name(self)) && self.gain < simpler.gain + SAME
     }
 
+    /// Whether physics allows the signs of its candidates.
+    pub fn is_physical(&self) -> bool {
+        let count = self.fit.form.terms.len();
+        (count - self.count..count).all(|index| is_physical(&self.fit, index))
+    }
+
     /// Number of inner parameters that were fitted.
     pub fn inner_count(&self) -> usize {
         self.terms().iter().filter_map(|term| term.effect()).map(|effect| effect.inner().len()).sum()
@@ -113,7 +120,7 @@ impl Trial {
 }
 
 /// Gain less what fitted inner parameters would gain by chance, ½ ln N each (Schwarz 1978).
-fn merit(gain: f64, inner: usize, measurements: f64) -> f64 {
+pub(super) fn merit(gain: f64, inner: usize, measurements: f64) -> f64 {
     gain - 0.5 * inner as f64 * measurements.max(1.0).ln()
 }
 

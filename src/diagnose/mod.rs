@@ -17,6 +17,7 @@ mod inner_slopes;
 mod judge;
 mod levels;
 mod locate;
+mod loop_run;
 mod massless;
 mod means;
 mod memory_run;

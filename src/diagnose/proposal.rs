@@ -65,6 +65,13 @@ fn is_same_set(one: &Proposal, other: &Proposal) -> bool {
     one.variants.iter().zip(&other.variants).all(|(one, other)| same_effect(one.term, other.term))
 }
 
+impl Proposal {
+    /// Number of inner parameters of its candidates.
+    pub(super) fn inner_count(&self) -> usize {
+        self.variants.iter().filter_map(|one| one.term.effect()).map(|effect| effect.inner().len()).sum()
+    }
+}
+
 impl Proposals {
     /// The sets of that size.
     pub fn of(&self, size: usize) -> &[Proposal] {
@@ -89,7 +96,8 @@ impl Proposals {
     }
 }
 
-fn proposals(base: &Fit, pieces: &[Piece], variants: &[Variant]) -> Proposals {
+/// What these candidates promise, the best variant of each effect.
+pub(super) fn proposals(base: &Fit, pieces: &[Piece], variants: &[Variant]) -> Proposals {
     let terms: Vec<Term> = variants.iter().map(|variant| variant.term).collect();
     let own = |(piece, states): (&Piece, &Vec<State>)| screen::columns(&terms, &base.form.expressions, piece, states);
     let columns: Vec<Vec<Vec<f64>>> = pieces.iter().zip(&base.states).map(own).collect();

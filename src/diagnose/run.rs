@@ -6,9 +6,10 @@
 //! through the filter like that of any term, so that its coefficient, its information and what it would gain are those of the
 //! likelihood, with the noise of all samples accounted for.
 
+use super::loop_run;
 use super::piece::Piece;
 use super::tableau::Gram;
-use crate::evidence::{Channel, Filter, Innovation, Noise, Observation, Pass, gains};
+use crate::evidence::{Channel, Filter, Innovation, LogSum, Noise, Observation, Pass, gains};
 use crate::law::{Drive, Line, Motion, NODES, State, Term};
 use nalgebra::{DMatrix, DVector};
 
@@ -23,8 +24,25 @@ pub struct Law<'a> {
     pub free: &'a [usize],
     /// What multiplies the series.
     pub series: &'a [f64],
+    /// How one of the series changes with the displacement, one for every interval; empty where none does.
+    pub tangents: &'a [Tangent],
     /// Variances of the noise.
     pub noise: Noise,
+}
+
+/// How a hysteresis follows a motion beside the one along which its series was computed, in an interval.
+#[derive(Clone, Copy, Debug)]
+pub struct Tangent {
+    /// Which of the series.
+    pub series: usize,
+    /// dz/dq.
+    pub slope: f64,
+    /// What is left at the end of a difference in z at the start.
+    pub kept: f64,
+    /// The displacement as a line with its mean and its first moment …
+    pub displacement: Line,
+    /// … and at the ends.
+    pub ends: [f64; 2],
 }
 
 /// Sums over a stretch of samples: what it says on the unknowns (free terms, then series) and on each candidate beside them.
@@ -43,7 +61,7 @@ pub struct Sums {
     /// Σ ε²/s by channel.
     pub energy: [f64; 2],
     /// Σ ln s.
-    pub log_variance: f64,
+    pub log_variance: LogSum,
     /// Number of innovations by channel.
     pub count: [f64; 2],
 }
@@ -109,6 +127,26 @@ pub struct Outcome {
     pub count: [f64; 2],
     /// Whether the motion stayed finite.
     pub finite: bool,
+    /// Smoothed states where the law's memory is part of the state, and the steps do not tell them.
+    pub smoothed: Option<Vec<State>>,
+}
+
+/// Where the unknowns of a piece stand among those of all: first what all pieces share, then each piece's own.
+#[derive(Clone, Copy, Debug)]
+pub struct Span {
+    /// Unknowns that all pieces share.
+    pub shared: usize,
+    /// Unknowns of the pieces before, beside them.
+    pub first: usize,
+    /// Unknowns of all pieces, beside them.
+    pub all: usize,
+}
+
+impl Span {
+    /// The place among all of the piece's unknown of that number.
+    pub fn place(self, unknown: usize) -> usize {
+        if unknown < self.shared { unknown } else { self.first + unknown }
+    }
 }
 
 impl Sums {
@@ -121,9 +159,26 @@ impl Sums {
             own: DVector::zeros(candidates),
             own_score: DVector::zeros(candidates),
             energy: [0.0; 2],
-            log_variance: 0.0,
+            log_variance: LogSum::default(),
             count: [0.0; 2],
         }
+    }
+
+    /// The same sums among the unknowns of all pieces.
+    fn among(self, span: Span) -> Sums {
+        let own = self.score.len();
+        if own == span.shared + span.all {
+            return self;
+        }
+        let mut all = Sums::none(span.shared + span.all, self.own.len());
+        for row in 0..own {
+            all.score[span.place(row)] = self.score[row];
+            all.cross.row_mut(span.place(row)).copy_from(&self.cross.row(row));
+            for column in 0..own {
+                all.information[(span.place(row), span.place(column))] = self.information[(row, column)];
+            }
+        }
+        Sums { information: all.information, score: all.score, cross: all.cross, ..self }
     }
 
     /// Adds another stretch's.
@@ -133,7 +188,7 @@ impl Sums {
         self.cross += &other.cross;
         self.own += &other.own;
         self.own_score += &other.own_score;
-        self.log_variance += other.log_variance;
+        self.log_variance.add_logarithm(other.log_variance.total());
         for channel in 0..2 {
             self.energy[channel] += other.energy[channel];
             self.count[channel] += other.count[channel];
@@ -147,21 +202,21 @@ impl Sums {
 
     /// Log-likelihood, up to a constant.
     pub fn log_likelihood(&self) -> f64 {
-        -0.5 * (self.log_variance + self.energy[0] + self.energy[1])
+        -0.5 * (self.log_variance.total() + self.energy[0] + self.energy[1])
     }
 
     /// Says energies and log-likelihood under variances that are these times as large, by channel.
     pub fn rescale(&mut self, scale: [f64; 2]) {
         for ((energy, count), scale) in self.energy.iter_mut().zip(self.count).zip(scale) {
             *energy /= scale;
-            self.log_variance += count * scale.ln();
+            self.log_variance.add_logarithm(count * scale.ln());
         }
     }
 
-    fn add(&mut self, unknowns: &[f64], candidates: &[f64], channel: Channel, innovation: &Innovation) {
+    pub(super) fn add(&mut self, unknowns: &[f64], candidates: &[f64], channel: Channel, innovation: &Innovation) {
         let (weight, residual) = (innovation.precision, innovation.residual);
         self.energy[channel as usize] += residual * residual * weight;
-        self.log_variance += innovation.variance.ln();
+        self.log_variance.add(innovation.variance);
         self.count[channel as usize] += 1.0;
         for (column, psi) in unknowns.iter().enumerate() {
             let scaled = psi * weight;
@@ -180,6 +235,18 @@ impl Sums {
                 *entry += scaled * other;
             }
         }
+    }
+}
+
+impl Law<'_> {
+    /// Terms and coefficients; where a series has tangents, with a linear stiffness at the end that they set.
+    pub(super) fn bent(&self) -> (Vec<Term>, Vec<f64>) {
+        let (mut terms, mut coefficients) = (self.terms.to_vec(), self.coefficients.to_vec());
+        if !self.tangents.is_empty() {
+            terms.push(Term::power(1, 0));
+            coefficients.push(0.0);
+        }
+        (terms, coefficients)
     }
 }
 
@@ -214,6 +281,9 @@ pub fn run(
     place: Place,
     mut joint: Option<&mut Gram>,
 ) -> Outcome {
+    if !law.tangents.is_empty() {
+        return loop_run::run(law, piece, pass, series, candidates, place, joint);
+    }
     let free: Vec<Term> = law.free.iter().map(|index| law.terms[*index]).collect();
     let (n, extra) = (free.len(), law.series.len());
     let kinds = candidates.first().map_or(0, Vec::len);
@@ -225,8 +295,9 @@ pub fn run(
     let mut unknowns = vec![0.0; n + extra];
     pass.begin(first);
     for (k, observation) in piece.observations.iter().enumerate() {
-        let observation = beside(observation, law.series, series.get(k));
-        let innovations = pass.step(&motion, &free, &law.noise, &observation);
+        let relieved = series.get(k).map(|forces| beside(observation, law.series, forces, [0.0; 2]));
+        let observation = relieved.as_ref().unwrap_or(observation);
+        let innovations = pass.step(&motion, &free, &law.noise, observation);
         let inverse_mass = motion.mass(pass.filter.state.q).recip();
         let gains = gains(&innovations);
         if let Some(forces) = series.get(k) {
@@ -257,7 +328,13 @@ pub fn run(
 }
 
 impl Outcome {
-    fn none(first: Filter, [unknowns, candidates]: [usize; 2], samples: usize) -> Outcome {
+    /// The same with its sums among the unknowns of all pieces.
+    pub fn among(mut self, span: Span) -> Outcome {
+        self.sums = self.sums.into_iter().map(|sums| sums.among(span)).collect();
+        self
+    }
+
+    pub(super) fn none(first: Filter, [unknowns, candidates]: [usize; 2], samples: usize) -> Outcome {
         Outcome {
             sums: vec![Sums::none(unknowns, candidates); STRETCHES],
             first,
@@ -267,14 +344,17 @@ impl Outcome {
             squares: [0.0; 2],
             count: [0.0; 2],
             finite: true,
+            smoothed: None,
         }
     }
 }
 
-/// The observation with the series' forces taken off its excitation.
-fn beside(observation: &Observation, coefficients: &[f64], forces: Option<&Vec<Line>>) -> Observation {
-    let Some(forces) = forces.filter(|_| !coefficients.is_empty()) else { return *observation };
-    let sum = |end: usize| coefficients.iter().zip(forces).map(|(coefficient, line)| coefficient * line[end]).sum();
+/// The observation with the series' forces, and a force beside them, taken off its excitation.
+pub(super) fn beside(observation: &Observation, coefficients: &[f64], forces: &[Line], besides: Line) -> Observation {
+    let sum = |end: usize| {
+        let forces = coefficients.iter().zip(forces).map(|(coefficient, line)| coefficient * line[end]);
+        forces.sum::<f64>() + besides[end]
+    };
     let [start, end]: Line = [sum(0), sum(1)];
     let drive = match observation.drive {
         Drive::Held(value) => Drive::Line(value - start, value - end),
@@ -288,7 +368,7 @@ fn beside(observation: &Observation, coefficients: &[f64], forces: Option<&Vec<L
 }
 
 /// The state at the first sample, from it and its neighbours alone.
-fn first_state(piece: &Piece, noise: &Noise) -> Filter {
+pub(super) fn first_state(piece: &Piece, noise: &Noise) -> Filter {
     let [q, qd] = noise.sensor;
     let dt = piece.t[1] - piece.t[0];
     match piece.measured() {

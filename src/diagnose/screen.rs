@@ -59,14 +59,21 @@ fn run_all(fit: &Fit, pieces: &[Piece], columns: &[Vec<Vec<f64>>], mut joint: Op
     let pick = |positions: &[usize]| -> Vec<f64> { positions.iter().map(|index| fit.coefficients[*index]).collect() };
     let terms: Vec<Term> = parts.of_state.iter().map(|index| fit.form.terms[*index]).collect();
     let beside = Beside::along((&fit.form, &fit.coefficients), &[], pieces, &fit.states, &fit.beginnings);
-    let (of_state, of_series) = (pick(&parts.of_state), beside.weights(&parts, &fit.coefficients));
-    let law = Law { terms: &terms, coefficients: &of_state, free: &parts.free, series: &of_series, noise: fit.noise };
+    let of_state = pick(&parts.of_state);
     let mut pass = Pass::new(parts.free.len());
     let mut total: Option<Sums> = None;
-    for (((piece, columns), series), place) in pieces.iter().zip(columns).zip(beside.rows.iter()).zip(Place::of(pieces))
-    {
+    let all = pieces.iter().zip(columns).zip(beside.rows.iter()).zip(Place::of(pieces));
+    for (number, (((piece, columns), series), place)) in all.enumerate() {
         let rows = means::rows(columns);
-        let outcome = run::run(&law, piece, &mut pass, series, &rows, place, joint.as_deref_mut());
+        let weights = beside.weights(&parts, &fit.coefficients, number);
+        let (free, noise) = (&parts.free, fit.noise);
+        let tangents = &beside.tangents[number];
+        let law = Law { terms: &terms, coefficients: &of_state, free, series: &weights, tangents, noise };
+        let span = beside.span(&parts, number);
+        if let Some(joint) = joint.as_deref_mut() {
+            joint.begin(span);
+        }
+        let outcome = run::run(&law, piece, &mut pass, series, &rows, place, joint.as_deref_mut()).among(span);
         for sums in outcome.sums {
             match &mut total {
                 Some(total) => total.merge(&sums),
@@ -74,7 +81,7 @@ fn run_all(fit: &Fit, pieces: &[Piece], columns: &[Vec<Vec<f64>>], mut joint: Op
             }
         }
     }
-    let mut total = total.unwrap_or_else(|| Sums::none(of_series.len(), 0));
+    let mut total = total.unwrap_or_else(|| Sums::none(parts.unknowns.len(), 0));
     beside.add_prior(&mut total);
     if let Some(joint) = joint {
         joint.add_prior(beside.prior());

@@ -4,9 +4,10 @@
 
 use super::diagnosis::is_evident;
 use super::fit::{Fit, refit};
-use super::judge::Trial;
+use super::judge::{Trial, merit};
 use super::piece::{Piece, thinned};
-use super::proposal::{Proposal, Proposals, propose};
+use super::proposal::{Proposal, Proposals, proposals, propose};
+use super::variants::Variant;
 use crate::law::Term;
 
 /// Sets of one, two and three candidates that get into the law.
@@ -20,6 +21,15 @@ const PREVIEW: usize = 8000;
 
 /// Part of the best gain on the preview that brings a candidate before the whole record in any case.
 const NEARLY: f64 = 0.9;
+
+/// Part of what a set promises that explains the parts of a record below which others are not tried there.
+const FAR: f64 = 0.8;
+
+/// The same of a set that does not explain them.
+const FAR_BEHIND: f64 = 0.5;
+
+/// Gain, nats, inner parameters paid for, that brings a candidate before a law that leaves no evident error.
+const PROMISING: f64 = 3.0;
 
 /// A law, its record, and what the candidates promise.
 #[derive(Clone, Debug)]
@@ -59,11 +69,25 @@ impl Search<'_> {
         self.trials(size, explains)
     }
 
+    /// Candidates for a law that leaves no evident error, on a long record: the best of them by the score test on all of it, and those that may be
+    /// worth their inner parameters.
+    fn doubted(&self, few: &[Proposal]) -> Vec<Trial> {
+        let variants: Vec<Variant> = few.iter().flat_map(|proposal| &proposal.variants).copied().collect();
+        let promised = proposals(self.base, self.pieces, &variants).single;
+        let worth = |proposal: &Proposal| merit(proposal.gain, proposal.inner_count(), self.base.measurements);
+        let best = promised.iter().map(worth).fold(f64::NEG_INFINITY, f64::max);
+        let kept = promised.iter().filter(|proposal| worth(proposal) >= best.min(PROMISING));
+        tried(self.base, self.pieces, &kept.cloned().collect::<Vec<_>>())
+    }
+
     fn trials(&self, size: usize, explains: &dyn Fn(&Fit, &Fit) -> bool) -> Vec<Trial> {
         let finalists = if is_evident(self.base) { FINALISTS[size.clamp(1, 3) - 1] } else { DOUBTED };
         let few: Vec<Proposal> = self.proposals.of(size).iter().take(finalists).cloned().collect();
         let Some((fit, pieces)) = &self.short else { return tried(self.base, self.pieces, &few) };
-        let trials = tried(fit, pieces, &few);
+        if size == 1 && !is_evident(self.base) {
+            return self.doubted(&few);
+        }
+        let trials = previewed(fit, pieces, &few);
         let Some(best) = trials.first() else { return trials };
         let near = |trial: &&Trial| !best.is_clearly_better_than(trial) || trial.gain > NEARLY * best.gain;
         let other = |trial: &&Trial| !trials.iter().any(|simpler| trial.is_at_the_end_of(simpler));
@@ -72,6 +96,25 @@ impl Search<'_> {
         rank(&mut whole);
         whole
     }
+}
+
+/// The sets in the law on parts of a record, best first; none that promises far less than one before.
+fn previewed(base: &Fit, pieces: &[Piece], proposals: &[Proposal]) -> Vec<Trial> {
+    let mut trials: Vec<Trial> = Vec::new();
+    let mut least = 0.0_f64;
+    for proposal in proposals {
+        if proposal.gain < least {
+            break;
+        }
+        let Some(trial) = Trial::of(base, pieces, proposal) else { continue };
+        if trial.is_physical() {
+            let part = if is_evident(&trial.fit) { FAR_BEHIND } else { FAR };
+            least = least.max(part * proposal.gain);
+        }
+        trials.push(trial);
+    }
+    rank(&mut trials);
+    trials
 }
 
 fn total(pieces: &[Piece]) -> usize {

@@ -50,9 +50,7 @@ impl<'a> Sound<'a> {
 
     /// Whether physics allows all its candidates, and the law with them is plausible.
     pub(super) fn is(&self, trial: &Trial) -> bool {
-        let count = trial.fit.form.terms.len();
-        let physical = (count - trial.count..count).all(|index| is_physical(&trial.fit, index));
-        physical && trial.terms().iter().all(|term| self.is_told(*term)) && self.is_plausible(&trial.fit)
+        trial.is_physical() && trial.terms().iter().all(|term| self.is_told(*term)) && self.is_plausible(&trial.fit)
     }
 
     /// Whether no inner parameter stands where the motion can no longer tell it, the effect being another one or none there.

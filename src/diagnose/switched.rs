@@ -5,12 +5,16 @@
 //! record better than one law with the effect that it lacks: by likelihood, every coefficient counted with ½ ln N (Schwarz 1978).
 
 use super::diagnosis::{Diagnosis, Evidence, Finding, diagnose_model, is_error};
-use super::fit::{Fit, Form, refit};
+use super::fit::{Fit, Form, refit, solve};
+use super::run::Sums;
 use crate::identify::{Recording, Settings, identify_recording, settings_for};
 use crate::law::{Given, Hold, Model};
 
 /// What coefficients that differ from stage to stage explain of what one law leaves, at the least: where it leaves much, they follow its error.
 const PART: f64 = 0.03;
+
+/// By how much more than the score test says they are taken to explain before a record is looked at for switches: noise is not fitted anew there.
+const CAREFUL: f64 = 3.0;
 
 /// One stage of a recording, diagnosed alone.
 #[derive(Clone, Debug)]
@@ -40,9 +44,12 @@ pub struct Switched {
 pub fn diagnose_stages(model: &Model, recordings: &[(&Recording, Hold)]) -> Switched {
     let evidence = Evidence::new(recordings);
     let whole = diagnose_model(model, &evidence);
+    if whole.as_ref().is_some_and(|whole| !may_differ(last(whole))) {
+        return Switched { whole, stages: Vec::new() };
+    }
     let stages = stages(model, recordings);
-    let one_law = whole.as_ref().is_some_and(|whole| !differ(last(whole), &stages));
-    if stages.len() <= recordings.len() || one_law {
+    let is_cut = stages.len() > recordings.len();
+    if !is_cut || whole.as_ref().is_some_and(|whole| !differ(last(whole), &stages)) {
         return Switched { whole, stages: Vec::new() };
     }
     let diagnosed: Vec<StageDiagnosis> = stages.into_iter().map(|stage| alone(model, stage)).collect();
@@ -109,6 +116,25 @@ fn alone(model: &Model, stage: Found) -> StageDiagnosis {
     StageDiagnosis { recording, start, end, samples, diagnosis }
 }
 
+/// Whether coefficients that differ from stretch to stretch could explain what [`differ`] asks for, by the score test: where not even they do, the
+/// record need not be looked at for switches.
+fn may_differ(law: &Fit) -> bool {
+    let unknowns = law.unknowns();
+    let gain = |sums: &Sums| {
+        let count = unknowns.min(sums.score.len());
+        let information = sums.information.view((0, 0), (count, count)).into_owned();
+        let score = sums.score.rows(0, count).into_owned();
+        solve(&information, &score).map_or(f64::INFINITY, |solved| 0.5 * solved.step.dot(&score))
+    };
+    let gained = CAREFUL * law.by_stretch.iter().map(gain).sum::<f64>();
+    law.by_stretch.is_empty() || is_difference(gained, law)
+}
+
+/// Whether so much log-likelihood, nats, by coefficients of each stage's own is that of a law that switches.
+fn is_difference(gained: f64, law: &Fit) -> bool {
+    is_error(gained, law.measurements) && gained > PART * law.lack()
+}
+
 /// Whether the law's coefficients, fitted to each stage, explain more than those of the whole record by what would be an error of the law. Noise
 /// is each stage's own in both: that a real record's error comes and goes is no switch.
 fn differ(law: &Fit, stages: &[Found]) -> bool {
@@ -119,8 +145,7 @@ fn differ(law: &Fit, stages: &[Found]) -> bool {
         let [free, held] = [&law.form, &held].map(|form| refit(form, &pieces, &law.coefficients, law.noise));
         free.zip(held).map_or(0.0, |(free, held)| free.log_likelihood - held.log_likelihood)
     };
-    let gained: f64 = stages.iter().map(gain).sum();
-    is_error(gained, law.measurements) && gained > PART * law.lack()
+    is_difference(stages.iter().map(gain).sum(), law)
 }
 
 /// Whether the stages' laws explain the record better than one law.

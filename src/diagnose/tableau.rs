@@ -5,6 +5,7 @@
 //! neither of them alone gains much: the search for one after the other takes what imitates their sum.
 
 use super::fit::solve;
+use super::run::Span;
 use crate::evidence::Innovation;
 use nalgebra::{DMatrix, DVector};
 
@@ -18,6 +19,8 @@ const OWN: f64 = 1e-7;
 #[derive(Clone, Debug)]
 pub(super) struct Gram {
     unknowns: usize,
+    /// Where those of the piece that is run stand.
+    span: Span,
     block: DMatrix<f64>,
     filled: usize,
     sum: DMatrix<f64>,
@@ -27,14 +30,23 @@ impl Gram {
     /// Nothing seen of so many columns.
     pub(super) fn none(unknowns: usize, candidates: usize) -> Gram {
         let width = unknowns + candidates + 1;
-        Gram { unknowns, block: DMatrix::zeros(width, BLOCK), filled: 0, sum: DMatrix::zeros(width, width) }
+        let span = Span { shared: unknowns, first: 0, all: 0 };
+        Gram { unknowns, span, block: DMatrix::zeros(width, BLOCK), filled: 0, sum: DMatrix::zeros(width, width) }
+    }
+
+    /// Begins a piece whose unknowns stand there.
+    pub(super) fn begin(&mut self, span: Span) {
+        self.span = span;
     }
 
     /// Adds an innovation with the sensitivities of what was expected.
     pub(super) fn add(&mut self, unknowns: &[f64], candidates: &[f64], innovation: &Innovation) {
         let weight = innovation.precision.sqrt();
-        let entries = unknowns.iter().chain(candidates).chain([&innovation.residual]);
-        self.block.column_mut(self.filled).iter_mut().zip(entries).for_each(|(slot, entry)| *slot = entry * weight);
+        let mut column = self.block.column_mut(self.filled);
+        column.rows_mut(0, self.unknowns).fill(0.0);
+        unknowns.iter().enumerate().for_each(|(index, entry)| column[self.span.place(index)] = entry * weight);
+        let rest = candidates.iter().chain([&innovation.residual]);
+        column.iter_mut().skip(self.unknowns).zip(rest).for_each(|(slot, entry)| *slot = entry * weight);
         self.filled += 1;
         if self.filled == BLOCK {
             self.flush();
@@ -175,5 +187,29 @@ mod tests {
         assert!(imitation.gain > tableau.joint([0]).unwrap().gain && imitation.gain < both.gain, "{imitation:?}");
         assert!((tableau.shift(&[0, 1], &both.coefficients)[0] - 0.4).abs() < 1e-9);
         assert_eq!(tableau.joint([0, 1, 2]), None);
+    }
+
+    /// Two pieces with an unknown of their own each: what one of them sees says nothing of the other's.
+    #[test]
+    fn a_piece_adds_to_its_own_unknowns() {
+        let mut gram = Gram::none(3, 1);
+        for (first, offset) in [(0, 0.4), (1, -0.7)] {
+            gram.begin(Span { shared: 1, first, all: 2 });
+            for k in 0..300 {
+                let (slope, force) = (k as f64 * 0.01, (0.3 * k as f64).sin());
+                let residual = 2.0 * slope + offset + 5.0 * force;
+                gram.add(
+                    &[slope, 1.0],
+                    &[force],
+                    &Innovation { residual, variance: 1.0, precision: 1.0, gain: [0.0; 2] },
+                );
+            }
+        }
+        let tableau = gram.swept().unwrap();
+        let found = tableau.joint([0]).unwrap();
+        assert!((found.coefficients[0] - 5.0).abs() < 1e-9, "{found:?}");
+        let shift = tableau.shift(&[0], &found.coefficients);
+        let expected = [2.0, 0.4, -0.7];
+        assert!(shift.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-9), "{shift}");
     }
 }

@@ -29,4 +29,5 @@ pub use guard::Guard;
 pub use information::{Information, Solution};
 pub use lack::{Lack, Missing};
 pub use pass::{IntervalMap, Observation, Pass, RIVALS, Track, gains};
+pub use symmetric::LogSum;
 pub use weighing::{Belief, Weighing};

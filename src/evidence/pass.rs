@@ -41,8 +41,9 @@ pub struct Track {
 }
 
 impl Track {
+    /// Adds an innovation of the channel.
     #[inline]
-    fn add(&mut self, channel: Channel, innovation: &Innovation) {
+    pub fn add(&mut self, channel: Channel, innovation: &Innovation) {
         self.count[channel as usize] += 1.0;
         self.squares[channel as usize] += innovation.residual * innovation.residual * innovation.precision;
         self.log_variance[channel as usize].add(innovation.variance);

@@ -41,6 +41,11 @@ impl LogSum {
         }
     }
 
+    /// Adds a logarithm.
+    pub fn add_logarithm(&mut self, logarithm: f64) {
+        self.sum += logarithm;
+    }
+
     /// Σ ln x.
     pub fn total(&self) -> f64 {
         self.sum + self.product.ln()

@@ -65,24 +65,45 @@ pub fn settings_for(recording: &Recording, base: Settings) -> Settings {
     Settings { channels: recording.channels(), sample_time, max_window, ..base }
 }
 
-/// Samples on which holds are compared.
-const HOLD_TRIAL: usize = 6000;
+/// Samples after which holds are compared; the last time for good.
+const HOLD_TRIALS: [usize; 3] = [1500, 3000, 6000];
+
+/// Log-likelihood, nats, by which a hold falls out before that.
+const BEATEN: f64 = 500.0;
 
 /// The hold under which the first stretch of the recording has the largest likelihood; a straight line where none gives a law,
 /// which errs least where nothing is known. Always by our method: the publication's states no likelihood.
 pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) -> Hold {
-    let likelihood = |hold: Hold| {
+    let begin = |hold: Hold| {
         let settings = Settings { hold, method: Method::Default, ..*settings };
-        let mut identifier = Identifier::new(model, settings).ok()?;
-        let piece = recording.pieces().into_iter().next()?;
-        for index in piece.take(HOLD_TRIAL) {
-            // a skipped sample is skipped under every hold
-            identifier.step(recording.sample(index)).ok();
-        }
-        identifier.likelihood()
+        Some((hold, Identifier::new(model, settings).ok()?))
     };
-    let tried = Hold::ALL.into_iter().filter_map(|hold| Some((hold, likelihood(hold)?)));
+    let mut rivals: Vec<(Hold, Identifier)> = Hold::ALL.into_iter().filter_map(begin).collect();
+    let piece = recording.pieces().into_iter().next().unwrap_or(0..0);
+    let mut next = piece.start;
+    for trial in HOLD_TRIALS {
+        let end = piece.end.min(piece.start + trial);
+        for (_, identifier) in &mut rivals {
+            for index in next..end {
+                // a skipped sample is skipped under every hold
+                identifier.step(recording.sample(index)).ok();
+            }
+        }
+        next = end;
+        drop_beaten(&mut rivals, trial as f64);
+        if rivals.len() < 2 {
+            break;
+        }
+    }
+    let tried = rivals.iter().filter_map(|(hold, identifier)| Some((*hold, identifier.likelihood()?)));
     tried.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(Hold::Linear, |(hold, _)| hold)
+}
+
+/// Drops the holds whose law is far less likely after so many samples than the best one's.
+fn drop_beaten(rivals: &mut Vec<(Hold, Identifier)>, samples: f64) {
+    let known = rivals.iter().filter_map(|(_, identifier)| identifier.likelihood());
+    let best = known.fold(f64::NEG_INFINITY, f64::max);
+    rivals.retain(|(_, identifier)| identifier.likelihood().is_none_or(|own| samples * (best - own) < BEATEN));
 }
 
 /// Steps an identifier over every sample and collects the stages. Each gap of the recording starts a new identifier, since

@@ -32,7 +32,12 @@ const JITTER: f64 = 1e-6;
 impl Samples<'_> {
     /// The value at time t, s; 0 without samples.
     pub fn at(&self, t: f64) -> f64 {
-        let Some(index) = self.index(t) else { return self.excitation.first().copied().unwrap_or(0.0) };
+        self.after(self.index(t), t)
+    }
+
+    /// The value at time t, before which the sample of that position is the last.
+    pub(super) fn after(&self, index: Option<usize>, t: f64) -> f64 {
+        let Some(index) = index else { return self.excitation.first().copied().unwrap_or(0.0) };
         let last = self.excitation.len() - 1;
         if index >= last {
             return self.excitation[last];

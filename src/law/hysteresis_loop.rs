@@ -93,6 +93,18 @@ impl Branch {
     }
 }
 
+impl Effect {
+    /// dz/dq of a hysteresis at this z, and what a short way `dq` from there leaves of a difference in z; none of any other effect.
+    pub fn loop_tangent(self, z: f64, dq: f64) -> Option<[f64; 2]> {
+        let Effect::Hysteresis { yield_displacement, share, exponent } = self else { return None };
+        let (limit, exponent) = (yield_displacement.value(), exponent.value());
+        let ratio = (z * dq.signum() / limit).clamp(-1.0, 1.0);
+        let factor = if ratio > 0.0 { -1.0 } else { 2.0 * share.value() - 1.0 };
+        let bend = factor * exponent * ratio.abs().powf(exponent - 1.0) * ratio.signum();
+        Some([1.0 + factor * ratio.abs().powf(exponent), (bend * dq.abs() / limit).exp()])
+    }
+}
+
 impl Loop {
     /// The loop of a hysteresis; none of any other effect.
     pub(super) fn of(effect: Effect) -> Option<Loop> {
@@ -167,6 +179,28 @@ mod tests {
                 place = shape.moved(place, turn);
                 let found = shape.z(place);
                 assert!((found - z).abs() < 2e-5 * 0.3, "share {share}, exponent {exponent}, {turn}: {found} for {z}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_tangent_is_that_of_the_loop() {
+        for (share, exponent) in [(1.0, 1.0), (0.5, 2.0), (0.8, 1.4), (1.7, 3.0)] {
+            let inner = [0.3, share, exponent].map(Inner::new);
+            let effect = Effect::Hysteresis { yield_displacement: inner[0], share: inner[1], exponent: inner[2] };
+            let shape = Loop::of(effect).unwrap();
+            for z in [-0.2, -0.05, 0.1, 0.25] {
+                for direction in [-1.0, 1.0] {
+                    let place = shape.place(z, direction);
+                    let ends = [-1e-4, 1e-4].map(|way| shape.z(Place { way: place.way + way / 0.3, ..place }));
+                    let slope = (ends[1] - ends[0]) / (2e-4 * direction);
+                    let [found, kept] = effect.loop_tangent(z, 1e-4 * direction).unwrap();
+                    assert!((found - slope).abs() < 1e-3, "{share}, {exponent}, z {z}: {found} for {slope}");
+                    let after = |z: f64| shape.z(shape.moved(shape.place(z, direction), 2e-3 * direction));
+                    let left = (after(z + 1e-5) - after(z - 1e-5)) / 2e-5;
+                    let expected = kept.powi(20);
+                    assert!((left - expected).abs() < 3e-3, "{share}, {exponent}, z {z}: {expected} for {left}");
+                }
             }
         }
     }

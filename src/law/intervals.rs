@@ -253,7 +253,7 @@ fn integrated(trajectory: &Trajectory, [from, to]: [f64; 2], shift: f64, offset:
         for (point, weight) in GAUSS {
             let t = start + point * (end - start);
             let past = t - shift;
-            let value = samples.at(past) + if past < first { offset } else { 0.0 };
+            let value = samples.after(next.checked_sub(1), past) + if past < first { offset } else { 0.0 };
             let share = weight * (end - start) / dt;
             sums[0] += share * value;
             sums[1] += share * value * ((t - from) / dt - 0.5);
