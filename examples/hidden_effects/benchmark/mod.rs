@@ -12,6 +12,7 @@ mod outside;
 mod plant;
 mod problem;
 mod secret;
+mod through_fmu;
 
 pub use judge::{Answer, Outcome, judge};
 pub use outside::Outside;

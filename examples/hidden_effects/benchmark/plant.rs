@@ -1,8 +1,10 @@
-//! The plant in motion: directly, or as a scenario.
+//! The plant in motion: directly, as a scenario, or as an FMU.
 
 use super::drive::Drive;
 use super::generator::Generator;
 use super::outside::Agent;
+use super::problem::PARTS;
+use super::through_fmu;
 use switchid::law::{Dynamics, Hold, Motion, Samples, State, Term, Trajectory, term_series};
 use switchid::simulate::{Hidden, Scenario, Stage, record};
 
@@ -32,6 +34,8 @@ pub struct Rig {
     pub drive: Drive,
     /// Whether the plant is a scenario; its excitation is then held between samples, else it runs straight.
     pub scenario: bool,
+    /// Whether the scenario is stepped through the FMI functions of its FMU in the end.
+    pub fmu: bool,
     pub omega: f64,
     pub sample_time: f64,
     pub count: usize,
@@ -59,6 +63,9 @@ impl Rig {
         let mut excitation = self.drive.of_scenario(self.omega, self.sample_time, self.count);
         excitation.rms = self.amplitude;
         excitation.intensity *= self.amplitude * self.amplitude;
+        if self.fmu && parts == PARTS[1] {
+            return through_fmu::run(self, law, &excitation).ok();
+        }
         let (terms, coefficients) = (law.terms[..law.known].to_vec(), law.coefficients[..law.known].to_vec());
         let stage = Stage { start: 0.0, coefficients, amplitude: 0.0, omega: 0.0 };
         let duration = self.sample_time * (self.count as f64 - 0.5);
@@ -104,7 +111,7 @@ impl Rig {
 }
 
 impl Track {
-    fn push(&mut self, t: f64, state: State, excitation: f64, outside: f64) {
+    pub fn push(&mut self, t: f64, state: State, excitation: f64, outside: f64) {
         self.t.push(t);
         self.q.push(state.q);
         self.qd.push(state.qd);

@@ -50,7 +50,7 @@ pub struct Problem {
 const ATTEMPTS: u64 = 60;
 
 /// Steps per sample while strengths are sought, and in the end.
-const PARTS: [usize; 2] = [4, 16];
+pub const PARTS: [usize; 2] = [4, 16];
 
 /// Iterations of coefficient and excitation towards their strengths.
 const ITERATIONS: usize = 6;
@@ -80,7 +80,8 @@ fn attempted(setting: &Setting, generator: &mut Generator) -> Option<Problem> {
         sample_time: std::f64::consts::TAU / base.omega / generator.uniform(35.0..80.0),
         count: setting.samples + lead,
         amplitude: base.stiffness * base.size,
-        seed: generator.seed(),
+        fmu: setting.draw % 2 == 1,
+        seed: generator.seed() & i32::MAX as u64,
     };
     let alone = scaled(&mut rig, &base)?;
     let (track, law) = with_secret(setting, generator, &rig, &base, &alone)?;
@@ -213,6 +214,10 @@ fn words(rig: &Rig, law: &Law, velocity: bool) -> String {
         })
         .collect();
     let channels = if velocity { "q, qd" } else { "q" };
-    let path = if rig.scenario { "scenario" } else { "direct" };
+    let path = match (rig.scenario, rig.fmu) {
+        (true, true) => "FMU",
+        (true, false) => "scenario",
+        (false, _) => "direct",
+    };
     format!("{:?} {path}, {channels}, omega {:.2}: {}", rig.drive, rig.omega, law.join(", "))
 }
