@@ -178,8 +178,8 @@ mod tests {
     use switchid::simulate::{Stage, record};
 
     fn known(value: f64, std: Option<f64>) -> [Coefficient; 2] {
-        let absent = Coefficient { term: Term::power(2, 0), value: 1.0, std: Some(0.0) };
-        [Coefficient { term: Term::Inertia, value, std }, absent]
+        let absent = Coefficient { term: Term::power(2, 0), value: 1.0, std: Some(0.0), needed: None };
+        [Coefficient { term: Term::Inertia, value, std, needed: None }, absent]
     }
 
     #[test]

@@ -180,12 +180,13 @@ pub(super) fn noise(found: &Identification) -> Vec<(String, f64)> {
 
 fn text(run: &Run) -> String {
     let mut text = head(run);
-    text += "\nstage       start         end    detected  identified   s\n";
+    text += "\nstage       start           ±         end    detected  identified   s\n";
     for (index, stage) in run.found.stages.iter().enumerate() {
         let (detected, identified) = (time(stage.detected), time(stage.identified));
+        let std = stage.start_std.map_or_else(|| "–".into(), |std| format!("{std:.4}"));
         let _ = writeln!(
             text,
-            "{:>5} {:>11.3} {:>11.3} {detected:>11} {identified:>11}",
+            "{:>5} {:>11.3} {std:>11} {:>11.3} {detected:>11} {identified:>11}",
             index + 1,
             stage.start,
             stage.end
@@ -234,11 +235,16 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
         );
         text = text + line.trim_end() + "\n";
     }
-    let open: Vec<String> =
-        stage.coefficients.iter().filter(|entry| entry.std.is_none()).map(|entry| entry.term.name()).collect();
+    let open: Vec<String> = stage
+        .coefficients
+        .iter()
+        .filter(|entry| entry.std.is_none() && entry.needed.is_none())
+        .map(|entry| entry.term.name())
+        .collect();
     if !open.is_empty() {
         let _ = writeln!(text, "  not known: {}", open.join(", "));
     }
+    text += &lacking(stage);
     if limit.is_some_and(|limit| !limit.explained()) {
         text += "  the law leaves more than sensor noise: no comparison with what any method could reach\n";
     }
@@ -246,6 +252,16 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
         let _ = writeln!(text, "  no data of this stage determine {combination}");
     }
     text
+}
+
+/// `q^3: not known yet, about 1.4 s more of such motion`, a line for each coefficient that a law to vouch for needs better.
+fn lacking(stage: &Stage) -> String {
+    let line = |(term, seconds): (Term, f64)| {
+        let known = stage.known().any(|(known, _)| known.term == term);
+        let what = if known { "not known well yet" } else { "not known yet" };
+        format!("  {}: {what}, about {seconds:.1} s more of such motion\n", term.name())
+    };
+    stage.lacking().map(line).collect()
 }
 
 /// `(1.1 times the limit)`; empty where the limit is not known or the law is not complete.

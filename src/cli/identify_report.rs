@@ -21,6 +21,8 @@ pub(super) struct Report {
 #[derive(Serialize)]
 struct StageReport {
     start: f64,
+    /// s; null where no switch began the stage.
+    start_std: Option<f64>,
     end: f64,
     detected: Option<f64>,
     identified: Option<f64>,
@@ -30,6 +32,8 @@ struct StageReport {
     law: Option<String>,
     coefficients: Pairs,
     std: Pairs,
+    /// Further seconds of such motion by term, of those that are not known well enough, where something can be said of them.
+    needed: Pairs,
     /// By term, where known.
     units: BTreeMap<String, String>,
     /// Whether the coefficients were moving at the stage's end.
@@ -68,6 +72,7 @@ impl StageReport {
     fn of(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -> StageReport {
         StageReport {
             start: stage.start,
+            start_std: stage.start_std,
             end: stage.end,
             detected: stage.detected,
             identified: stage.identified,
@@ -76,6 +81,7 @@ impl StageReport {
             law: stage.law(forced),
             coefficients: Pairs(stage.known().map(|(known, _)| (known.term.name(), known.value)).collect()),
             std: Pairs(stage.known().map(|(known, std)| (known.term.name(), std)).collect()),
+            needed: Pairs(stage.lacking().map(|(term, seconds)| (term.name(), seconds)).collect()),
             units: stage
                 .known()
                 .filter_map(|(known, _)| Some((known.term.name(), unit_of(known.term, units)?)))

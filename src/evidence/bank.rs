@@ -13,6 +13,8 @@
 //! physics makes plausible. Their difference is the evidence of a switch (Willsky and Jones 1976, with a prior in the
 //! place of the maximum). Starts are kept on a grid whose spacing grows with age.
 
+mod instant;
+
 use super::filter::Innovation;
 use super::information::Information;
 use super::pass::IntervalMap;

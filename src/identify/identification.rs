@@ -1,7 +1,7 @@
 //! A whole recording through the streaming identifier: its stages, one after the other.
 
 use super::{BuildError, Coefficient, Identifier, Method, Recording, SavedLaws, Settings, Skipped};
-use crate::law::{Hold, Model, equation};
+use crate::law::{Hold, Model, Term, equation};
 use std::ops::Range;
 
 /// A time over which one law held.
@@ -9,6 +9,8 @@ use std::ops::Range;
 pub struct Stage {
     /// Estimated instant at which it began, s; the first sample's time where the record or a gap begins it.
     pub start: f64,
+    /// Std of that instant, s; `None` where no switch began the stage.
+    pub start_std: Option<f64>,
     /// Its end, s: the next stage's start, or the last sample.
     pub end: f64,
     /// Time of the alarm that opened it, s; `None` where the record or a gap began it.
@@ -31,6 +33,13 @@ impl Stage {
     /// The coefficients that are known, with their std.
     pub fn known(&self) -> impl Iterator<Item = (&Coefficient, f64)> {
         self.coefficients.iter().filter_map(|coefficient| Some((coefficient, coefficient.std?)))
+    }
+
+    /// The terms whose coefficients are not known as well as a law that is vouched for asks, and for how many more seconds such motion
+    /// would have to go on; those left out of which nothing can be said.
+    pub fn lacking(&self) -> impl Iterator<Item = (Term, f64)> {
+        let needed = self.coefficients.iter().filter_map(|coefficient| Some((coefficient.term, coefficient.needed?)));
+        needed.filter(|(_, seconds)| *seconds > 0.0)
     }
 
     /// The law on one line; `None` where no coefficient is known. `forced` puts F on its right-hand side.
@@ -180,6 +189,7 @@ fn follow(
 fn begin(identifier: &Identifier, start: f64) -> Stage {
     Stage {
         start,
+        start_std: identifier.output().switch_time_std,
         end: start,
         detected: identifier.output().detection_time,
         identified: None,

@@ -87,6 +87,9 @@ pub struct Coefficient {
     pub value: f64,
     /// Its std; `None` while the coefficient is not known.
     pub std: Option<f64>,
+    /// How many more seconds of such a record it needs until it is known as well as a law that is vouched for asks; 0 when it is, `None`
+    /// while nothing can be said.
+    pub needed: Option<f64>,
 }
 
 /// All other outputs after a step.
@@ -96,6 +99,8 @@ pub struct Output {
     pub switch_count: u32,
     /// Estimated instant at which the present stage began, s.
     pub switch_time: f64,
+    /// Its std, s; `None` in the first stage, which no switch opened.
+    pub switch_time_std: Option<f64>,
     /// Time of the alarm that ended the last stage, s; `None` in the first one.
     pub detection_time: Option<f64>,
     /// First time at which the present law was vouched for (stated covariance puts e below 0.05²), s.
@@ -178,14 +183,18 @@ impl Identifier {
         model.check()?;
         model.check_inertia()?;
         model.check_streaming()?;
-        let coefficients =
-            model.terms.iter().map(|entry| Coefficient { term: entry.term, value: 0.0, std: None }).collect();
+        let coefficients = model
+            .terms
+            .iter()
+            .map(|entry| Coefficient { term: entry.term, value: 0.0, std: None, needed: None })
+            .collect();
         let problem = Problem::new(model, &settings);
         let engine = Engine::new(&problem, &settings);
         let potential = model.potential.clone();
         let output = Output {
             switch_count: 0,
             switch_time: 0.0,
+            switch_time_std: None,
             detection_time: None,
             identified_time: None,
             law_number: None,

@@ -69,9 +69,14 @@ pub struct Outputs {
     places: Vec<Option<usize>>,
 }
 
-const SCALARS: [(&str, OutputKind, &str); 16] = [
+const SCALARS: [(&str, OutputKind, &str); 17] = [
     ("switch.count", OutputKind::Count, "Switches detected so far"),
     ("switch.time", OutputKind::Real(Some("s")), "Estimated instant at which the present stage began"),
+    (
+        "switch.time_std",
+        OutputKind::Real(Some("s")),
+        "Std of switch.time; 1e30 in the first stage, which no switch began",
+    ),
     (
         "switch.detection_time",
         OutputKind::Real(Some("s")),
@@ -109,7 +114,8 @@ const SCALARS: [(&str, OutputKind, &str); 16] = [
 ];
 
 impl Outputs {
-    /// The outputs for these terms, with the names that FMU and trace give them: all `coef.`, all `std.`, the rest.
+    /// The outputs for these terms, with the names that FMU and trace give them: all `coef.`, all `std.`, all `needed.`, the
+    /// rest.
     pub fn describe(terms: &[Term]) -> Vec<OutputDescription> {
         let real =
             |name: String, description: String| OutputDescription { name, kind: OutputKind::Real(None), description };
@@ -121,9 +127,17 @@ impl Outputs {
         let stds = terms.iter().map(|term| {
             real(format!("std.{}", term.fmu_name()), format!("Std of the coefficient of {term}; 1e30 while unknown"))
         });
+        let needed = terms.iter().map(|term| OutputDescription {
+            name: format!("needed.{}", term.fmu_name()),
+            kind: OutputKind::Real(Some("s")),
+            description: format!(
+                "Further time of such motion until the coefficient of {term} is known as a law that is valid asks; 0 when it is, 1e30 while \
+                 nothing can be said"
+            ),
+        });
         let scalars =
             SCALARS.map(|(name, kind, text)| OutputDescription { name: name.into(), kind, description: text.into() });
-        coefficients.chain(stds).chain(scalars).collect()
+        coefficients.chain(stds).chain(needed).chain(scalars).collect()
     }
 
     /// The outputs of this identifier over these terms.
@@ -139,7 +153,8 @@ impl Outputs {
         let at = |place: &Option<usize>| place.and_then(|place| coefficients.get(place));
         let values = self.places.iter().map(move |place| at(place).map_or(0.0, |found| found.value));
         let stds = self.places.iter().map(move |place| at(place).and_then(|found| found.std).unwrap_or(UNKNOWN));
-        values.chain(stds).map(OutputValue::Real).chain(scalars(identifier))
+        let needed = self.places.iter().map(move |place| at(place).and_then(|found| found.needed).unwrap_or(UNKNOWN));
+        values.chain(stds).chain(needed).map(OutputValue::Real).chain(scalars(identifier))
     }
 }
 
@@ -149,6 +164,7 @@ fn scalars(identifier: &Identifier) -> [OutputValue; SCALARS.len()] {
     [
         OutputValue::Count(output.switch_count),
         OutputValue::Real(output.switch_time),
+        or_unknown(output.switch_time_std),
         or_unknown(output.detection_time),
         OutputValue::Status(output.status),
         OutputValue::Flag(output.valid),
@@ -185,5 +201,6 @@ mod tests {
         let at = |name: &str| values[names.iter().position(|output| output.name == name).unwrap()];
         assert_eq!((at("coef.q_2_qd"), at("std.q_2_qd")), (0.0, UNKNOWN));
         assert_eq!((at("std.qdd"), at("status")), (UNKNOWN, 1.0));
+        assert_eq!((at("needed.qdd"), at("switch.time_std")), (UNKNOWN, UNKNOWN));
     }
 }

@@ -144,6 +144,7 @@ impl Publication {
                 coefficient.value = self.equations.fit().coefficients[free];
             }
         }
+        published.iter_mut().for_each(|coefficient| coefficient.needed = coefficient.std.map(|_| 0.0));
     }
 
     fn begin_prediction(&mut self, problem: &Problem, output: &mut Output) {
@@ -193,7 +194,7 @@ impl Publication {
         self.capture.push(now, problem.channels);
         self.solved = false;
         self.phase = Phase::Capturing;
-        problem.free.iter().for_each(|index| published[*index].std = None);
+        problem.free.iter().for_each(|index| (published[*index].std, published[*index].needed) = (None, None));
         output.switch_count += 1;
         output.switch_time = now.t;
         output.detection_time = Some(now.t);

@@ -7,6 +7,7 @@
 //! becomes the maximum likelihood of the trajectory without passing through its wrong minima.
 
 use super::blocks::Blocks;
+use super::forecast::{Forecast, Record};
 use super::known::KnownLaw;
 use super::problem::Problem;
 use super::scales::Scales;
@@ -18,7 +19,7 @@ use crate::law::{Motion, State};
 use serde::{Deserialize, Serialize};
 
 /// A pass that has caught up is closed only when the record has grown by this fraction since the last one …
-const GROWTH: f64 = 0.02;
+pub const GROWTH: f64 = 0.02;
 
 /// … and by this many samples.
 const FRESH: u64 = 8;
@@ -37,6 +38,9 @@ const STOOD: f64 = 0.05 * 0.05;
 
 /// A law that has stood this many trials in a row, its record grown by 1.25⁴ = 2.4, stands whatever other terms might have done.
 const LONG: u32 = 4;
+
+/// e below this square vouches for a law.
+pub const VOUCHED: f64 = 0.05 * 0.05;
 
 /// e below this square makes a law good enough to weigh switches against.
 pub const TRUSTED: f64 = 0.2 * 0.2;
@@ -122,6 +126,7 @@ pub struct Stage {
     next: u64,
     closed_at: u64,
     checkpoint: Checkpoint,
+    forecast: Forecast,
     structure: Structure,
     previous: Vec<f64>,
     largest: [f64; 2],
@@ -209,6 +214,7 @@ impl Stage {
             next: 0,
             closed_at: 0,
             checkpoint: Checkpoint { at: None, information: Information::none(n) },
+            forecast: Forecast::new(n),
             structure: Structure::new(n),
             previous: vec![0.0; n],
             largest: [0.0; 2],
@@ -253,6 +259,7 @@ impl Stage {
         self.gain = f64::INFINITY;
         self.missing = None;
         self.next_look = 0;
+        self.forecast.clear();
         self.largest = [0.0; 2];
         self.begin_pass(problem, window);
     }
@@ -298,6 +305,7 @@ impl Stage {
                 self.largest[channel] = self.largest[channel].max(observation.measured[channel].unwrap_or(0.0).abs());
             }
             self.next += 1;
+            self.forecast.step(self.next, &self.pass.information);
             if Some(self.next) == self.checkpoint.at {
                 self.checkpoint.information.clone_from_slices(&self.pass.information);
             }
@@ -395,6 +403,7 @@ impl Stage {
         self.follow_noise(problem, settings, &track, self.mean_interval(window));
         self.calm = if self.is_calm() { self.calm + 1 } else { 0 };
         self.confirm();
+        self.foretell();
         self.fold(window);
     }
 
@@ -413,6 +422,33 @@ impl Stage {
         self.stood = if stood { self.stood + 1 } else { 0 };
         self.trial.length = length;
         self.trial.all.copy_from_slice(&self.all);
+    }
+
+    /// How long the record has to get for the law to be known.
+    fn foretell(&mut self) {
+        let squares: f64 = self.all.iter().map(|value| value * value).sum();
+        let begun = if self.trial.length > 0 { self.start + self.trial.length } else { self.next };
+        let record = Record {
+            range: [self.start, self.next],
+            information: &self.pass.information,
+            active: &self.active,
+            solution: &self.solution,
+            allowed: VOUCHED * squares / self.overdispersion,
+            trial: (!self.stands()).then_some(begun),
+            growth: TRIAL,
+        };
+        self.forecast.renew(&record);
+    }
+
+    /// By which factor the record that the last pass ended with has to grow until the coefficient is known; infinite where nothing can be
+    /// said.
+    pub fn growth_needed(&self, free: usize) -> f64 {
+        self.forecast.factor(free)
+    }
+
+    /// Number of the sample that the last pass ended with.
+    pub fn closed_at(&self) -> u64 {
+        self.closed_at
     }
 
     /// The pass has left what can be integrated: it is repeated from the last coefficients with the filter closer to the data.
@@ -532,6 +568,7 @@ impl Stage {
             self.lack.begin(self.pass.filter.state, self.largest);
         }
         self.running_scales.clear();
+        self.forecast.begin(self.start, length);
         self.blocks.begin(length);
     }
 }

@@ -198,6 +198,7 @@ impl Tracker {
             self.seek_constant_law(problem, settings, published, output);
         }
         self.track_drift(problem, settings, published, output);
+        self.foretell(problem, published, output);
     }
 
     fn seek_constant_law(
@@ -236,6 +237,11 @@ impl Tracker {
 
     fn now(&self) -> f64 {
         self.window.sample(self.window.end() - 1).t
+    }
+
+    /// Time between the last two samples, s: it hides when in it a law switched.
+    fn last_interval(&self) -> f64 {
+        self.now() - self.window.sample(self.window.end().max(2) - 2).t
     }
 
     /// Runs the law in use over what is new, and weighs the evidence of a switch.

@@ -4,10 +4,7 @@ use super::{Phase, Tracker, YOUNG};
 use crate::identify::identifier::{Coefficient, Output, Status};
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
-use crate::identify::stage::TRUSTED;
-
-/// e below this square vouches for a law.
-pub(super) const VOUCHED: f64 = 0.05 * 0.05;
+use crate::identify::stage::{GROWTH, TRUSTED, VOUCHED};
 
 impl Tracker {
     /// What the record since the stage's start leaves open: combinations of terms while the weak rows of a first law are
@@ -69,6 +66,28 @@ impl Tracker {
         if output.identified_time.is_none() {
             self.acquaintance = length.max(self.acquaintance / 2);
         }
+    }
+
+    /// Says of every coefficient how many more seconds of record it needs.
+    pub(super) fn foretell(&self, problem: &Problem, published: &mut [Coefficient], output: &Output) {
+        published.iter_mut().for_each(|coefficient| coefficient.needed = coefficient.std.map(|_| 0.0));
+        if !output.valid {
+            for (free, index) in problem.free.iter().enumerate() {
+                published[*index].needed = self.needed(free, published[*index].std, output);
+            }
+        }
+    }
+
+    /// As of the last pass.
+    fn needed(&self, free: usize, std: Option<f64>, output: &Output) -> Option<f64> {
+        let factor = self.stage.growth_needed(free);
+        if output.drifting || self.phase == Phase::Gathering || !factor.is_finite() {
+            return None;
+        }
+        let time = |number: u64| self.window.sample(number.clamp(self.window.oldest(), self.window.end() - 1)).t;
+        let length = time(self.stage.closed_at()) - time(self.stage.start);
+        let least = if std.is_some() { 0.0 } else { GROWTH };
+        Some((factor - 1.0).max(least) * length)
     }
 
     fn publish_free(&self, free: usize, coefficient: &mut Coefficient) {

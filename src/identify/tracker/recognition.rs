@@ -3,13 +3,13 @@
 //! At the alarm the bank of hypotheses has seen the switch already, with the state carried on from before: each known law is weighed
 //! by it at once. Where that does not decide, the laws go on trial over the record since the stage's start.
 
-use super::published::VOUCHED;
 use super::{Phase, Tracker, alarm_level};
 use crate::identify::identifier::{Coefficient, Output, Status};
 use crate::identify::known::{KnownLaw, ROOM, Weighed};
 use crate::identify::problem::Problem;
 use crate::identify::saved::{SavedLaw, SavedLaws, SavedLawsError};
 use crate::identify::settings::Settings;
+use crate::identify::stage::VOUCHED;
 use serde::{Deserialize, Serialize};
 
 /// Evidence against any other law that makes a known one recognised in the step of the alarm, in alarm levels: it is more likely

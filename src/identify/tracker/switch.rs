@@ -78,6 +78,8 @@ impl Tracker {
         let last = self.window.ready() - 1;
         let instant = self.bank.likeliest_start(&suspect, level);
         let start = (self.bank.after(&suspect, level) + 1).min(last);
+        let time = |number: u64| self.window.sample(number).t;
+        let distance = self.bank.distance_of_switch(time(instant), self.now(), time);
         if self.is_unconfirmed() {
             return self.take_back(problem, start, output);
         }
@@ -104,6 +106,7 @@ impl Tracker {
         self.usual.clear();
         output.switch_count += 1;
         output.switch_time = self.window.sample(instant).t;
+        output.switch_time_std = distance.map(|distance| distance.hypot(self.last_interval()));
         output.detection_time = Some(self.now());
         output.identified_time = None;
         output.missing = None;
