@@ -61,7 +61,6 @@ fn the_sensors_noise_is_known_whatever_disturbs_it() {
                 let error = (found.unwrap() / truth - 1.0).abs();
                 let allowed = match disturbance {
                     Disturbance::Louder => 0.2,
-                    Disturbance::Dropped => 0.13,
                     _ => 0.08,
                 };
                 assert!(error < allowed, "{} {}: {found:?} of {truth}", builtin.id(), disturbance.id());

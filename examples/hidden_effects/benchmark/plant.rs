@@ -50,6 +50,11 @@ impl Rig {
         if self.scenario { Hold::Zero } else { Hold::Linear }
     }
 
+    /// The seed of a scenario, which FMI takes as a positive integer of 32 bits.
+    pub fn fmi_seed(&self) -> u64 {
+        self.seed & i32::MAX as u64
+    }
+
     /// The motion from rest, a sample cut into `parts` steps; none where it has no bounds.
     pub fn run(&self, law: &Law, parts: usize, agent: Option<(Agent, f64)>) -> Option<Track> {
         let track = match self.scenario {
@@ -69,7 +74,7 @@ impl Rig {
         let (terms, coefficients) = (law.terms[..law.known].to_vec(), law.coefficients[..law.known].to_vec());
         let stage = Stage { start: 0.0, coefficients, amplitude: 0.0, omega: 0.0 };
         let duration = self.sample_time * (self.count as f64 - 0.5);
-        let mut scenario = Scenario::new("hidden effect", terms, vec![stage], duration).with_seed(self.seed);
+        let mut scenario = Scenario::new("hidden effect", terms, vec![stage], duration).with_seed(self.fmi_seed());
         scenario.excitation = excitation;
         scenario.inner_step = self.sample_time / parts as f64;
         let mut hidden = Hidden::default();

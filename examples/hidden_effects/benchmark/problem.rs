@@ -81,7 +81,7 @@ fn attempted(setting: &Setting, generator: &mut Generator) -> Option<Problem> {
         count: setting.samples + lead,
         amplitude: base.stiffness * base.size,
         fmu: setting.draw % 2 == 1,
-        seed: generator.seed() & i32::MAX as u64,
+        seed: generator.seed(),
     };
     let alone = scaled(&mut rig, &base)?;
     let (track, law) = with_secret(setting, generator, &rig, &base, &alone)?;

@@ -35,7 +35,7 @@ pub fn run(rig: &Rig, law: &Law, excitation: &Excitation) -> Result<Track, Failu
     let request = Request { co_simulation: true, guid: fmu.guid(), location: Some(&location), logging: true };
     let instance = Instance::new(linked_functions!(functions), &request).map_err(|said| format!("{said:?}"))?;
     let plant = Plant { instance, interface };
-    plant.drive(excitation, rig.seed)?;
+    plant.drive(excitation, rig.fmi_seed())?;
     for (term, coefficient) in pairs().skip(law.known) {
         plant.hide(term, coefficient)?;
     }
