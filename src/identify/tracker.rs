@@ -55,6 +55,9 @@ const INERTIA_SPREAD: f64 = 0.5;
 /// Samples for which a suspicion keeps the law in use from being renewed: what comes may belong to another law.
 const SUSPENSE: u64 = 1000;
 
+/// After so many passes in a row what a law leaves unexplained is no matter of a fit that has not settled.
+const LASTS: u32 = 3;
+
 /// Samples from which on differences tell the sensors' noise to a tenth.
 const ROUGHLY: u64 = 500;
 
@@ -113,6 +116,8 @@ pub struct Tracker {
     acquaintance: u64,
     /// Since which sample a law that was vouched for is contested again.
     doubted_from: u64,
+    /// Passes in a row after which the stage seemed to hold several laws.
+    unexplained_passes: u32,
 }
 
 /// Where the identification stands.
@@ -169,6 +174,7 @@ impl Tracker {
             explained: false,
             acquaintance: 0,
             doubted_from: 0,
+            unexplained_passes: 0,
         }
     }
 
@@ -298,7 +304,8 @@ impl Tracker {
             problem.free.iter().for_each(|index| published[*index].std = None);
         }
         let waits = self.unusual_since.is_some_and(|since| self.window.end() < since + SUSPENSE);
-        if mixed && output.valid && !waits && !output.drifting {
+        self.unexplained_passes = if mixed { self.unexplained_passes + 1 } else { 0 };
+        if self.unexplained_passes >= LASTS && output.valid && !waits && !output.drifting {
             self.doubt_law(output);
         }
         if !waits && (worth_monitoring || (self.live.running && self.stage.is_calm() && !mixed)) {

@@ -135,19 +135,24 @@ impl Tracker {
         }
         if self.challenger.settled() {
             self.challenging = false;
-            if self.challenger.agrees_with(&self.stage) {
+            let agrees = self.challenger.agrees_with(&self.stage);
+            if agrees {
                 self.next_guess = self.window.end() + self.stage.length(self.window.end());
             }
-            let measurements = 2.0 * self.challenger.length(self.window.ready()) as f64;
-            let later = self.challenger.start > self.stage.start;
-            let margin = if later { CLEARLY } else { 3.0 / measurements };
-            if self.challenger.likelihood > self.stage.likelihood + margin {
+            // one that takes the place of a law which explains its record would begin the same law's trial anew
+            if !(agrees && self.stage.explains) && self.challenger.likelihood > self.stage.likelihood + self.margin() {
                 std::mem::swap(&mut self.challenger, &mut self.stage);
             }
         } else if self.challenger.passes > PATIENCE {
             self.challenging = false;
         }
         self.challenger.begin_pass(problem, &self.window);
+    }
+
+    /// What the challenger must explain better than the stage, nats per measurement.
+    fn margin(&self) -> f64 {
+        let measurements = 2.0 * self.challenger.length(self.window.ready()) as f64;
+        if self.challenger.start > self.stage.start { CLEARLY } else { 3.0 / measurements }
     }
 
     /// Sensor variances before any law: as set, or from differences.

@@ -28,7 +28,8 @@ impl Tracker {
         }
         let moves = self.drift.is_moving() && self.drift.predicts();
         let alone = || self.drift.has_no_rest(&self.window) && self.drift.spans(1.0);
-        let sure = if output.valid { self.drift_is_credible(output) } else { alone() };
+        let known = output.valid || self.doubted_from > self.stage.start;
+        let sure = if known { self.drift_is_credible(output) } else { alone() };
         if !output.drifting && moves && sure && self.drift.stated_error() < TRUSTED {
             self.begin_drift(output);
         }
