@@ -60,9 +60,9 @@ impl Joint {
         let total = column[channel as usize] + variance;
         let (residual, precision) = (measured - self.mean[channel as usize], total.recip());
         let gain = column.map(|entry| entry * precision);
-        for row in 0..3 {
-            self.mean[row] += gain[row] * residual;
-            (0..3).for_each(|other| self.covariance[row][other] -= gain[row] * column[other]);
+        for ((mean, row), gain) in self.mean.iter_mut().zip(&mut self.covariance).zip(gain) {
+            *mean += gain * residual;
+            row.iter_mut().zip(column).for_each(|(entry, other)| *entry -= gain * other);
         }
         (Innovation { residual, variance: total, precision, gain: [gain[0], gain[1]] }, gain)
     }
