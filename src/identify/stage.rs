@@ -6,17 +6,26 @@
 //! coefficients; the likelihood then takes the process noise down, pass by pass, to where the data want it, and the fit
 //! becomes the maximum likelihood of the trajectory without passing through its wrong minima.
 
+mod first_state;
+mod levels;
+mod prior;
+mod trial;
+
 use super::blocks::Blocks;
-use super::forecast::{Forecast, Record};
+use super::forecast::Forecast;
 use super::known::KnownLaw;
 use super::problem::Problem;
 use super::scales::Scales;
 use super::settings::Settings;
 use super::structure::Structure;
 use super::window::Window;
-use crate::evidence::{Channel, Filter, Information, Lack, Missing, Noise, Pass, RIVALS, Solution, Track};
-use crate::law::{Motion, State};
+use crate::evidence::{Information, Lack, Missing, Noise, Pass, Solution};
+use crate::law::Motion;
+pub(super) use first_state::first_state;
+use prior::InertiaPrior;
+pub use prior::Prior;
 use serde::{Deserialize, Serialize};
+use trial::Trial;
 
 /// A pass that has caught up is closed only when the record has grown by this fraction since the last one …
 pub const GROWTH: f64 = 0.02;
@@ -30,15 +39,6 @@ const SETTLED: f64 = 1.0;
 /// Largest gain in log-likelihood that another noise level may still promise, nats.
 const GAIN: f64 = 3.0;
 
-/// A law is confirmed when the record has grown by this factor …
-const TRIAL: f64 = 1.25;
-
-/// … and the coefficients have moved by less than this, as e of eq. (8).
-const STOOD: f64 = 0.05 * 0.05;
-
-/// A law that has stood this many trials in a row, its record grown by 1.25⁴ = 2.4, stands whatever other terms might have done.
-const LONG: u32 = 4;
-
 /// e below this square vouches for a law.
 pub const VOUCHED: f64 = 0.05 * 0.05;
 
@@ -47,27 +47,6 @@ pub const TRUSTED: f64 = 0.2 * 0.2;
 
 /// Effects that the law lacks are looked for again when the record has grown by this factor: most passes are spared the work.
 const LOOK_AGAIN: f64 = 1.4;
-
-/// Variance of an innovation ÷ that of its sensor from which on the law's own error counts.
-const PROCESS_SHARE: f64 = 2.0;
-
-/// The same where the state is known from the last 30 samples alone: an innovation's variance is its sensor's times 1 + 1/30.
-const FORGETTING: f64 = 1.0 + 1.0 / 30.0;
-
-/// Nothing tells a process noise from none under which the state is remembered for ten times the longest window, samples.
-const LIFETIME: f64 = 1e7;
-
-/// Overdispersion of a record that its law does not explain: chance does not bring it to any of a dozen coefficients.
-const UNEXPLAINED: f64 = 5.0;
-
-/// Overdispersion that is no chance: with 16 blocks it is 1 ± 0.35 for one coefficient of the right law.
-const LASTING: f64 = 2.5;
-
-/// Smallest sensor noise std, relative to the largest value measured: rounding and the integration's own error.
-const NOISE_FLOOR: f64 = 3e-7;
-
-/// Noise levels that move by less than this part have come to rest, whatever a level out of reach promises.
-const AT_REST: f64 = 0.05;
 
 /// For how many samples the sensor noise of the last stage counts in the next one.
 pub const NOISE_MEMORY: f64 = 500.0;
@@ -135,44 +114,6 @@ pub struct Stage {
     blocks: Blocks,
     known_noise: [f64; 2],
     known_noise_weight: f64,
-}
-
-/// What is known of the free coefficients before any data.
-#[derive(Clone, Copy, Debug)]
-pub struct Prior<'a> {
-    /// Means.
-    pub centre: &'a [f64],
-    /// Independent stds.
-    pub std: &'a [f64],
-    /// Std of the logarithm of the inertia, which keeps its sign.
-    pub log_inertia: f64,
-    /// Which terms the law before had, after a switch.
-    pub structure: Option<&'a [bool]>,
-    /// How many samples the sensors' variances are known from.
-    pub noise_weight: f64,
-}
-
-/// The inertia's prior, normal in its logarithm: as the inertia goes to 0 the law becomes one of first order, whose
-/// likelihood over a short record is no worse, and its covariance in the linearisation no longer honest.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct InertiaPrior {
-    centre: f64,
-    log_std: f64,
-}
-
-impl InertiaPrior {
-    /// (information, score) about the value m.
-    fn about(&self, m: f64) -> (f64, f64) {
-        let precision = (self.log_std * m).powi(2).recip();
-        (precision, -(m / self.centre).ln() * m * precision)
-    }
-}
-
-/// All coefficients as they were when the record had some length.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Trial {
-    length: u64,
-    all: Vec<f64>,
 }
 
 /// Information from the first half of a long record, to be folded into the prior.
@@ -328,11 +269,6 @@ impl Stage {
         self.calm >= 2
     }
 
-    /// Whether the law would hold with other terms too: with all of them its covariance is small enough, or it has stood long.
-    pub fn stands(&self) -> bool {
-        self.stood >= LONG || (self.stood > 0 && self.structure.full_error < TRUSTED)
-    }
-
     /// Whether the last pass changed little, by its own standard.
     pub fn is_calm(&self) -> bool {
         self.passes >= 2 && self.decrement.abs() < SETTLED * self.overdispersion && self.gain < GAIN
@@ -400,50 +336,11 @@ impl Stage {
         self.move_to_new_coefficients();
         let active = self.active.iter().filter(|active| **active).count().max(1);
         self.decrement = self.information.quadratic(&self.previous) / active as f64;
-        self.follow_noise(problem, settings, &track, self.mean_interval(window));
+        self.follow_noise(problem, settings, &track, window);
         self.calm = if self.is_calm() { self.calm + 1 } else { 0 };
         self.confirm();
         self.foretell();
         self.fold(window);
-    }
-
-    /// Whether both stages found one law in the same record.
-    pub fn agrees_with(&self, other: &Stage) -> bool {
-        self.start == other.start && differ_by(&self.all, &other.all) < STOOD
-    }
-
-    /// Lets the law stand trial: statistics that a wrong structure or a wrong minimum makes up do not survive more data.
-    fn confirm(&mut self) {
-        let length = self.length(self.next);
-        if !self.settled() || (length as f64) < TRIAL * self.trial.length as f64 {
-            return;
-        }
-        let stood = self.trial.length > 0 && differ_by(&self.all, &self.trial.all) < STOOD;
-        self.stood = if stood { self.stood + 1 } else { 0 };
-        self.trial.length = length;
-        self.trial.all.copy_from_slice(&self.all);
-    }
-
-    /// How long the record has to get for the law to be known.
-    fn foretell(&mut self) {
-        let squares: f64 = self.all.iter().map(|value| value * value).sum();
-        let begun = if self.trial.length > 0 { self.start + self.trial.length } else { self.next };
-        let record = Record {
-            range: [self.start, self.next],
-            information: &self.pass.information,
-            active: &self.active,
-            solution: &self.solution,
-            allowed: VOUCHED * squares / self.overdispersion,
-            trial: (!self.stands()).then_some(begun),
-            growth: TRIAL,
-        };
-        self.forecast.renew(&record);
-    }
-
-    /// By which factor the record that the last pass ended with has to grow until the coefficient is known; infinite where nothing can be
-    /// said.
-    pub fn growth_needed(&self, free: usize) -> f64 {
-        self.forecast.factor(free)
     }
 
     /// Number of the sample that the last pass ended with.
@@ -489,64 +386,6 @@ impl Stage {
         }
     }
 
-    /// Sensor noise follows the innovations, process noise the likelihood.
-    fn follow_noise(&mut self, problem: &Problem, settings: &Settings, track: &Track, dt: f64) {
-        let exceeds = |factor: f64| {
-            Channel::ALL.iter().any(|channel| track.variance(*channel) > factor * self.noise.sensor[*channel as usize])
-        };
-        let overdispersion = self.blocks.overdispersion(&self.pass.information);
-        self.overdispersion = if overdispersion > LASTING { overdispersion } else { 1.0 };
-        self.process_matters = exceeds(PROCESS_SHARE);
-        self.explains = !exceeds(FORGETTING) && overdispersion < UNEXPLAINED;
-        let given = [settings.noise_q, settings.noise_qd];
-        let before = self.noise;
-        for channel in Channel::ALL {
-            let index = channel as usize;
-            let floor = (NOISE_FLOOR * self.largest[index]).powi(2).max(f64::MIN_POSITIVE);
-            self.noise.sensor[index] = match given[index] {
-                0.0 => {
-                    let (count, known) = (track.count[index], self.known_noise_weight);
-                    let seen = count * self.noise.sensor[index] * track.scale(channel);
-                    ((seen + known * self.known_noise[index]) / (count + known).max(1.0)).max(floor)
-                }
-                std => std * std,
-            };
-        }
-        let mean = (track.squares[0] + track.squares[1]) / track.total().max(1.0);
-        let likelihoods = self.pass.rivals.map(|rival| rival.log_likelihood());
-        let [less, more] = likelihoods.map(|likelihood| likelihood - track.log_likelihood());
-        self.gain = less.max(more);
-        self.likelihood = track.log_likelihood() / track.total().max(1.0);
-        let ratio = match (less >= more, less > -0.1, more > 0.1) {
-            (true, true, _) => RIVALS[0],
-            (false, _, true) => RIVALS[1],
-            _ => 1.0,
-        };
-        let force = settings.noise_excitation / self.all[problem.inertia];
-        let floor = force * force * settings.sample_time + self.unforgetting(problem, dt);
-        self.noise.process = (self.noise.process * ratio * mean).max(floor);
-        let moved = |new: f64, old: f64| (new / old - 1.0).abs() > AT_REST;
-        let pairs = self.noise.sensor.iter().zip(before.sensor);
-        if !moved(self.noise.process, before.process) && !pairs.into_iter().any(|(new, old)| moved(*new, old)) {
-            self.gain = self.gain.min(0.0);
-        }
-    }
-
-    /// Time from sample to sample of the record, s.
-    fn mean_interval(&self, window: &Window) -> f64 {
-        let [first, last] = [self.start, self.next - 1].map(|number| window.sample(number).t);
-        (last - first) / (self.next - 1 - self.start).max(1) as f64
-    }
-
-    /// Intensity of process noise below which the state is remembered for [`LIFETIME`] samples.
-    fn unforgetting(&self, problem: &Problem, dt: f64) -> f64 {
-        let [q, qd] = self.noise.sensor;
-        match problem.channels.qd {
-            true => qd / (LIFETIME.powi(2) * dt),
-            false => q / (LIFETIME.powi(4) * dt.powi(3)),
-        }
-    }
-
     /// When the record outgrows the window, its first half becomes prior knowledge.
     fn fold(&mut self, window: &Window) {
         let full = self.length(self.next) as f64 > FULL * window.capacity() as f64;
@@ -570,29 +409,5 @@ impl Stage {
         self.running_scales.clear();
         self.forecast.begin(self.start, length);
         self.blocks.begin(length);
-    }
-}
-
-/// e of eq. (8) between two laws.
-fn differ_by(new: &[f64], old: &[f64]) -> f64 {
-    let change: f64 = new.iter().zip(old).map(|(new, old)| (new - old).powi(2)).sum();
-    change / new.iter().map(|value| value * value).sum::<f64>()
-}
-
-/// The state at the first sample, from that sample and the next alone.
-pub(super) fn first_state(problem: &Problem, window: &Window, start: u64, noise: &Noise) -> Filter {
-    let [first, second] = [start, (start + 1).min(window.end() - 1)].map(|number| *window.sample(number));
-    let [q, qd] = noise.sensor;
-    let dt = (second.t - first.t).max(f64::MIN_POSITIVE);
-    match (problem.channels.q, problem.channels.qd) {
-        (true, true) => Filter { state: State { q: first.q, qd: first.qd }, covariance: [q, 0.0, qd] },
-        (true, false) => {
-            let slope = (second.q - first.q) / dt;
-            Filter {
-                state: State { q: first.q, qd: slope },
-                covariance: [q, 0.0, 10.0 * (slope * slope + q / (dt * dt))],
-            }
-        }
-        _ => Filter { state: State { q: 0.0, qd: first.qd }, covariance: [1.0, 0.0, qd] },
     }
 }

@@ -1,0 +1,107 @@
+//! Sensor noise follows the innovations, process noise the likelihood.
+
+use super::Stage;
+use crate::evidence::{Channel, Noise, RIVALS, Track};
+use crate::identify::problem::Problem;
+use crate::identify::settings::Settings;
+use crate::identify::window::Window;
+
+/// Variance of an innovation ÷ that of its sensor from which on the law's own error counts.
+const PROCESS_SHARE: f64 = 2.0;
+
+/// The same where the state is known from the last 30 samples alone: an innovation's variance is its sensor's times 1 + 1/30.
+const FORGETTING: f64 = 1.0 + 1.0 / 30.0;
+
+/// Nothing tells a process noise from none under which the state is remembered for ten times the longest window, samples.
+const LIFETIME: f64 = 1e7;
+
+/// Overdispersion of a record that its law does not explain: chance does not bring it to any of a dozen coefficients.
+const UNEXPLAINED: f64 = 5.0;
+
+/// Overdispersion that is no chance: with 16 blocks it is 1 ± 0.35 for one coefficient of the right law.
+const LASTING: f64 = 2.5;
+
+/// Smallest sensor noise std, relative to the largest value measured: rounding and the integration's own error.
+const NOISE_FLOOR: f64 = 3e-7;
+
+/// Noise levels that move by less than this part have come to rest, whatever a level out of reach promises.
+const AT_REST: f64 = 0.05;
+
+impl Stage {
+    /// Takes the noise levels of the next pass from the one that has just closed.
+    pub(super) fn follow_noise(&mut self, problem: &Problem, settings: &Settings, track: &Track, window: &Window) {
+        self.tell_error(track);
+        let before = self.noise;
+        self.follow_sensors(settings, track);
+        let factor = self.process_factor(track);
+        let force = settings.noise_excitation / self.all[problem.inertia];
+        let floor = force * force * settings.sample_time + self.unforgetting(problem, self.mean_interval(window));
+        self.noise.process = (self.noise.process * factor).max(floor);
+        if self.has_come_to_rest(&before) {
+            self.gain = self.gain.min(0.0);
+        }
+    }
+
+    /// What the pass says of the law's own error.
+    fn tell_error(&mut self, track: &Track) {
+        let exceeds = |factor: f64| {
+            Channel::ALL.iter().any(|channel| track.variance(*channel) > factor * self.noise.sensor[*channel as usize])
+        };
+        let overdispersion = self.blocks.overdispersion(&self.pass.information);
+        self.overdispersion = if overdispersion > LASTING { overdispersion } else { 1.0 };
+        self.process_matters = exceeds(PROCESS_SHARE);
+        self.explains = !exceeds(FORGETTING) && overdispersion < UNEXPLAINED;
+    }
+
+    /// Sensor variances that are not given follow the innovations.
+    fn follow_sensors(&mut self, settings: &Settings, track: &Track) {
+        let given = [settings.noise_q, settings.noise_qd];
+        for channel in Channel::ALL {
+            let index = channel as usize;
+            let floor = (NOISE_FLOOR * self.largest[index]).powi(2).max(f64::MIN_POSITIVE);
+            self.noise.sensor[index] = match given[index] {
+                0.0 => {
+                    let (count, known) = (track.count[index], self.known_noise_weight);
+                    let seen = count * self.noise.sensor[index] * track.scale(channel);
+                    ((seen + known * self.known_noise[index]) / (count + known).max(1.0)).max(floor)
+                }
+                std => std * std,
+            };
+        }
+    }
+
+    /// By which factor the process noise goes where the likelihood wants it.
+    fn process_factor(&mut self, track: &Track) -> f64 {
+        let likelihoods = self.pass.rivals.map(|rival| rival.log_likelihood());
+        let [less, more] = likelihoods.map(|likelihood| likelihood - track.log_likelihood());
+        self.gain = less.max(more);
+        self.likelihood = track.log_likelihood() / track.total().max(1.0);
+        let ratio = match (less >= more, less > -0.1, more > 0.1) {
+            (true, true, _) => RIVALS[0],
+            (false, _, true) => RIVALS[1],
+            _ => 1.0,
+        };
+        ratio * (track.squares[0] + track.squares[1]) / track.total().max(1.0)
+    }
+
+    fn has_come_to_rest(&self, before: &Noise) -> bool {
+        let rests = |new: f64, old: f64| (new / old - 1.0).abs() <= AT_REST;
+        let mut sensors = self.noise.sensor.iter().zip(before.sensor);
+        rests(self.noise.process, before.process) && sensors.all(|(new, old)| rests(*new, old))
+    }
+
+    /// Time from sample to sample of the record, s.
+    fn mean_interval(&self, window: &Window) -> f64 {
+        let [first, last] = [self.start, self.next - 1].map(|number| window.sample(number).t);
+        (last - first) / (self.next - 1 - self.start).max(1) as f64
+    }
+
+    /// Intensity of process noise below which the state is remembered for [`LIFETIME`] samples.
+    fn unforgetting(&self, problem: &Problem, dt: f64) -> f64 {
+        let [q, qd] = self.noise.sensor;
+        match problem.channels.qd {
+            true => qd / (LIFETIME.powi(2) * dt),
+            false => q / (LIFETIME.powi(4) * dt.powi(3)),
+        }
+    }
+}
