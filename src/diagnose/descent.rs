@@ -58,23 +58,48 @@ const DELAYED: f64 = 0.2;
 /// Where a descent stands.
 #[derive(Clone, Debug)]
 pub(super) struct Descent<'a> {
-    pub(super) form: Form,
-    pub(super) pieces: &'a [Piece],
-    pub(super) places: Vec<Place>,
-    pub(super) signals: Signals,
-    pub(super) parts: Parts,
-    pub(super) inner: Vec<Sought>,
+    form: Form,
+    pieces: &'a [Piece],
+    places: Vec<Place>,
+    signals: Signals,
+    parts: Parts,
+    inner: Vec<Sought>,
     /// Between which values of each the motion can tell; empty before there is a motion.
-    pub(super) limits: Vec<[f64; 2]>,
-    pub(super) coefficients: Vec<f64>,
+    limits: Vec<[f64; 2]>,
+    coefficients: Vec<f64>,
     pub(super) noise: Noise,
     /// The rivals' process noise, relative to it.
-    pub(super) ratios: [f64; 2],
+    ratios: [f64; 2],
     /// The series.
-    pub(super) beside: Beside,
+    beside: Beside,
 }
 
 impl<'a> Descent<'a> {
+    /// Begins there; none where a piece has no samples.
+    pub(super) fn new(form: &Form, pieces: &'a [Piece], coefficients: &[f64], noise: Noise) -> Option<Descent<'a>> {
+        let parts = Parts::of(form);
+        let inner = inner_slopes::sought(form);
+        let beside = Beside::none(form, &parts, &inner, pieces);
+        Some(Descent {
+            form: form.clone(),
+            pieces,
+            places: Place::of(pieces),
+            signals: Signals { largest: start::largest(pieces), sample_time: pieces.first()?.observations.first()?.dt },
+            parts,
+            inner,
+            limits: Vec::new(),
+            coefficients: coefficients.to_vec(),
+            noise,
+            ratios: RIVALS,
+            beside,
+        })
+    }
+
+    /// Room for its runs.
+    pub(super) fn pass(&self) -> Pass {
+        Pass::new(self.parts.free.len())
+    }
+
     /// Passes until coefficients and noise stay; leaves them where they are best.
     ///
     /// A pass that is worse than the last one is taken back, and looked at again under the noise that it had; the next step is shorter
@@ -161,33 +186,38 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Log-likelihood under no process noise, the sensors' noise taking all error, coefficients moving along.
+    /// Log-likelihood under no process noise, the sensors' noise taking all error, coefficients moving along; ends where it is largest.
     /// Gives up where it will not come near `loud`.
     pub(super) fn quieten(&mut self, pass: &mut Pass, loud: f64) -> f64 {
-        let mut reached = f64::NEG_INFINITY;
+        let mut best: Option<(f64, Descent<'a>)> = None;
         self.ratios = RIVALS;
         for _ in 0..QUIET_PASSES {
             self.noise.process = start::negligible(&self.noise);
+            let reached = best.as_ref().map_or(f64::NEG_INFINITY, |(reached, _)| *reached);
             let outcomes = self.run(pass);
             if outcomes.iter().any(|outcome| !outcome.finite) {
-                return reached;
+                break;
             }
             let mut sums = total(&outcomes);
             let log_likelihood = self.log_likelihood(&outcomes, &sums);
             self.add_priors(&mut sums);
             let gained = log_likelihood - reached;
-            reached = reached.max(log_likelihood);
-            let Some(solved) = solve(&sums.information, &sums.score) else { return reached };
+            if gained > 0.0 {
+                best = Some((log_likelihood, self.clone()));
+            }
+            let Some(solved) = solve(&sums.information, &sums.score) else { break };
             levels::follow(&mut self.noise, &mut self.ratios, &outcomes, self.signals);
-            if gained.abs() < GAIN || loud - reached > HOPELESS * gained {
-                return reached;
+            if gained.abs() < GAIN || loud - reached.max(log_likelihood) > HOPELESS * gained {
+                break;
             }
             self.take(&solved.step);
         }
+        let Some((reached, point)) = best else { return f64::NEG_INFINITY };
+        *self = point;
         reached
     }
 
-    fn run(&self, pass: &mut Pass) -> Vec<Outcome> {
+    pub(super) fn run(&self, pass: &mut Pass) -> Vec<Outcome> {
         let terms: Vec<Term> = self.parts.of_state.iter().map(|index| self.form.terms[*index]).collect();
         let coefficients: Vec<f64> = self.parts.of_state.iter().map(|index| self.coefficients[*index]).collect();
         pass.ratios = self.ratios;
@@ -221,7 +251,7 @@ impl<'a> Descent<'a> {
 
     /// Renews the series along a motion that the measurements hold: one that the law alone carries from end to end would follow its own errors,
     /// growing from pass to pass where a memory resonates.
-    fn follow(&mut self, outcomes: &[Outcome], pass: &mut Pass) {
+    pub(super) fn follow(&mut self, outcomes: &[Outcome], pass: &mut Pass) {
         if self.parts.series.is_empty() || outcomes.iter().all(|outcome| outcome.smoothed.is_some()) {
             return self.take_series(outcomes);
         }
@@ -253,7 +283,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Of all pieces, the price of unknown beginnings taken off; `sums` without their prior.
-    fn log_likelihood(&self, outcomes: &[Outcome], sums: &Sums) -> f64 {
+    pub(super) fn log_likelihood(&self, outcomes: &[Outcome], sums: &Sums) -> f64 {
         let unlikely: f64 = self.delays().map(|(_, value)| 0.5 * ((value - 1.0) / DELAYED).powi(2)).sum();
         outcomes.iter().map(|outcome| outcome.log_likelihood).sum::<f64>() - self.beside.price(sums) - unlikely
     }
@@ -284,7 +314,7 @@ impl<'a> Descent<'a> {
 
     /// Takes the Gauss–Newton step as far as it goes: the inertia becomes at most [`LARGEST_RATIO`] times larger or smaller (as it grows without
     /// bounds, the law forgets its excitation), an inner parameter by a third.
-    fn take(&mut self, step: &DVector<f64>) {
+    pub(super) fn take(&mut self, step: &DVector<f64>) {
         let (coefficients, others) = step.as_slice().split_at(self.parts.unknowns.len());
         let inner = &others[..self.inner.len()];
         let fraction = self.bounded(coefficients).min(inner_slopes::bounded(inner));
@@ -307,7 +337,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Adds what is known before the record speaks: where memories begin, and that a delayed excitation takes the place of the excitation.
-    fn add_priors(&self, sums: &mut Sums) {
+    pub(super) fn add_priors(&self, sums: &mut Sums) {
         for (row, value) in self.delays() {
             sums.information[(row, row)] += DELAYED.powi(-2);
             sums.score[row] -= (value - 1.0) * DELAYED.powi(-2);
@@ -323,7 +353,7 @@ impl<'a> Descent<'a> {
     }
 }
 
-fn total(outcomes: &[Outcome]) -> Sums {
+pub(super) fn total(outcomes: &[Outcome]) -> Sums {
     let mut all = outcomes.iter().flat_map(|outcome| &outcome.sums);
     let mut sums = all.next().cloned().unwrap_or_else(|| Sums::none(0, 0));
     all.for_each(|other| sums.merge(other));

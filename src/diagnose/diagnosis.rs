@@ -195,6 +195,10 @@ pub fn diagnose(base: &Fit, evidence: &Evidence) -> Diagnosis {
     let found = search(base, &evidence.pieces, &candidates);
     let sound = Sound::new(base, &evidence.pieces);
     let singles = sound.ranked(found.singles());
+    let doubtful = singles.first().filter(|first| !is_evident(base) && first.p_value(found.tried) < LEVEL);
+    if let Some(better) = doubtful.and_then(|first| first.same_without(base, &evidence.pieces)) {
+        return diagnose(&better, evidence);
+    }
     let answer = conclude(base, evidence, &found, &singles, &sound);
     let listed = Listed::new(base, &answer, &singles, &sound);
     let described = listed.describe(evidence, &sound, found.tried);

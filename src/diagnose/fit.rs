@@ -4,16 +4,13 @@
 //! likelihood, sensor noise from the innovations, process noise from two rival filters, from much of it down to what the data want.
 //! Terms that no state gives (memory, delay, expressions of time) are series along the smoothed motion, renewed with it.
 
-use super::beside::Beside;
 use super::descent::Descent;
 use super::diagnosis::effect_name;
-use super::inner_slopes;
-use super::levels::Signals;
 use super::means::is_series;
 use super::piece::Piece;
-use super::run::{Place, Sums};
+use super::run::Sums;
 use super::start;
-use crate::evidence::{Noise, Pass, RIVALS};
+use crate::evidence::{Noise, Pass};
 use crate::law::{Expression, State, Term};
 use nalgebra::{DMatrix, DVector};
 
@@ -190,24 +187,14 @@ pub fn fit(form: &Form, pieces: &[Piece]) -> Option<Fit> {
 /// Fits the form from coefficients and noise that are near already. The likelihood may have two maxima, one that leaves error to the law
 /// and one that leaves it all to the sensors: both are tried.
 pub fn refit(form: &Form, pieces: &[Piece], coefficients: &[f64], noise: Noise) -> Option<Fit> {
-    let parts = Parts::of(form);
-    let mut pass = Pass::new(parts.free.len());
-    let inner = inner_slopes::sought(form);
-    let beside = Beside::none(form, &parts, &inner, pieces);
-    let mut descent = Descent {
-        form: form.clone(),
-        pieces,
-        places: Place::of(pieces),
-        signals: Signals { largest: start::largest(pieces), sample_time: pieces.first()?.observations.first()?.dt },
-        parts,
-        inner,
-        limits: Vec::new(),
-        coefficients: coefficients.to_vec(),
-        noise,
-        ratios: RIVALS,
-        beside,
-    };
+    let mut descent = Descent::new(form, pieces, coefficients, noise)?;
+    let mut pass = descent.pass();
     descent.renew_series(&mut pass);
+    best_of(descent, pass)
+}
+
+/// The better of the maxima that a descent comes to: with error of the law, and with all error in the sensors.
+pub(super) fn best_of(mut descent: Descent, mut pass: Pass) -> Option<Fit> {
     let mut loud = descent.descend(&mut pass)?;
     if loud.noise.process <= start::negligible(&loud.noise) {
         loud.log_likelihood_if_right = loud.log_likelihood;

@@ -5,6 +5,7 @@
 //! gain the same cannot be told apart on this record: the difference must exceed [`TIE`] nats, and where error of the law is left by a
 //! multiple of the scatter with which it comes from one stretch of the record to the next (Vuong 1989).
 
+use super::cooling::cooled;
 use super::diagnosis::is_evident;
 use super::fit::{Fit, refit};
 use super::piece::Piece;
@@ -59,6 +60,23 @@ impl Trial {
     pub fn on(&self, base: &Fit, pieces: &[Piece]) -> Option<Trial> {
         let fit = refit(&self.fit.form, pieces, &self.fit.coefficients, self.fit.noise)?;
         Some(Trial { count: self.count, gain: fit.log_likelihood - base.log_likelihood, fit })
+    }
+
+    /// The same fitted on a gentler way, where that leads further.
+    pub fn cooled(self, base: &Fit, pieces: &[Piece]) -> Trial {
+        match cooled(&self.fit, pieces) {
+            Some(fit) => Trial { count: self.count, gain: fit.log_likelihood - base.log_likelihood, fit },
+            None => self,
+        }
+    }
+
+    /// The law of `base` where its candidates have led it, without them: none where it was as good before. What it gains there is not theirs.
+    pub fn same_without(&self, base: &Fit, pieces: &[Piece]) -> Option<Fit> {
+        let own = base.coefficients.len();
+        let fits = [&base.coefficients[..], &self.fit.coefficients[..own]];
+        let fits = fits.into_iter().filter_map(|coefficients| refit(&base.form, pieces, coefficients, self.fit.noise));
+        let best = fits.max_by(|a, b| a.log_likelihood.total_cmp(&b.log_likelihood));
+        best.filter(|fit| fit.log_likelihood > base.log_likelihood + TIE)
     }
 
     /// Whether this is one effect that contains the other's and gains no more: the other, at the end of this one's inner parameters.

@@ -4,6 +4,7 @@ mod beside;
 mod coefficients;
 mod compare;
 mod conclude;
+mod cooling;
 mod decide;
 mod depends;
 mod descent;

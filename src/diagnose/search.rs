@@ -28,6 +28,9 @@ const FAR: f64 = 0.8;
 /// The same of a set that does not explain them.
 const FAR_BEHIND: f64 = 0.5;
 
+/// Sets that are fitted on a gentler way.
+const COOLED: usize = 2;
+
 /// Gain, nats, inner parameters paid for, that brings a candidate before a law that leaves no evident error.
 const PROMISING: f64 = 3.0;
 
@@ -113,6 +116,7 @@ fn previewed(base: &Fit, pieces: &[Piece], proposals: &[Proposal]) -> Vec<Trial>
         }
         trials.push(trial);
     }
+    cool(&mut trials, base, pieces);
     rank(&mut trials);
     trials
 }
@@ -124,8 +128,17 @@ fn total(pieces: &[Piece]) -> usize {
 /// The sets in the law, best first.
 fn tried(base: &Fit, pieces: &[Piece], proposals: &[Proposal]) -> Vec<Trial> {
     let mut trials: Vec<Trial> = proposals.iter().filter_map(|proposal| Trial::of(base, pieces, proposal)).collect();
+    cool(&mut trials, base, pieces);
     rank(&mut trials);
     trials
+}
+
+/// Where all leave error, the best of them are fitted on a gentler way.
+fn cool(trials: &mut [Trial], base: &Fit, pieces: &[Piece]) {
+    if trials.iter().all(|trial| is_evident(&trial.fit)) {
+        rank(trials);
+        trials.iter_mut().take(COOLED).for_each(|trial| *trial = trial.clone().cooled(base, pieces));
+    }
 }
 
 fn rank(trials: &mut [Trial]) {

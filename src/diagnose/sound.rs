@@ -59,7 +59,7 @@ impl<'a> Sound<'a> {
         let values = effect.inner_values().into_iter().zip(effect.inner()).enumerate();
         let told = |(index, (value, parameter)): (usize, (f64, &InnerParameter))| {
             let [low, high] = self.scale.limits(effect, index);
-            let least = matches!(parameter.range, InnerRange::AtLeast(least) if value == least);
+            let least = matches!(parameter.range, InnerRange::AtLeast(least) if value <= least * (1.0 + AT));
             (least || value > low * (1.0 + AT)) && value < high * (1.0 - AT)
         };
         values.into_iter().all(told)

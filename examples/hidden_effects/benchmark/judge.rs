@@ -164,12 +164,13 @@ fn judge_several(model: &Model, evidence: &Evidence, problem: &Problem, start: f
         (0..problem.lacking.len()).map(|index| oracle.log_likelihood - without(index)).collect()
     });
     let visible = !gains.is_empty() && gains.iter().all(|gain| *gain >= VISIBLE);
+    let left = oracle.as_ref().map_or(f64::INFINITY, Fit::lack);
     let ratio =
         oracle.filter(|_| answer == Answer::Right).map(|oracle| error(law, evidence) / error(&oracle, evidence));
     let steps: Vec<String> =
         found.steps.iter().skip(1).map(|step| format!("{:?} -{:?}", step.effect, step.removed)).collect();
     let last = words(&found.last, gains.iter().copied().fold(f64::INFINITY, f64::min));
-    let words = format!("steps {}, then {last}; each worth {gains:.1?} nats", steps.join(", "));
+    let words = format!("steps {}, then {last}; each worth {gains:.1?} nats, together they leave {left:.1}", steps.join(", "));
     Outcome { answer, visible, tie: false, ratio, seconds, words }
 }
 
