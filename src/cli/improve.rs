@@ -61,6 +61,7 @@ struct Report {
 struct StepReport {
     effect: Option<String>,
     removed: Vec<String>,
+    ties: Vec<Vec<String>>,
     error: f64,
     coefficients: Pairs,
     std: Pairs,
@@ -106,6 +107,7 @@ fn report(arguments: &Arguments, found: &Found, input: &Input) -> Report {
     let step = |step: &Step| StepReport {
         effect: step.effect.clone(),
         removed: step.removed.clone(),
+        ties: step.ties.clone(),
         error: step.error,
         coefficients: Pairs::coefficients(&step.fit),
         std: Pairs::std(&step.fit),
@@ -127,6 +129,9 @@ fn text(arguments: &Arguments, found: &Found, input: &Input) -> String {
     text += &format!("\n\nerror on held-out data, windows of {:.3} s\n", found.window);
     for (index, step) in found.steps.iter().enumerate() {
         let _ = writeln!(text, "{index:>3}  {:<40} {:>10}", title(step), percent(step.error));
+        for group in &step.ties {
+            let _ = writeln!(text, "     this record cannot tell {} from {}", group[0], group[1..].join(", "));
+        }
     }
     let _ = writeln!(text, "     {:<40} {:>10}", "noise floor", percent(found.floor));
     if let Some(last) = found.steps.last() {

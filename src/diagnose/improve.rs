@@ -19,10 +19,18 @@ pub struct Step {
     pub effect: Option<String>,
     /// Effects that it made superfluous, taken out again.
     pub removed: Vec<String>,
+    /// Effects that the recordings cannot tell apart, the one that was added first.
+    pub ties: Vec<Vec<String>>,
     /// Held-out error of the law.
     pub error: f64,
     /// The law.
     pub fit: Fit,
+}
+
+impl Step {
+    fn of(fit: Fit, effect: Option<String>, evidence: &Evidence) -> Step {
+        Step { effect, removed: Vec::new(), ties: Vec::new(), error: error(&fit, evidence), fit }
+    }
 }
 
 /// A law improved as far as the catalogue goes.
@@ -41,7 +49,7 @@ pub fn improve(model: &Model, evidence: &Evidence) -> Option<Improvement> {
     let mut last = diagnose_model(model, evidence)?;
     let first = last.base.clone();
     let original = first.form.terms.clone();
-    let mut steps = vec![Step { effect: None, removed: Vec::new(), error: error(&first, evidence), fit: first }];
+    let mut steps = vec![Step::of(first, None, evidence)];
     loop {
         let law = &steps[steps.len() - 1].fit;
         let (Finding::Missing, Some(found), true) = (last.finding, &last.improved, steps.len() <= STEPS) else {
@@ -50,8 +58,9 @@ pub fn improve(model: &Model, evidence: &Evidence) -> Option<Improvement> {
         steps.extend(one_by_one(law, found, &last, evidence));
         let (fit, removed) = without_superfluous(found.fit.clone(), &original, found.count, evidence);
         let effect = last.beside.last().or(last.effect.as_ref()).cloned();
+        let ties = std::mem::take(&mut last.indistinguishable);
         last = diagnose(&fit, evidence);
-        steps.push(Step { effect, removed, error: error(&fit, evidence), fit });
+        steps.push(Step { removed, ties, ..Step::of(fit, effect, evidence) });
     }
 }
 
@@ -64,8 +73,7 @@ fn one_by_one(law: &Fit, found: &Trial, last: &Diagnosis, evidence: &Evidence) -
         let Some(fit) = refit(&reached.form.with(candidate.term), &evidence.pieces, &coefficients, law.noise) else {
             break;
         };
-        let effect = Some(candidate.effect.clone());
-        steps.push(Step { effect, removed: Vec::new(), error: error(&fit, evidence), fit: fit.clone() });
+        steps.push(Step::of(fit.clone(), Some(candidate.effect.clone()), evidence));
         reached = fit;
     }
     steps

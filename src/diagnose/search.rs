@@ -8,7 +8,7 @@ use super::judge::{Trial, merit};
 use super::piece::{Piece, thinned};
 use super::proposal::{Proposal, Proposals, proposals, propose};
 use super::variants::Variant;
-use crate::law::Term;
+use crate::law::{Catalogue, Term};
 
 /// Sets of one, two and three candidates that get into the law.
 const FINALISTS: [usize; 3] = [5, 3, 2];
@@ -83,9 +83,21 @@ impl Search<'_> {
         tried(self.base, self.pieces, &kept.cloned().collect::<Vec<_>>())
     }
 
+    /// Whether an effect of the law contains the candidate: its inner parameters stand in for it, and hide what it would gain.
+    fn is_part_of_the_law(&self, proposal: &Proposal) -> bool {
+        let name = |term: Term| self.base.form.effect_name(term);
+        let own = self.base.form.terms.iter().filter(|term| term.effect().is_some());
+        proposal
+            .variants
+            .iter()
+            .any(|one| own.clone().any(|term| Catalogue::is_contained(&name(one.term), &name(*term))))
+    }
+
     fn trials(&self, size: usize, explains: &dyn Fn(&Fit, &Fit) -> bool) -> Vec<Trial> {
         let finalists = if is_evident(self.base) { FINALISTS[size.clamp(1, 3) - 1] } else { DOUBTED };
-        let few: Vec<Proposal> = self.proposals.of(size).iter().take(finalists).cloned().collect();
+        let all = self.proposals.of(size);
+        let rest = all.iter().skip(finalists).filter(|proposal| size == 1 && self.is_part_of_the_law(proposal));
+        let few: Vec<Proposal> = all.iter().take(finalists).chain(rest).cloned().collect();
         let Some((fit, pieces)) = &self.short else { return tried(self.base, self.pieces, &few) };
         if size == 1 && !is_evident(self.base) {
             return self.doubted(&few);

@@ -3,7 +3,7 @@
 use super::problem::{Problem, Setting};
 use super::secret::{Secret, id};
 use rustix::time::{ClockId, clock_gettime};
-use switchid::diagnose::{Diagnosis, Evidence, Finding, Fit, Form, diagnose_model, error, improve, refit};
+use switchid::diagnose::{Diagnosis, Evidence, Finding, Fit, Form, Improvement, diagnose_model, error, improve, refit};
 use switchid::evidence::Noise;
 use switchid::law::{Given, Model, Term};
 
@@ -133,8 +133,7 @@ fn complete(problem: &Problem, wanted: &dyn Fn(usize) -> bool, noise: Noise, evi
     let all = problem.model.iter().chain(&problem.lacking).zip(&problem.coefficients).enumerate();
     let chosen = all.filter(|(index, _)| *index < own || wanted(index - own));
     let (terms, coefficients): (Vec<Term>, Vec<f64>) = chosen.map(|(_, (term, value))| (*term, *value)).unzip();
-    let held = vec![None; terms.len()];
-    let form = Form::new(terms, held, Vec::new());
+    let form = terms.iter().fold(Form::new(Vec::new(), Vec::new(), Vec::new()), |form, term| form.with(*term));
     refit(&form, &evidence.pieces, &coefficients, noise)
 }
 
@@ -148,8 +147,10 @@ fn judge_several(model: &Model, evidence: &Evidence, problem: &Problem, start: f
     let mut truth: Vec<&str> = problem.lacking.iter().map(|term| id(*term)).collect();
     added.sort_unstable();
     truth.sort_unstable();
+    let tie = added != truth && is_tied(&added, &truth, &found);
     let answer = match found.last.finding {
         _ if added == truth => Answer::Right,
+        _ if tie => Answer::Tied,
         Finding::Adequate if added.is_empty() => Answer::Adequate,
         Finding::Unexplained if added.iter().all(|id| truth.contains(id)) => Answer::Unexplained,
         Finding::Adequate if added.iter().all(|id| truth.contains(id)) => Answer::Adequate,
@@ -170,8 +171,24 @@ fn judge_several(model: &Model, evidence: &Evidence, problem: &Problem, start: f
     let steps: Vec<String> =
         found.steps.iter().skip(1).map(|step| format!("{:?} -{:?}", step.effect, step.removed)).collect();
     let last = words(&found.last, gains.iter().copied().fold(f64::INFINITY, f64::min));
-    let words = format!("steps {}, then {last}; each worth {gains:.1?} nats, together they leave {left:.1}", steps.join(", "));
-    Outcome { answer, visible, tie: false, ratio, seconds, words }
+    let words =
+        format!("steps {}, then {last}; each worth {gains:.1?} nats, together they leave {left:.1}", steps.join(", "));
+    Outcome { answer, visible, tie, ratio, seconds, words }
+}
+
+/// Whether every effect that is there was added, or stands in a stated tie with one that was.
+fn is_tied(added: &[&str], truth: &[&str], found: &Improvement) -> bool {
+    let mut others: Vec<&str> = added.iter().filter(|id| !truth.contains(id)).copied().collect();
+    let stated = |one: &str, other: &str| {
+        let mut groups = found.steps.iter().flat_map(|step| &step.ties);
+        groups.any(|group| group.iter().any(|id| id == one) && group.iter().any(|id| id == other))
+    };
+    let absent = truth.iter().filter(|id| !added.contains(id));
+    let all = absent.copied().all(|id| {
+        let position = others.iter().position(|other| stated(id, other));
+        position.map(|position| others.remove(position)).is_some()
+    });
+    all && others.is_empty()
 }
 
 fn words(found: &Diagnosis, gain: f64) -> String {
