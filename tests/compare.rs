@@ -166,8 +166,7 @@ fn an_error_in_one_interval_is_located_in_time() {
     let fail = found.given.fails.first().unwrap_or_else(|| panic!("seed {seed}: nothing: {:?}", found.given.error));
     let (lower, upper) = (fail.bounds.lower.unwrap_or(0.0), fail.bounds.upper.unwrap_or(60.0));
     assert_eq!(fail.over, Over::Time, "seed {seed}: {}", found.sentence(fail));
-    // of its end the multisine may show little
-    assert!((lower - 20.0).abs() < 3.0 && (23.0..33.0).contains(&upper), "seed {seed}: {}", found.sentence(fail));
+    assert!((lower - 20.0).abs() < 3.0 && (upper - 30.0).abs() < 3.0, "seed {seed}: {}", found.sentence(fail));
     assert!(fail.share > 0.8, "seed {seed}: {}", found.sentence(fail));
 }
 

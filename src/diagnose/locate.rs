@@ -34,6 +34,9 @@ const TWO_SIDED: f64 = 1.3;
 /// What the evidence of an interval with two ends counts: it was sought among many more than one that is open.
 const CLOSED: f64 = 0.6;
 
+/// Part of the energy per time of the interval that stands out most down to which the error still lasts: the motion shows it more and less.
+const LASTING: f64 = 0.05;
+
 /// What the evidence of a band of frequencies counts: the force is a poorer measure of what to expect than time.
 const BAND: f64 = 0.1;
 
@@ -152,7 +155,8 @@ impl Setting {
         for place in &places {
             bins.add(bin(&edges, place.t), excess(place), 1.0);
         }
-        let peak = settled(&mut bins).peak(1.0)?;
+        let bins = settled(&mut bins);
+        let peak = bins.widened(&bins.peak(1.0)?, LASTING);
         let bounds = bounds(&edges, peak.from, peak.to);
         Some(Fail { recording: Some(recording), ..self.fail(Over::Time, &peak, bounds) })
     }

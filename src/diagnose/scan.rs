@@ -3,6 +3,9 @@
 //! A scan statistic (Kulldorff, Communications in Statistics 26 (1997), 1481): with the share p of the energy in a region and the share b of
 //! the time spent there, its score is N (p ln(p/b) + (1 − p) ln((1 − p)/(1 − b))), N the number of independent places.
 
+/// Bins with less energy across which a region goes on.
+const BRIDGED: usize = 2;
+
 /// Bins over one quantity: the energy in each, and what it is measured against.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bins {
@@ -67,6 +70,25 @@ impl Bins {
         });
         peaks.max_by(|a, b| a.divergence.total_cmp(&b.divergence)).filter(|peak| peak.divergence > 0.0)
     }
+
+    /// The region with the bins beside it that hold that part of its energy per baseline, and more of it than the rest does; its evidence stays.
+    pub fn widened(&self, peak: &Peak, part: f64) -> Peak {
+        let [energy, baseline] = [&self.energy, &self.baseline].map(|values| cumulated(values));
+        let count = self.energy.len();
+        let (all, whole) = (energy[count], baseline[count]);
+        let rest = (1.0 - peak.share) * all / ((1.0 - peak.baseline) * whole).max(f64::MIN_POSITIVE);
+        let least = rest.max(part * peak.share * all / (peak.baseline * whole));
+        let lasts = |bin: &usize| self.energy[*bin] > least * self.baseline[*bin];
+        let (mut from, mut to) = (peak.from, peak.to);
+        while let Some(bin) = (from.saturating_sub(BRIDGED + 1)..from).find(lasts) {
+            from = bin;
+        }
+        while let Some(bin) = (to..count.min(to + BRIDGED + 1)).rfind(lasts) {
+            to = bin + 1;
+        }
+        let (share, baseline) = ((energy[to] - energy[from]) / all, (baseline[to] - baseline[from]) / whole);
+        Peak { from, to, share, baseline, divergence: peak.divergence }
+    }
 }
 
 fn cumulated(values: &[f64]) -> Vec<f64> {
@@ -89,6 +111,17 @@ mod tests {
         let peak = bins.peak(1.0).unwrap();
         assert_eq!((peak.from, peak.to), (3, 5));
         assert!((peak.share - 0.8).abs() < 1e-12 && (peak.baseline - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_region_reaches_as_far_as_its_energy_lasts() {
+        let energy = vec![0.3, 0.0, 0.01, 0.0, 4.0, 5.0, 0.5, 0.01, 0.3, 0.02, 0.0, 0.0];
+        let bins = Bins { baseline: vec![1.0; energy.len()], energy };
+        let peak = bins.peak(1.0).unwrap();
+        assert_eq!((peak.from, peak.to), (4, 6));
+        let widened = bins.widened(&peak, 0.05);
+        assert_eq!((widened.from, widened.to), (4, 9));
+        assert!(widened.share > peak.share && widened.divergence == peak.divergence);
     }
 
     #[test]
