@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let options = options(arguments)?;
     let input = Input::open(&arguments.data, &arguments.model)?;
     let recordings = input.recordings();
-    let found = compare(&input.model, &recordings, &options);
+    let found = compare(&input.model, &recordings, &Options { units: input.units, ..options });
     let holds: Vec<Hold> = recordings.iter().map(|(_, hold)| *hold).collect();
     if arguments.json {
         output::print_json(&Report::of(&found, &holds))
@@ -58,7 +58,7 @@ fn options(arguments: &Arguments) -> Result<Options, CommandError> {
         if value > 0.0 && value.is_finite() { Ok(value) } else { Err(CommandError::Option { option, value, range }) }
     };
     let window = arguments.window.map(|window| positive("window", window)).transpose()?;
-    Ok(Options { window, horizon: positive("horizon", arguments.horizon)? })
+    Ok(Options { window, horizon: positive("horizon", arguments.horizon)?, ..Options::default() })
 }
 
 fn text(found: &Comparison, model: &Model, file: &str) -> String {

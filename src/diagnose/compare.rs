@@ -11,7 +11,7 @@ use super::locate::{Fail, locate};
 use super::record::{Balance, Record};
 use super::window::{choose_window, periods};
 use crate::identify::Recording;
-use crate::law::{Expression, Hold, Model, Motion, Term};
+use crate::law::{Expression, Hold, Model, Motion, Term, Units};
 
 /// What a user may set.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,11 +20,13 @@ pub struct Options {
     pub window: Option<f64>,
     /// Length of the windows of open-loop prediction, s.
     pub horizon: f64,
+    /// What is known of units, for sentences.
+    pub units: Units,
 }
 
 impl Default for Options {
     fn default() -> Options {
-        Options { window: None, horizon: 1.0 }
+        Options { window: None, horizon: 1.0, units: Units::default() }
     }
 }
 
@@ -74,6 +76,8 @@ pub struct Comparison {
     pub period: f64,
     /// Whether there is an excitation in any recording.
     pub forced: bool,
+    /// Units of q and q̇, where known.
+    pub units: Units,
     /// The model with its numbers held.
     pub given: Side,
     /// The best of its form.
@@ -126,7 +130,7 @@ impl Comparison {
     pub fn sentence(&self, fail: &Fail) -> String {
         let several = self.sources.len() > 1;
         let source = fail.recording.filter(|_| several).and_then(|index| self.sources.get(index));
-        fail.sentence(source.map(String::as_str), self.period)
+        fail.sentence(source.map(String::as_str), self.period, &self.units)
     }
 
     fn numbers_differ(&self) -> bool {
@@ -155,6 +159,7 @@ pub fn compare(model: &Model, recordings: &[(&Recording, Hold)], options: &Optio
         horizon: options.horizon,
         period: periods(&records).displacement,
         forced,
+        units: options.units,
         given,
         best,
     }

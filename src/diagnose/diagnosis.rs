@@ -11,7 +11,7 @@ use super::fit::{Fit, Form, fit, refit};
 use super::judge::{Trial, p_value};
 use super::massless::massless;
 use super::piece::Piece;
-use super::place::place;
+use super::place::{Removal, place};
 use super::search::search;
 use super::sound::{Sound, is_physical};
 use super::variants::same_effect;
@@ -65,8 +65,8 @@ pub struct Candidate {
     pub physical: bool,
     /// Whether the other coefficients keep the signs that physics allows them.
     pub plausible: bool,
-    /// Where it removes error, one sentence.
-    pub place: Option<String>,
+    /// Where it removes error.
+    pub place: Option<Removal>,
 }
 
 /// A diagnosis of one law on a set of recordings.
@@ -323,7 +323,7 @@ fn describe(
     with: &Fit,
     index: usize,
     error: [f64; 2],
-    place: Option<String>,
+    place: Option<Removal>,
     sound: &Sound,
     tried: usize,
 ) -> Candidate {

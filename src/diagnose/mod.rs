@@ -57,6 +57,7 @@ pub use improve::{Addition, Improvement, Step, add, error, improve, improved_mod
 pub use judge::Trial;
 pub use locate::{Bounds, Fail, Over};
 pub use piece::Piece;
+pub use place::Removal;
 pub use proposal::{Proposal, Proposals};
 pub use screen::{Gain, screen};
 pub use search::{Search, search};

@@ -1,32 +1,32 @@
 //! A place of failure in words.
 
 use super::locate::{Bounds, Fail, Over};
+use crate::law::Units;
 
 /// Share of the motion's frequency by which a band may miss a multiple of it.
 const NEAR: f64 = 0.15;
 
 impl Fail {
     /// One plain sentence; `source` names its recording where there are several, `period` is the displacement's, s.
-    pub fn sentence(&self, source: Option<&str>, period: f64) -> String {
+    pub fn sentence(&self, source: Option<&str>, period: f64, units: &Units) -> String {
         let share = (100.0 * self.share).round();
         let spent = (100.0 * self.time_share).round().max(1.0);
-        let (place, reason) = (self.place(), self.reason(period));
+        let (place, reason) = (self.place(units), self.reason(period));
         let of = if self.over == Over::Frequency { "of the force" } else { "of the time" };
         let where_from =
             source.filter(|_| self.recording.is_some()).map_or_else(String::new, |name| format!(" of {name}"));
         format!("{share} % of the error lies {place}{where_from} ({spent} % {of}): {reason}")
     }
 
-    fn place(&self) -> String {
+    fn place(&self, units: &Units) -> String {
         match self.over {
             Over::Time => self.bounds.time(),
-            Over::Displacement => self.bounds.text("q"),
-            Over::Excursion => self.bounds.text("|q − mean|"),
-            Over::Velocity => self.bounds.text("q̇"),
-            Over::Speed => self.bounds.text("|q̇|"),
-            Over::Amplitude => self.bounds.text("amplitude"),
             Over::Frequency => self.bounds.band(),
-            Over::PhasePlane => format!("{} and {}", self.bounds.text("q"), self.velocity.text("q̇")),
+            Over::PhasePlane => {
+                let [q, qd] = [(Over::Displacement, self.bounds), (Over::Velocity, self.velocity)];
+                format!("{} and {}", q.1.text(q.0, units), qd.1.text(qd.0, units))
+            }
+            over => self.bounds.text(over, units),
         }
     }
 
@@ -79,12 +79,36 @@ impl Fail {
     }
 }
 
+impl Over {
+    fn symbol(self) -> &'static str {
+        match self {
+            Over::Time => "t",
+            Over::Displacement | Over::PhasePlane => "q",
+            Over::Excursion => "|q − mean|",
+            Over::Velocity => "q̇",
+            Over::Speed => "|q̇|",
+            Over::Amplitude => "amplitude",
+            Over::Frequency => "frequency",
+        }
+    }
+
+    /// Its unit with a space before it; nothing where it is not known.
+    fn unit(self, units: &Units) -> String {
+        let unit = match self {
+            Over::Velocity | Over::Speed => units.velocity(),
+            _ => units.displacement(),
+        };
+        unit.filter(|unit| unit.symbol != "1").map_or_else(String::new, |unit| format!(" {}", unit.symbol))
+    }
+}
+
 impl Bounds {
-    fn text(self, name: &str) -> String {
+    pub(super) fn text(self, over: Over, units: &Units) -> String {
+        let (name, unit) = (over.symbol(), over.unit(units));
         match (self.lower.map(number), self.upper.map(number)) {
-            (None, Some(upper)) => format!("within {name} < {upper}"),
-            (Some(lower), None) => format!("at {name} > {lower}"),
-            (Some(lower), Some(upper)) => format!("within {lower} < {name} < {upper}"),
+            (None, Some(upper)) => format!("within {name} < {upper}{unit}"),
+            (Some(lower), None) => format!("at {name} > {lower}{unit}"),
+            (Some(lower), Some(upper)) => format!("within {lower}{unit} < {name} < {upper}{unit}"),
             (None, None) => format!("at every {name}"),
         }
     }
@@ -116,5 +140,28 @@ pub(super) fn number(value: f64) -> String {
         format!("{value:.decimals$}")
     } else {
         format!("{value:.2e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::ColumnUnits;
+
+    #[test]
+    fn a_sentence_says_what_its_bounds_are_measured_in() {
+        let fail = Fail {
+            over: Over::Speed,
+            bounds: Bounds { lower: None, upper: Some(0.02) },
+            velocity: Bounds::default(),
+            recording: None,
+            share: 0.63,
+            time_share: 0.1,
+            evidence: 9.0,
+        };
+        let written = ColumnUnits { q: Some("mm".into()), excitation: Some("N".into()), ..ColumnUnits::default() };
+        let sentence = "63 % of the error lies within |q̇| < 0.0200 m/s (10 % of the time): around velocity reversals";
+        assert_eq!(fail.sentence(None, 1.0, &written.units()), sentence);
+        assert_eq!(fail.sentence(None, 1.0, &Units::default()), sentence.replace(" m/s", ""));
     }
 }

@@ -5,7 +5,7 @@
 //! and the others are relative to it: \[q\]/s² ÷ \[feature\]. Where a unit that it takes is not known, there is none.
 
 use super::unit::{Channel, Quantity, Unit};
-use super::{Dimension, Term};
+use super::{Dimension, InnerUnit, Term};
 use serde::{Deserialize, Serialize};
 
 /// Units that a model names for the columns that it reads, as written; `None` leaves it to the header.
@@ -101,6 +101,17 @@ impl Units {
     /// The unit of F.
     pub fn excitation(&self) -> Option<SiUnit> {
         self.power(Dimension::new(0, 0, 1))
+    }
+
+    /// The unit of an inner parameter.
+    pub fn inner(&self, unit: InnerUnit) -> Option<SiUnit> {
+        match unit {
+            InnerUnit::Coordinate => self.displacement(),
+            InnerUnit::Velocity => self.velocity(),
+            InnerUnit::Time => self.power(Dimension::new(0, 1, 0)),
+            InnerUnit::AngularFrequency => Some(SiUnit { symbol: "rad/s".into(), exponents: [0, 0, -1, 0, 1] }),
+            InnerUnit::Number => None,
+        }
     }
 
     /// The unit of a term's coefficient.

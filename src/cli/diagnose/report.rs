@@ -130,7 +130,7 @@ impl CandidateReport {
             share: candidate.share,
             physical: candidate.physical,
             plausible: candidate.plausible,
-            place: candidate.place.clone(),
+            place: candidate.place.map(|place| place.sentence(&input.units)),
         }
     }
 }

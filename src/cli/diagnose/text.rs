@@ -4,7 +4,7 @@ use super::super::input::Input;
 use super::{Answer, Found, StageAnswer};
 use crate::cli::words::{chance, effect_of, number, percent};
 use crate::diagnose::{Candidate, Decision, Dependence, Diagnosis, Finding, Source};
-use crate::law::{Catalogue, equation};
+use crate::law::{Catalogue, SiUnit, Units, equation};
 use std::fmt::Write;
 
 /// Chances beyond which another significant candidate is not worth a line.
@@ -48,7 +48,7 @@ pub(super) fn lines(found: &Found, input: &Input) -> [String; 3] {
 
 /// The three lines of one diagnosis.
 pub(in crate::cli) fn answer(answer: &Answer, input: &Input) -> [String; 3] {
-    [what(answer, input), sure(answer), decides(answer)]
+    [what(answer, input), sure(answer), decides(answer, &input.units)]
 }
 
 fn what(answer: &Answer, input: &Input) -> String {
@@ -82,14 +82,12 @@ fn with_unit(candidate: &Candidate, input: &Input) -> String {
     }
 }
 
-/// `(20.35 ± 0.05) N · sign(q̇), speed 0.02`.
+/// `(20.35 ± 0.05) N · sign(q̇) e^(−|q̇|/v), speed 0.02 m/s`.
 fn force(candidate: &Candidate, diagnosis: &Diagnosis, input: &Input) -> String {
     let symbol = effect_of(candidate.term, &diagnosis.base.form);
-    let mut force = format!("{} · {symbol}", with_unit(candidate, input));
-    for (name, value) in &candidate.inner {
-        let _ = write!(force, ", {} {value:.4}", name.replace('_', " "));
-    }
-    force
+    let force = format!("{} · {symbol}", with_unit(candidate, input));
+    let inner = inner(candidate, &input.units).into_iter().map(|one| format!(", {}", one.replace('_', " ")));
+    std::iter::once(force).chain(inner).collect()
 }
 
 fn sure(answer: &Answer) -> String {
@@ -135,9 +133,9 @@ fn behind(diagnosis: &Diagnosis) -> String {
     }
 }
 
-fn decides(answer: &Answer) -> String {
+fn decides(answer: &Answer, units: &Units) -> String {
     let line = match (answer.diagnosis.finding, &answer.decision, &answer.visible) {
-        (Finding::Missing, Some(decision), _) => decision_words(decision),
+        (Finding::Missing, Some(decision), _) => decision_words(decision, units),
         (Finding::Missing, None, _) => match answer.diagnosis.indistinguishable.first() {
             Some(group) => format!("a longer or larger motion, between {} and {}", group[0], group[1]),
             None => "no further recording is needed".into(),
@@ -153,12 +151,16 @@ fn decides(answer: &Answer) -> String {
     format!("decides: {line}")
 }
 
-fn decision_words(decision: &Decision) -> String {
+fn decision_words(decision: &Decision, units: &Units) -> String {
     let Decision { one, other, apart, needed, longer, motion } = decision;
     let asked = match motion {
         Some(reach) => format!(
-            "a recording with |q| up to {:.3} and |q̇| up to {:.3} ({} times this one)",
-            reach.displacement, reach.velocity, reach.scale
+            "a recording with |q| up to {:.3}{} and |q̇| up to {:.3}{} ({} times this one)",
+            reach.displacement,
+            spaced(units.displacement()),
+            reach.velocity,
+            spaced(units.velocity()),
+            reach.scale
         ),
         None if *longer < 1e4 => format!("a recording {longer:.0} times as long as this one"),
         None => "none of this kind of motion; excite it at other frequencies".into(),
@@ -298,15 +300,29 @@ pub(in crate::cli) fn candidates(diagnosis: &Diagnosis, input: &Input) -> String
             chance(candidate.p_value),
             share
         );
-        let inner: Vec<String> = candidate.inner.iter().map(|(name, value)| format!("{name} {value:.4}")).collect();
+        let inner = inner(candidate, &input.units);
         if !inner.is_empty() {
             let _ = writeln!(text, "  with {}", inner.join(", "));
         }
         if let Some(place) = &candidate.place {
-            let _ = writeln!(text, "  {place}");
+            let _ = writeln!(text, "  {}", place.sentence(&input.units));
         }
     }
     text
+}
+
+/// Inner parameters with their units.
+fn inner(candidate: &Candidate, units: &Units) -> Vec<String> {
+    let described = candidate.term.effect().map_or(&[][..], |effect| effect.inner());
+    let pairs = candidate.inner.iter().zip(described);
+    pairs
+        .map(|((name, value), described)| format!("{name} {value:.4}{}", spaced(units.inner(described.unit))))
+        .collect()
+}
+
+/// A unit with a space before it; nothing where there is none.
+fn spaced(unit: Option<SiUnit>) -> String {
+    unit.filter(|unit| unit.symbol != "1").map_or_else(String::new, |unit| format!(" {}", unit.symbol))
 }
 
 /// Why the effect may be there, and what it looks like.
