@@ -8,7 +8,7 @@
 //! ```
 //!
 //! A coefficient is known when its variance is one n-th of what e of eq. (8) allows, or the law is; a law when e is, and it has moved by no
-//! more while its record grew by a quarter.
+//! more while its record grew by a tenth.
 
 use crate::evidence::{Information, Solution};
 use serde::{Deserialize, Serialize};

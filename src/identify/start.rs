@@ -20,7 +20,7 @@ const LONGEST: usize = 2048;
 const OVERLAP: usize = 8;
 
 /// Largest share of noise in a term that the start may rest on.
-const ATTENUATION: f64 = 0.2;
+const ATTENUATION: f64 = 0.5;
 
 /// Smooth enough that the trapezoidal rule is exact to far below the noise, wide enough to average.
 const VARIATION: Variation = Variation::Polynomial { power: 6 };

@@ -5,8 +5,11 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Samples in a block; what rises within the last two may be a switch that is just being noticed.
+/// Samples in a block; what fell within the last two may be a switch that is just being noticed.
 const BLOCK: u64 = 1000;
+
+/// A rise is past when the evidence has fallen to this part of it: that of a switch stays.
+const PAST: f64 = 0.5;
 
 /// A switch has this many times the largest evidence seen before it.
 const STANDS_OUT: f64 = 2.0;
@@ -14,12 +17,14 @@ const STANDS_OUT: f64 = 2.0;
 /// Chance rises above what it brings once in the time gone by, by less than this in nineteen cases of twenty, nats.
 const LUCK: f64 = 3.0;
 
-/// Largest evidence in blocks of the stage.
+/// Largest evidence that came and went in blocks of the stage.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Usual {
     before: f64,
     last: f64,
     present: f64,
+    /// Largest evidence of the rise that is not past yet.
+    rise: f64,
     count: u64,
 }
 
@@ -31,7 +36,10 @@ impl Usual {
 
     /// Takes the largest evidence at a sample, nats.
     pub fn add(&mut self, evidence: f64) {
-        self.present = self.present.max(evidence);
+        self.rise = self.rise.max(evidence);
+        if evidence < PAST * self.rise {
+            self.present = self.present.max(std::mem::take(&mut self.rise));
+        }
         self.count += 1;
         if self.count.is_multiple_of(BLOCK) {
             self.before = self.before.max(self.last);
@@ -53,17 +61,25 @@ mod tests {
     #[test]
     fn a_rise_counts_only_when_it_is_past() {
         let mut usual = Usual::default();
-        (0..BLOCK).for_each(|_| usual.add(9.0));
-        (0..BLOCK).for_each(|_| usual.add(30.0));
-        assert_eq!(usual.level(-4.4), 18.0);
-        (0..BLOCK).for_each(|_| usual.add(1.0));
+        (0..5 * BLOCK).for_each(|_| usual.add(30.0));
+        assert_eq!(usual.level(-4.4), 0.0);
+        (0..2 * BLOCK).for_each(|_| usual.add(1.0));
         assert_eq!(usual.level(-4.4), 60.0);
+    }
+
+    #[test]
+    fn what_fell_just_now_does_not_count_yet() {
+        let mut usual = Usual::default();
+        (0..BLOCK).for_each(|_| usual.add(30.0));
+        (0..BLOCK / 2).for_each(|_| usual.add(1.0));
+        assert_eq!(usual.level(-4.4), 0.0);
     }
 
     #[test]
     fn what_chance_brings_does_not_count() {
         let mut usual = Usual::default();
         (0..3 * BLOCK).for_each(|_| usual.add(6.0));
+        (0..3 * BLOCK).for_each(|_| usual.add(0.0));
         assert_eq!(usual.level(-4.4), 0.0);
     }
 }

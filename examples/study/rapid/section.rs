@@ -60,7 +60,7 @@ pub fn section(measured: &[(Point, Outcome)]) -> Section {
          the switch's own alarm, and e is above 0.05²; *worst e* is of those. *Told*: share of the coefficients that have a std at the end of \
          a stage. z is the error of a coefficient ÷ its stated std: z² should average 1, and {} of all |z| lie below 2. *Vouched*: the coefficients \
          last called valid in each stage after its alarm; *told*: all that have a std at its end, its switch detected or not. A law of ours \
-         must have stood while its record grew by a quarter before switches from it are looked for: one that comes sooner is taken into the law, and \
+         must have stood while its record grew by a tenth before switches from it are looked for: one that comes sooner is taken into the law, and \
          until the record since is long enough for another, what is told is of a record with two laws and more.\n\n**Ours**\n\n{}\n**Published method**\n\n{}",
         fails(measured),
         percent(WITHIN_TWO),

@@ -5,13 +5,13 @@ use crate::identify::forecast::Record;
 use serde::{Deserialize, Serialize};
 
 /// A law is confirmed when the record has grown by this factor …
-const TRIAL: f64 = 1.25;
+const TRIAL: f64 = 1.1;
 
 /// … and the coefficients have moved by less than this, as e of eq. (8).
 const STOOD: f64 = 0.05 * 0.05;
 
-/// A law that has stood this many trials in a row, its record grown by 1.25⁴ = 2.4, stands whatever other terms might have done.
-const LONG: u32 = 4;
+/// A law that has stood this many trials in a row, its record grown by 1.1⁹ = 2.4, stands whatever other terms might have done.
+const LONG: u32 = 9;
 
 /// All coefficients as they were when the record had some length.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -12,8 +12,11 @@ use crate::identify::window::Window;
 use crate::law::{Motion, State};
 use serde::{Deserialize, Serialize};
 
-/// The law's own covariance counts this many times where it leaves the state open: it is that of a linearisation.
+/// The law's own covariance counts this many times where it leaves the state open, as long as it is that of a linearisation …
 const DISTRUST: f64 = 10.0;
+
+/// … which it is over a record of so many samples; later the excess falls with the square of the length.
+const LINEAR: f64 = 4000.0;
 
 /// An error of the law acts one way for this many samples at most.
 const LONGEST_ERROR: f64 = 1000.0;
@@ -28,6 +31,10 @@ pub(super) struct Live {
     pub(super) loudness: Loudness,
     /// Of its record, as in [`Stage::overdispersion`].
     pub(super) overdispersion: f64,
+    /// Number of the sample at which that was taken from the record.
+    dispersed_at: u64,
+    /// How many times the covariance counts.
+    distrust: f64,
     /// Covariance of the free coefficients, n × n.
     covariance: Vec<f64>,
     /// For how long an error of the law acts one way, s.
@@ -51,6 +58,8 @@ impl Live {
             noise: Noise { sensor: [1.0; 2], process: 1.0 },
             loudness: Loudness::USUAL,
             overdispersion: 1.0,
+            dispersed_at: 0,
+            distrust: DISTRUST,
             covariance: vec![0.0; n * n],
             lasting: 0.0,
             slopes: vec![0.0; n],
@@ -89,7 +98,7 @@ impl Live {
         let variance: f64 = rows
             .map(|(row, slope)| slope * row.iter().zip(slopes).map(|(entry, other)| entry * other).sum::<f64>())
             .sum();
-        DISTRUST * variance.max(0.0) * self.lasting
+        self.distrust * variance.max(0.0) * self.lasting
     }
 
     /// Takes over the stage's estimate and the run that led to it.
@@ -99,7 +108,8 @@ impl Live {
         self.active.copy_from_slice(&stage.active);
         self.loudness.refer(&self.noise, &stage.noise);
         self.noise = stage.noise;
-        self.overdispersion = stage.overdispersion;
+        self.follow_overdispersion(stage, window.ready());
+        self.distrust = distrust(stage.length(window.ready()));
         self.covariance.copy_from_slice(&stage.solution.covariance);
         let [before, last] = [window.ready() - 2, window.ready() - 1].map(|number| window.sample(number).t);
         self.lasting = stage.scales.natural_time().min(LONGEST_ERROR * (last - before));
@@ -109,6 +119,15 @@ impl Live {
         }
         self.next = window.ready();
         self.running = true;
+    }
+
+    /// Error that has come since the record was half as long may be a switch's: it does not count until it has lasted.
+    fn follow_overdispersion(&mut self, stage: &Stage, now: u64) {
+        let then = stage.length(self.dispersed_at);
+        let lasts = then == 0 || stage.length(now) >= 2 * then;
+        if !self.running || lasts || stage.overdispersion <= self.overdispersion {
+            (self.overdispersion, self.dispersed_at) = (stage.overdispersion, now);
+        }
     }
 
     /// Takes over a known law and the run of its trial.
@@ -121,7 +140,7 @@ impl Live {
         window: &Window,
     ) {
         self.noise = trials.noise(place);
-        self.overdispersion = 1.0;
+        (self.overdispersion, self.dispersed_at) = (1.0, window.ready());
         trials.hand_over(place, problem, window, &mut self.pass);
         self.pass.information.merge(&law.information);
         self.all.copy_from_slice(&problem.known);
@@ -137,6 +156,11 @@ impl Live {
         self.prediction = self.pass.filter.state;
         self.predicted_since = t;
     }
+}
+
+/// How many times the covariance of a law counts that is known from so many samples.
+fn distrust(samples: u64) -> f64 {
+    1.0 + (DISTRUST - 1.0) * (LINEAR / samples.max(1) as f64).min(1.0).powi(2)
 }
 
 impl Tracker {

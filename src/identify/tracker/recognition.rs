@@ -203,6 +203,11 @@ impl Tracker {
         self.recognised.is_some() && !self.confirmed
     }
 
+    /// Whether the law in use was recognised, and has held for a shorter time than it has been left by now: there was no switch since.
+    pub(super) fn was_never_right(&self, instant: u64, now: u64) -> bool {
+        self.recognised.is_some() && self.stage.length(instant) < now - instant
+    }
+
     /// Coefficients of a law that was taken back are not known any more.
     pub(super) fn retract(&mut self, problem: &Problem, published: &mut [Coefficient]) {
         if std::mem::take(&mut self.retracted) {

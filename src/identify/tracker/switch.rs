@@ -7,8 +7,8 @@ use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::stage::{NOISE_MEMORY, Prior};
 
-/// A law from this many samples needs twice the evidence: its information is that of a linearisation, whose error falls as the
-/// record grows.
+/// A law that is known from this many samples at the switch needs twice the evidence: its information is that of a linearisation,
+/// whose error falls as the record grows.
 const DOUBT: f64 = 2000.0;
 
 /// Neighbouring samples and starts share their noise, and the evidence is a mean over all sizes of a switch: it rises by chance as if one
@@ -38,7 +38,7 @@ impl Tracker {
 
     /// Alarm, suspicion, or neither.
     pub(super) fn judge(&mut self, problem: &Problem, settings: &Settings, suspect: &Suspect, output: &mut Output) {
-        let samples = self.stage.length(self.window.ready()) + self.experience;
+        let samples = self.stage.length(suspect.start) + self.experience;
         // a stage that does not explain what a law like it did may hold a switch already
         let overdispersion = if self.explained { self.live.overdispersion } else { self.stage.overdispersion };
         let doubt = overdispersion * (1.0 + DOUBT / samples.max(1) as f64);
@@ -80,7 +80,7 @@ impl Tracker {
         let start = (self.bank.after(&suspect, level) + 1).min(last);
         let time = |number: u64| self.window.sample(number).t;
         let distance = self.bank.distance_of_switch(time(instant), self.now(), time);
-        if self.is_unconfirmed() {
+        if self.is_unconfirmed() || self.was_never_right(instant, last) {
             return self.take_back(problem, start, output);
         }
         self.keep_law(problem, output);
