@@ -21,6 +21,9 @@ impl Tracker {
         published: &mut [Coefficient],
         output: &mut Output,
     ) {
+        if self.moving.is_following() {
+            return;
+        }
         let thorough = output.drifting || !output.valid;
         let least = self.least_noise();
         if !problem.channels.q || !self.drift.step(problem, settings, &self.window, least, thorough) {
@@ -31,13 +34,14 @@ impl Tracker {
         let known = output.valid || self.doubted_from > self.stage.start;
         let sure = if known { self.drift_is_credible(output) } else { alone() };
         if !output.drifting && moves && sure && self.drift.stated_error() < TRUSTED {
+            self.drifted = true;
             self.begin_drift(output);
         }
         if output.drifting {
             self.publish_drift(problem, published, output);
             match self.resting {
                 true if moves => self.resting = false,
-                false if self.drift.is_at_rest() => self.seek_rest(),
+                false if self.drift.is_at_rest() => self.seek_rest(self.latest_variations()),
                 _ => {}
             }
         }
@@ -61,7 +65,7 @@ impl Tracker {
     /// From now on no constant law is monitored.
     pub(super) fn begin_drift(&mut self, output: &mut Output) {
         output.drifting = true;
-        (self.drifted, self.resting) = (true, false);
+        self.resting = false;
         self.live.running = false;
         self.bank.clear();
         self.deviation.clear();
@@ -69,10 +73,13 @@ impl Tracker {
         (output.missing, output.law_number, output.recognised) = (None, None, false);
     }
 
-    /// The coefficients have come to rest: a constant law is sought in the latest record.
-    fn seek_rest(&mut self) {
-        let end = self.window.end();
-        let since = end.saturating_sub(REST * self.drift.length()).max(self.window.oldest());
+    fn latest_variations(&self) -> u64 {
+        self.window.end().saturating_sub(REST * self.drift.length())
+    }
+
+    /// The coefficients have come to rest: a constant law is sought in the record since then.
+    pub(super) fn seek_rest(&mut self, since: u64) {
+        let since = since.max(self.window.oldest());
         self.resting = true;
         self.start.begin(since);
         (self.phase, self.challenging, self.challenged_from) = (Phase::Gathering, false, since);

@@ -28,6 +28,8 @@ pub(super) struct Live {
     pub(super) loudness: Loudness,
     /// Of its record, as in [`Stage::overdispersion`].
     pub(super) overdispersion: f64,
+    /// Whether it explained its record but for the sensors' noise.
+    pub(super) explains: bool,
     /// Covariance of the free coefficients, n × n.
     covariance: Vec<f64>,
     /// For how long an error of the law acts one way, s.
@@ -51,6 +53,7 @@ impl Live {
             noise: Noise { sensor: [1.0; 2], process: 1.0 },
             loudness: Loudness::USUAL,
             overdispersion: 1.0,
+            explains: false,
             covariance: vec![0.0; n * n],
             lasting: 0.0,
             slopes: vec![0.0; n],
@@ -100,6 +103,7 @@ impl Live {
         self.loudness.refer(&self.noise, &stage.noise);
         self.noise = stage.noise;
         self.overdispersion = stage.overdispersion;
+        self.explains = !stage.process_matters;
         self.covariance.copy_from_slice(&stage.solution.covariance);
         let [before, last] = [window.ready() - 2, window.ready() - 1].map(|number| window.sample(number).t);
         self.lasting = stage.scales.natural_time().min(LONGEST_ERROR * (last - before));
@@ -121,7 +125,7 @@ impl Live {
         window: &Window,
     ) {
         self.noise = trials.noise(place);
-        self.overdispersion = 1.0;
+        (self.overdispersion, self.explains) = (1.0, true);
         trials.hand_over(place, problem, window, &mut self.pass);
         self.pass.information.merge(&law.information);
         self.all.copy_from_slice(&problem.known);
