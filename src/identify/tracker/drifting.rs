@@ -9,9 +9,6 @@ use crate::identify::stage::TRUSTED;
 /// A constant law is sought in the record from this many variations back on.
 const REST: u64 = 4;
 
-/// Overdispersion that no model error of a constant law explains where its coefficients seem to move too.
-const LASTING: f64 = 10.0;
-
 impl Tracker {
     /// Follows coefficients that move, and says so where the record does.
     pub(super) fn track_drift(
@@ -32,7 +29,7 @@ impl Tracker {
         let moves = self.drift.is_moving() && self.drift.predicts();
         let alone = || self.drift.has_no_rest(&self.window) && self.drift.spans(1.0);
         let known = output.valid || self.doubted_from > self.stage.start;
-        let sure = if known { self.drift_is_credible(output) } else { alone() };
+        let sure = if known { self.drifted } else { alone() };
         if !output.drifting && moves && sure && self.drift.stated_error() < TRUSTED {
             self.drifted = true;
             self.begin_drift(output);
@@ -52,14 +49,6 @@ impl Tracker {
     fn least_noise(&self) -> [f64; 2] {
         let settled = self.phase == Phase::Refining && self.stage.settled();
         [f64::INFINITY, if settled { self.stage.noise.sensor[1] } else { f64::INFINITY }]
-    }
-
-    /// Whether coefficients that seem to move end a law that was vouched for: they have moved before in this record, or they do beyond
-    /// doubt, the constant law leaves error that lasts, and so did one before it, which an alarm ended. (A law that lacks an effect seems to
-    /// move as well, but lasts.)
-    pub(super) fn drift_is_credible(&self, output: &Output) -> bool {
-        let lasting = self.stage.overdispersion > LASTING && self.drift.moves_beyond_doubt();
-        self.drifted || (output.detection_time.is_some() && lasting && self.drift.spans(0.5))
     }
 
     /// From now on no constant law is monitored.

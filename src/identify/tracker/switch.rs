@@ -57,9 +57,7 @@ impl Tracker {
         let unusual = suspect.evidence > (UNUSUAL * doubt).min(0.5 * level);
         self.unusual_since = unusual.then(|| self.unusual_since.unwrap_or(self.window.end()));
         if suspect.evidence > level || deviates {
-            let weak = self.drift.is_moving() && self.drift_is_credible(output);
-            self.drifted |= weak;
-            match weak || self.moving.is_following() {
+            match (self.drifted && self.drift.is_moving()) || self.moving.is_following() {
                 true => self.begin_drift(output),
                 false => self.switch(problem, suspect, level, output),
             }
