@@ -29,9 +29,9 @@ pub struct Unknowns<'a> {
 pub struct Start<'a> {
     /// All coefficients θ of the law.
     pub all: &'a [f64],
-    /// What κ and b are measured by, n.
+    /// What θ is measured by, n.
     pub reach: &'a [f64],
-    /// Std of κ and b relative to it.
+    /// Std of θ relative to it.
     pub width: f64,
     /// (q, q̇).
     pub state: State,
@@ -88,7 +88,7 @@ impl Joint {
         self.covariance.fill(0.0);
         let size = self.size();
         (self.covariance[0], self.covariance[size + 1]) = (start.variances[0], start.variances[1]);
-        self.wander(start.reach, start.width);
+        self.wander(unknowns, start.reach, [start.width; 2]);
     }
 
     /// Becomes what `other` is, of the same law.
@@ -104,11 +104,17 @@ impl Joint {
         self.scaled.len() + 2
     }
 
-    /// Each of κ and b wanders by a std of `width` times its `reach`.
-    pub fn wander(&mut self, reach: &[f64], width: f64) {
-        let size = self.size();
-        for (index, reach) in reach.iter().enumerate() {
-            self.covariance[(index + 2) * (size + 1)] += (width * reach).powi(2);
+    /// Each coefficient θ, and the inertia, wanders by a std that is given relative to its `reach`; the inertia takes all of κ and b with it.
+    pub fn wander(&mut self, unknowns: &Unknowns, reach: &[f64], [width, of_inertia]: [f64; 2]) {
+        let (size, mass) = (self.size(), self.mass(unknowns));
+        let Joint { covariance, scaled, .. } = self;
+        for (index, reach) in reach.iter().enumerate().filter(|(index, _)| unknowns.free_inertia != Some(*index)) {
+            covariance[(index + 2) * (size + 1)] += (width * reach / mass).powi(2);
+        }
+        let Some(index) = unknowns.free_inertia else { return };
+        let share = (of_inertia * reach[index] / mass).powi(2);
+        for (row, first) in covariance[2 * size..].chunks_exact_mut(size).zip(scaled.iter()) {
+            row[2..].iter_mut().zip(scaled.iter()).for_each(|(entry, second)| *entry += share * first * second);
         }
     }
 

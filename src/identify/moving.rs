@@ -15,20 +15,20 @@ use super::window::Window;
 use crate::evidence::{Channel, Guard, Joint, Noise, Observation, Start, Unknowns};
 use serde::{Deserialize, Serialize};
 
-/// Std of the wandering over a natural period, relative to the reach of a coefficient. The last is too fast for a drift.
-const INTENSITIES: [f64; 4] = [0.003, 0.01, 0.03, 0.1];
+/// Std of the wandering over a natural period relative to the reach, of the coefficients and of the inertia. The last is too fast for a drift.
+const INTENSITIES: [[f64; 2]; 5] = [[0.01, 0.0], [0.03, 0.0], [0.01, 0.01], [0.03, 0.03], [0.1, 0.1]];
 
 /// How many of them are a drift.
-const SLOW: usize = 3;
+const SLOW: usize = 4;
 
 /// Place of the filter whose coefficients are constant: throughout a trial, or since they may have come to rest.
-const CONSTANT: usize = 4;
+const CONSTANT: usize = 5;
 
 /// Place of the filter whose coefficients switch once.
-const SWITCHED: usize = 5;
+const SWITCHED: usize = 6;
 
 /// Filters.
-const RIVALS: usize = 6;
+const RIVALS: usize = 7;
 
 /// A switch moves a coefficient by this part of its reach, as a std, and so much is open at the beginning.
 const WIDTH: f64 = 0.3;
@@ -37,7 +37,7 @@ const WIDTH: f64 = 0.3;
 const BUDGET: usize = 4;
 
 /// What decides a trial, nats …
-const DECIDED: f64 = 15.0;
+const DECIDED: f64 = 12.0;
 
 /// … that has lasted this many natural periods.
 const LASTING: f64 = 0.25;
@@ -142,9 +142,9 @@ impl Moving {
     /// Puts a drift on trial against a switch.
     pub fn begin(&mut self, problem: &Problem, window: &Window, before: &Before) {
         let unknowns = unknowns(problem);
-        let mass = before.all[problem.inertia];
-        for (free, (own, reach)) in self.reach.iter_mut().zip(before.reach).enumerate() {
-            *own = if problem.free_inertia() == Some(free) { mass.recip() } else { reach / mass };
+        self.reach.copy_from_slice(before.reach);
+        if let Some(index) = problem.free_inertia() {
+            self.reach[index] = before.all[problem.inertia];
         }
         let first = first_state(problem, window, before.start, &before.noise);
         let [q, _, qd] = first.covariance;
@@ -185,12 +185,12 @@ impl Moving {
         let unknowns = unknowns(problem);
         let count = if self.course == Course::Trial { RIVALS } else { CONSTANT + 1 };
         if self.course == Course::Trial && self.switch.contains(&self.next) {
-            self.rivals[SWITCHED].wander(&self.reach, WIDTH);
+            self.rivals[SWITCHED].wander(&unknowns, &self.reach, [WIDTH; 2]);
         }
         let before: [f64; SLOW + 1] = std::array::from_fn(|index| self.rivals[index].log_likelihood);
         for (index, rival) in self.rivals[..count].iter_mut().enumerate().filter(|(index, _)| self.sound[*index]) {
             if let Some(intensity) = INTENSITIES.get(index) {
-                rival.wander(&self.reach, intensity / self.period.sqrt());
+                rival.wander(&unknowns, &self.reach, intensity.map(|std| std / self.period.sqrt()));
             }
             rival.advance(&unknowns, self.noise.process, self.parts, observation);
         }
