@@ -299,9 +299,10 @@ impl Tracker {
         }
         output.missing = self.stage.missing;
         let mixed = self.is_mixed();
-        let worth_showing = self.stage.settled() && self.stage.stated_error() < TRUSTED && !mixed;
-        let worth_monitoring = worth_showing && self.stage.stands();
-        if worth_showing {
+        let trusted = self.stage.settled() && self.stage.stated_error() < TRUSTED && !mixed;
+        let worth_monitoring = trusted && self.stage.stands();
+        // the std of a law that several share is that of none of them
+        if trusted && (self.is_vouched() || !self.is_unexplained()) {
             self.set_spread(problem);
             self.publish(problem, settings, published, output);
         } else if !output.valid && !output.drifting {

@@ -27,7 +27,7 @@ impl Tracker {
             return;
         }
         let moves = self.drift.is_moving() && self.drift.predicts();
-        let alone = || self.drift.has_no_rest(&self.window) && self.drift.spans(1.0);
+        let alone = || !self.explained && self.drift.has_no_rest(&self.window) && self.drift.spans(1.0);
         let known = output.valid || self.doubted_from > self.stage.start;
         let sure = if known { self.drifted } else { alone() };
         if !output.drifting && moves && sure && self.drift.stated_error() < TRUSTED {
