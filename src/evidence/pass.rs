@@ -94,7 +94,7 @@ pub struct IntervalMap {
 impl IntervalMap {
     /// Becomes the map of one step.
     #[inline]
-    fn set(&mut self, step: &Linearized, slopes: &[f64]) {
+    pub(super) fn set(&mut self, step: &Linearized, slopes: &[f64]) {
         let [to_q, to_qd] = step.input;
         self.transition = step.transition;
         self.push = step.input;
@@ -105,7 +105,7 @@ impl IntervalMap {
 
     /// Puts one more step behind.
     #[inline]
-    fn append(&mut self, step: &Linearized, slopes: &[f64]) {
+    pub(super) fn append(&mut self, step: &Linearized, slopes: &[f64]) {
         let [[a, b], [c, d]] = step.transition;
         let [to_q, to_qd] = step.input;
         for (input, slope) in self.input.iter_mut().zip(slopes) {

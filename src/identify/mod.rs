@@ -12,6 +12,7 @@ mod forecast;
 mod identification;
 mod identifier;
 mod known;
+mod moving;
 mod outputs;
 mod parameters;
 mod problem;

@@ -4,6 +4,7 @@ mod contest;
 mod drifting;
 mod live;
 mod loudness;
+mod moving;
 mod published;
 mod recognition;
 mod switch;
@@ -12,6 +13,7 @@ use super::deviation::Deviation;
 use super::drift::Drift;
 use super::identifier::{Coefficient, Output, Status};
 use super::known::KnownLaws;
+use super::moving::Moving;
 use super::problem::Problem;
 use super::roughness::Roughness;
 use super::settings::Settings;
@@ -67,6 +69,7 @@ pub struct Tracker {
     window: Window,
     start: Start,
     drift: Drift,
+    moving: Moving,
     /// Whether coefficients that moved are being tried for a constant law.
     resting: bool,
     /// Whether coefficients have moved in this record.
@@ -138,6 +141,7 @@ impl Tracker {
             window: Window::new(capacity, problem.channels, problem.hold),
             start: Start::new(problem, capacity),
             drift: Drift::new(problem, capacity),
+            moving: Moving::new(problem),
             resting: false,
             drifted: false,
             stage: Stage::new(problem),
@@ -203,6 +207,7 @@ impl Tracker {
         if !output.drifting || self.resting {
             self.seek_constant_law(problem, settings, published, output);
         }
+        self.track_moving(problem, published, output);
         self.track_drift(problem, settings, published, output);
         self.foretell(problem, published, output);
     }
@@ -294,9 +299,10 @@ impl Tracker {
         }
         output.missing = self.stage.missing;
         let mixed = self.is_mixed();
-        let worth_showing = self.stage.settled() && self.stage.stated_error() < TRUSTED && !mixed;
-        let worth_monitoring = worth_showing && self.stage.stands();
-        if worth_showing {
+        let trusted = self.stage.settled() && self.stage.stated_error() < TRUSTED && !mixed;
+        let worth_monitoring = trusted && self.stage.stands();
+        // the std of a law that several share is that of none of them
+        if trusted && (self.is_vouched() || !self.is_unexplained()) {
             self.set_spread(problem);
             self.publish(problem, settings, published, output);
         } else if !output.valid && !output.drifting {

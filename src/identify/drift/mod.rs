@@ -53,9 +53,6 @@ const QUIET: u32 = 16 * OVERLAP as u32;
 /// For how many variations a constant law is waited for.
 const PATIENCE: u64 = 8;
 
-/// Evidence of wandering that ends a law which was vouched for, nats.
-const CERTAIN: f64 = 12.0;
-
 /// Coefficients as they move.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Drift {
@@ -160,11 +157,6 @@ impl Drift {
     /// Whether that has been so for long enough for a constant law to be found, had there been one.
     pub fn has_no_rest(&self, window: &Window) -> bool {
         self.is_moving() && window.end() > self.since + PATIENCE * self.law().samples as u64
-    }
-
-    /// Whether they move beyond doubt, so that even a law that was vouched for is no more.
-    pub fn moves_beyond_doubt(&self) -> bool {
-        self.is_moving() && self.law().wandering() > CERTAIN
     }
 
     /// Whether the record has long spoken against coefficients that move.

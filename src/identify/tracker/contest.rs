@@ -44,8 +44,12 @@ impl Tracker {
     /// Whether the stage's record seems to hold several laws: a law before explained its own down to the sensors' noise, this one does not.
     /// A record that stays so for long lacks an effect instead.
     pub(super) fn is_mixed(&self) -> bool {
-        let unexplained = self.explained && self.recognised.is_none() && !self.stage.explains;
-        unexplained && self.stage.length(self.window.ready()) < FRESH_START
+        self.is_unexplained() && self.stage.length(self.window.ready()) < FRESH_START
+    }
+
+    /// Whether the stage's law does not explain its record, where one before it did.
+    pub(super) fn is_unexplained(&self) -> bool {
+        self.explained && self.recognised.is_none() && !self.stage.explains
     }
 
     /// A law that was vouched for does not explain its record any more, and no switch does: it is contested again.

@@ -9,9 +9,6 @@ use crate::identify::stage::TRUSTED;
 /// A constant law is sought in the record from this many variations back on.
 const REST: u64 = 4;
 
-/// Overdispersion that no model error of a constant law explains where its coefficients seem to move too.
-const LASTING: f64 = 10.0;
-
 impl Tracker {
     /// Follows coefficients that move, and says so where the record does.
     pub(super) fn track_drift(
@@ -21,23 +18,27 @@ impl Tracker {
         published: &mut [Coefficient],
         output: &mut Output,
     ) {
+        if self.moving.is_following() {
+            return;
+        }
         let thorough = output.drifting || !output.valid;
         let least = self.least_noise();
         if !problem.channels.q || !self.drift.step(problem, settings, &self.window, least, thorough) {
             return;
         }
         let moves = self.drift.is_moving() && self.drift.predicts();
-        let alone = || self.drift.has_no_rest(&self.window) && self.drift.spans(1.0);
+        let alone = || !self.explained && self.drift.has_no_rest(&self.window) && self.drift.spans(1.0);
         let known = output.valid || self.doubted_from > self.stage.start;
-        let sure = if known { self.drift_is_credible(output) } else { alone() };
+        let sure = if known { self.drifted } else { alone() };
         if !output.drifting && moves && sure && self.drift.stated_error() < TRUSTED {
+            self.drifted = true;
             self.begin_drift(output);
         }
         if output.drifting {
             self.publish_drift(problem, published, output);
             match self.resting {
                 true if moves => self.resting = false,
-                false if self.drift.is_at_rest() => self.seek_rest(),
+                false if self.drift.is_at_rest() => self.seek_rest(self.latest_variations()),
                 _ => {}
             }
         }
@@ -50,18 +51,10 @@ impl Tracker {
         [f64::INFINITY, if settled { self.stage.noise.sensor[1] } else { f64::INFINITY }]
     }
 
-    /// Whether coefficients that seem to move end a law that was vouched for: they have moved before in this record, or they do beyond
-    /// doubt, the constant law leaves error that lasts, and so did one before it, which an alarm ended. (A law that lacks an effect seems to
-    /// move as well, but lasts.)
-    pub(super) fn drift_is_credible(&self, output: &Output) -> bool {
-        let lasting = self.stage.overdispersion > LASTING && self.drift.moves_beyond_doubt();
-        self.drifted || (output.detection_time.is_some() && lasting && self.drift.spans(0.5))
-    }
-
     /// From now on no constant law is monitored.
     pub(super) fn begin_drift(&mut self, output: &mut Output) {
         output.drifting = true;
-        (self.drifted, self.resting) = (true, false);
+        self.resting = false;
         self.live.running = false;
         self.bank.clear();
         self.deviation.clear();
@@ -69,10 +62,13 @@ impl Tracker {
         (output.missing, output.law_number, output.recognised) = (None, None, false);
     }
 
-    /// The coefficients have come to rest: a constant law is sought in the latest record.
-    fn seek_rest(&mut self) {
-        let end = self.window.end();
-        let since = end.saturating_sub(REST * self.drift.length()).max(self.window.oldest());
+    fn latest_variations(&self) -> u64 {
+        self.window.end().saturating_sub(REST * self.drift.length())
+    }
+
+    /// The coefficients have come to rest: a constant law is sought in the record since then.
+    pub(super) fn seek_rest(&mut self, since: u64) {
+        let since = since.max(self.window.oldest());
         self.resting = true;
         self.start.begin(since);
         (self.phase, self.challenging, self.challenged_from) = (Phase::Gathering, false, since);

@@ -35,6 +35,8 @@ pub(super) struct Live {
     dispersed_at: u64,
     /// How many times the covariance counts.
     distrust: f64,
+    /// Whether it explained its record but for the sensors' noise.
+    pub(super) explains: bool,
     /// Covariance of the free coefficients, n × n.
     covariance: Vec<f64>,
     /// For how long an error of the law acts one way, s.
@@ -60,6 +62,7 @@ impl Live {
             overdispersion: 1.0,
             dispersed_at: 0,
             distrust: DISTRUST,
+            explains: false,
             covariance: vec![0.0; n * n],
             lasting: 0.0,
             slopes: vec![0.0; n],
@@ -110,6 +113,7 @@ impl Live {
         self.noise = stage.noise;
         self.follow_overdispersion(stage, window.ready());
         self.distrust = distrust(stage.length(window.ready()));
+        self.explains = !stage.process_matters;
         self.covariance.copy_from_slice(&stage.solution.covariance);
         let [before, last] = [window.ready() - 2, window.ready() - 1].map(|number| window.sample(number).t);
         self.lasting = stage.scales.natural_time().min(LONGEST_ERROR * (last - before));
@@ -141,6 +145,7 @@ impl Live {
     ) {
         self.noise = trials.noise(place);
         (self.overdispersion, self.dispersed_at) = (1.0, window.ready());
+        self.explains = true;
         trials.hand_over(place, problem, window, &mut self.pass);
         self.pass.information.merge(&law.information);
         self.all.copy_from_slice(&problem.known);

@@ -28,7 +28,7 @@ impl Tracker {
         published: &mut [Coefficient],
         output: &mut Output,
     ) {
-        let vouched = self.stage.stands() && self.stage.stated_error() < VOUCHED;
+        let vouched = self.is_vouched();
         if output.drifting && !vouched {
             return;
         }
@@ -55,6 +55,10 @@ impl Tracker {
                 output.status = Status::Tracking;
             }
         }
+    }
+
+    pub(super) fn is_vouched(&self) -> bool {
+        self.stage.stands() && self.stage.stated_error() < VOUCHED
     }
 
     /// How long a law takes to be known, and what it leaves unexplained then.

@@ -57,7 +57,7 @@ impl Tracker {
         let unusual = suspect.evidence > (UNUSUAL * doubt).min(0.5 * level);
         self.unusual_since = unusual.then(|| self.unusual_since.unwrap_or(self.window.end()));
         if suspect.evidence > level || deviates {
-            match self.drift.is_moving() && self.drift_is_credible(output) {
+            match (self.drifted && self.drift.is_moving()) || self.moving.is_following() {
                 true => self.begin_drift(output),
                 false => self.switch(problem, suspect, level, output),
             }
@@ -84,8 +84,11 @@ impl Tracker {
             return self.take_back(problem, start, output);
         }
         self.keep_law(problem, output);
-        self.bank.change(&suspect, &mut self.change);
         self.set_spread(problem);
+        if output.valid {
+            self.try_drift(problem, [instant, start]);
+        }
+        self.bank.change(&suspect, &mut self.change);
         let plausible = self.change.iter().zip(&self.spread).all(|(change, spread)| change.abs() < 2.0 * spread);
         for (index, (change, centre)) in self.change.iter_mut().zip(&mut self.centre).enumerate() {
             *centre = self.live.all[problem.free[index]];
