@@ -89,7 +89,7 @@ pub struct Stage {
     pub passes: u32,
     /// Passes in a row that changed little.
     calm: u32,
-    /// How many times in a row the law has stood while the record grew by [`TRIAL`].
+    /// How many times in a row the law has stood while the record grew as a trial asks.
     stood: u32,
     trial: Trial,
     /// What is known beside the record, about `coefficients`.
@@ -145,7 +145,7 @@ impl Stage {
             passes: 0,
             calm: 0,
             stood: 0,
-            trial: Trial { length: 0, all: vec![0.0; problem.terms.len()] },
+            trial: Trial { length: 0, all: vec![0.0; problem.terms.len()], stood_from: 0 },
             prior: Information::none(n),
             missing: None,
             lack: Lack::new(&problem.terms, n),

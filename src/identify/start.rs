@@ -19,8 +19,12 @@ const LONGEST: usize = 2048;
 /// Rows begin this fraction of a variation apart.
 const OVERLAP: usize = 8;
 
-/// Largest share of noise in a term that the start may rest on.
-const ATTENUATION: f64 = 0.5;
+/// Largest share of noise in a term that the start may rest on …
+const ATTENUATION: f64 = 0.2;
+
+/// … and, where no length has so little, variations this long.
+const MUCH_NOISE: f64 = 0.5;
+const LONG: usize = 512;
 
 /// Smooth enough that the trapezoidal rule is exact to far below the noise, wide enough to average.
 const VARIATION: Variation = Variation::Polynomial { power: 6 };
@@ -139,7 +143,8 @@ impl Start {
     /// has twice as many rows as unknowns and signal enough.
     pub fn guess(&mut self, problem: &Problem, sensor: [f64; 2]) -> Option<Guess<'_>> {
         let n = self.equation.len();
-        let mut best: Option<(usize, f64)> = None;
+        // the best of those with little noise, and of long ones with much
+        let mut best: [Option<(usize, f64)>; 2] = [None; 2];
         for (index, scale) in self.scales.iter().enumerate() {
             let rows = scale.regression.rows() as usize;
             if rows < 2 * n + 2 {
@@ -147,12 +152,15 @@ impl Start {
             }
             scale.regression.solve(&mut self.fit);
             let error = scale.relative_error(&self.fit);
-            let attenuated = scale.attenuation(problem, &self.fit, sensor) > ATTENUATION;
-            if !attenuated && best.is_none_or(|(_, least)| error < least) {
-                best = Some((index, error));
+            let share = scale.attenuation(problem, &self.fit, sensor);
+            let kinds = [share <= ATTENUATION, share <= MUCH_NOISE && scale.length >= LONG];
+            for (best, _) in best.iter_mut().zip(kinds).filter(|(_, fits)| *fits) {
+                if best.is_none_or(|(_, least)| error < least) {
+                    *best = Some((index, error));
+                }
             }
         }
-        let (index, relative_error) = best?;
+        let (index, relative_error) = best[0].or(best[1])?;
         let scale = &self.scales[index];
         scale.regression.solve(&mut self.fit);
         for (std, spread) in self.std.iter_mut().zip(&self.fit.spread) {

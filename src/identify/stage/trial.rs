@@ -4,26 +4,32 @@ use super::{Stage, TRUSTED, VOUCHED};
 use crate::identify::forecast::Record;
 use serde::{Deserialize, Serialize};
 
-/// A law is confirmed when the record has grown by this factor …
+/// A law that explains its record is confirmed when the record has grown by this factor …
 const TRIAL: f64 = 1.1;
 
-/// … and the coefficients have moved by less than this, as e of eq. (8).
+/// … one that does not, by this: it may have all its error in the sensors, and another maximum of the likelihood is the better one.
+const DOUBTED: f64 = 1.25;
+
+/// Meanwhile the coefficients have moved by less than this, as e of eq. (8).
 const STOOD: f64 = 0.05 * 0.05;
 
-/// A law that has stood this many trials in a row, its record grown by 1.1⁹ = 2.4, stands whatever other terms might have done.
-const LONG: u32 = 9;
+/// A law that has stood while its record grew by this factor stands whatever other terms might have done.
+const LONG: f64 = 2.4;
 
 /// All coefficients as they were when the record had some length.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Trial {
     pub(super) length: u64,
     pub(super) all: Vec<f64>,
+    /// Length from which on they have stood.
+    pub(super) stood_from: u64,
 }
 
 impl Stage {
     /// Whether the law would hold with other terms too: with all of them its covariance is small enough, or it has stood long.
     pub fn stands(&self) -> bool {
-        self.stood >= LONG || (self.stood > 0 && self.structure.full_error < TRUSTED)
+        let long = self.trial.length as f64 >= LONG * self.trial.stood_from as f64;
+        self.stood > 0 && (long || self.structure.full_error < TRUSTED)
     }
 
     /// Whether both stages found one law in the same record.
@@ -31,14 +37,19 @@ impl Stage {
         self.start == other.start && differ_by(&self.all, &other.all) < STOOD
     }
 
+    fn trial_growth(&self) -> f64 {
+        if self.explains { TRIAL } else { DOUBTED }
+    }
+
     /// Lets the law stand trial: statistics that a wrong structure or a wrong minimum makes up do not survive more data.
     pub(super) fn confirm(&mut self) {
         let length = self.length(self.next);
-        if !self.settled() || (length as f64) < TRIAL * self.trial.length as f64 {
+        if !self.settled() || (length as f64) < self.trial_growth() * self.trial.length as f64 {
             return;
         }
         let stood = self.trial.length > 0 && differ_by(&self.all, &self.trial.all) < STOOD;
         self.stood = if stood { self.stood + 1 } else { 0 };
+        self.trial.stood_from = if stood { self.trial.stood_from } else { length };
         self.trial.length = length;
         self.trial.all.copy_from_slice(&self.all);
     }
@@ -54,7 +65,7 @@ impl Stage {
             solution: &self.solution,
             allowed: VOUCHED * squares / self.overdispersion,
             trial: (!self.stands()).then_some(begun),
-            growth: TRIAL,
+            growth: self.trial_growth(),
         };
         self.forecast.renew(&record);
     }
