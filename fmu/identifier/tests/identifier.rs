@@ -1,6 +1,7 @@
 //! The identifier's library through the C interface.
 
 mod contract;
+mod laws;
 
 use contract::{Drive, OK, Subject};
 use switchid::fmu::identifier;
