@@ -67,9 +67,12 @@ pub struct Identification {
 /// How often the list of what cannot be determined is renewed, samples.
 const RENEW_UNIDENTIFIABLE: usize = 64;
 
-/// Settings that fit a recording: its channels, a `sample_time` that thins nothing, a window that holds enough samples.
+/// Times the shortest distance of two samples, a `sample_time` under which none comes too soon.
+const NEVER_TOO_SOON: f64 = 1.9;
+
+/// Settings that fit a recording: its channels, a `sample_time` that is its own and thins nothing, a window that holds enough samples.
 pub fn settings_for(recording: &Recording, base: Settings) -> Settings {
-    let sample_time = 0.5 * recording.sample_time();
+    let sample_time = recording.sample_time().min(NEVER_TOO_SOON * recording.shortest_interval());
     let max_window = base.max_window.clamp(2e3 * sample_time, 1e6 * sample_time);
     Settings { channels: recording.channels(), sample_time, max_window, ..base }
 }

@@ -185,6 +185,11 @@ impl Recording {
         *distances.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 
+    /// The shortest distance of two samples, s.
+    pub fn shortest_interval(&self) -> f64 {
+        self.t.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min)
+    }
+
     /// The gaps, in the order of time: distances of more than a few usual ones. Nothing may be integrated over them.
     pub fn gaps(&self) -> Vec<Gap> {
         let longest = GAP * self.sample_time();
