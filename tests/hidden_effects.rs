@@ -74,6 +74,25 @@ fn two_hidden_effects_are_found() {
     assert_share(&visible(settings.collect()), 8, 0.8, Outcome::is_right);
 }
 
+/// Records on which a fit ends beside the truth, were it begun once and with much process noise alone, or an answer is refused by rounding.
+#[test]
+fn what_one_descent_does_not_find_is_found() {
+    let hard = |ids: &[&str], strength: f64, noise: f64, draw: u64| {
+        let secret = Secret::Missing(ids.iter().map(|id| id.to_string()).collect());
+        Setting { secret, strength, noise, samples: 5000, seed: 4242, draw }
+    };
+    let settings = vec![
+        hard(&["stribeck_friction", "excitation_delay"], 0.05, 0.001, 0),
+        hard(&["coulomb_friction", "stribeck_friction"], 0.05, 0.001, 0),
+        hard(&["hidden_resonator", "coulomb_friction"], 0.05, 0.001, 0),
+        hard(&["position_dependent_inertia", "hidden_resonator"], 0.05, 0.001, 0),
+        hard(&["hysteresis"], 0.1, 0.05, 6),
+    ];
+    assert_share(&visible(settings), 5, 1.0, Outcome::is_right);
+    let alike = vec![hard(&["pendulum_restoring", "cubic_damping"], 0.05, 0.001, 0)];
+    assert_share(&visible(alike), 1, 1.0, |outcome| outcome.answer == Answer::Tied && outcome.tie);
+}
+
 /// Effect and numbers are drawn when the test runs, so that nothing can be made to fit them.
 #[test]
 fn an_effect_that_nobody_knows_before_is_found() {
