@@ -93,12 +93,12 @@ fn what_one_descent_does_not_find_is_found() {
     assert_share(&visible(alike), 1, 1.0, |outcome| outcome.answer == Answer::Tied && outcome.tie);
 }
 
-/// Effect and numbers are drawn when the test runs, so that nothing can be made to fit them.
+/// Effects and numbers are drawn when the test runs, so that nothing can be made to fit them. One of twelve may be missed: some are, in the long run.
 #[test]
-fn an_effect_that_nobody_knows_before_is_found() {
+fn effects_that_nobody_knows_before_are_found() {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_nanos() as u64;
     let ids = ids();
-    let id = ids[(now / 1000) as usize % ids.len()].clone();
-    let drawn = Setting { seed: now, ..setting(Secret::Missing(vec![id]), 0.2, 0.005, 0) };
-    assert_share(&visible(vec![drawn]), 0, 1.0, |outcome| matches!(outcome.answer, Answer::Right | Answer::Tied));
+    let id = |draw: u64| ids[((now / 1000 + 7 * draw) % ids.len() as u64) as usize].clone();
+    let drawn = (0..12).map(|draw| Setting { seed: now, ..setting(Secret::Missing(vec![id(draw)]), 0.2, 0.005, draw) });
+    assert_share(&visible(drawn.collect()), 8, 0.85, |outcome| matches!(outcome.answer, Answer::Right | Answer::Tied));
 }

@@ -283,6 +283,11 @@ impl Candidate {
     }
 }
 
+/// Whether the record speaks for an error of the law, worth the word or not.
+pub(super) fn is_doubtful(fit: &Fit) -> bool {
+    fit.lack() > EVIDENT
+}
+
 /// Whether the record speaks for an error of the law that is worth the word.
 pub fn is_evident(fit: &Fit) -> bool {
     is_error(fit.lack(), fit.measurements)
@@ -308,7 +313,7 @@ pub(super) fn share(base: &Fit, fit: &Fit) -> f64 {
         let position = fit.form.terms.iter().position(|term| *term == Term::Inertia);
         position.map_or(1.0, |index| fit.coefficients[index])
     };
-    let unexplained = |fit: &Fit| if fit.lack() > EVIDENT { inertia(fit).powi(2) * fit.noise.process } else { 0.0 };
+    let unexplained = |fit: &Fit| if is_doubtful(fit) { inertia(fit).powi(2) * fit.noise.process } else { 0.0 };
     let before = inertia(base).powi(2) * base.noise.process;
     if before > 0.0 && is_evident(base) { (1.0 - unexplained(fit) / before).clamp(0.0, 1.0) } else { 1.0 }
 }

@@ -2,7 +2,7 @@
 //!
 //! A long record is searched by parts of it; candidates that are clearly worse there need not be tried on all of it.
 
-use super::diagnosis::is_evident;
+use super::diagnosis::{is_doubtful, is_evident};
 use super::fit::{Fit, refit};
 use super::judge::{Trial, merit};
 use super::piece::{Piece, thinned};
@@ -13,7 +13,7 @@ use crate::law::{Catalogue, Term};
 /// Sets of one, two and three candidates that get into the law.
 const FINALISTS: [usize; 3] = [5, 3, 2];
 
-/// Candidates that get into a law that leaves no evident error.
+/// Candidates that get into a law of which the record shows no error.
 const DOUBTED: usize = 3;
 
 /// Samples by which a long record is searched first.
@@ -94,7 +94,7 @@ impl Search<'_> {
     }
 
     fn trials(&self, size: usize, explains: &dyn Fn(&Fit, &Fit) -> bool) -> Vec<Trial> {
-        let finalists = if is_evident(self.base) { FINALISTS[size.clamp(1, 3) - 1] } else { DOUBTED };
+        let finalists = if is_doubtful(self.base) { FINALISTS[size.clamp(1, 3) - 1] } else { DOUBTED };
         let all = self.proposals.of(size);
         let rest = all.iter().skip(finalists).filter(|proposal| size == 1 && self.is_part_of_the_law(proposal));
         let few: Vec<Proposal> = all.iter().take(finalists).chain(rest).cloned().collect();

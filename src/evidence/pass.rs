@@ -136,7 +136,7 @@ pub struct Pass {
     pub sensitivity: Vec<[f64; 2]>,
     /// What the last interval between samples did to small changes.
     pub map: IntervalMap,
-    /// Parts into which an interval is cut.
+    /// Parts into which an interval is cut: what the fastest motion asks for, of the run before at first, then of this one too.
     pub parts: usize,
     rival_filters: [Filter; 2],
     fastest: f64,
@@ -148,6 +148,11 @@ pub struct Pass {
     slopes: Vec<f64>,
     /// Sensitivity of the expected measurement by channel, each n long and filled up with zeros.
     rows: [Vec<Lane>; 2],
+}
+
+/// Parts of an interval whose motion turns by `fastest` squared radians in it.
+fn parts_for(fastest: f64) -> usize {
+    ((fastest / MAX_RATE).sqrt().ceil() as usize).clamp(1, MAX_PARTS)
 }
 
 impl Pass {
@@ -188,7 +193,7 @@ impl Pass {
         self.guard = self.guard.map(|_| Guard::default());
         self.information.clear();
         self.sensitivity.fill([0.0; 2]);
-        self.parts = ((self.fastest / MAX_RATE).sqrt().ceil() as usize).clamp(1, MAX_PARTS);
+        self.parts = parts_for(self.fastest);
         self.fastest = 0.0;
         self.seeking = false;
     }
@@ -255,6 +260,7 @@ impl Pass {
                 filter.predict(step, dt, process + unseen);
             });
         }
+        self.parts = self.parts.max(parts_for(self.fastest));
     }
 
     #[inline]

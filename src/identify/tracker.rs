@@ -268,8 +268,9 @@ impl Tracker {
             self.bank.step(&self.live.pass.map, &innovations);
             self.predict(problem, settings, number, &observation, output);
             if number.is_multiple_of(SPAWN_EVERY) {
-                let (information, active) = (&self.live.pass.information, &self.all_active);
-                let law = Law { information, active, explains: self.explains() };
+                // of a law that came back only its own terms are known from before: to seek the others too would make it look unlikely
+                let active = if self.recognised.is_some() { &self.live.active } else { &self.all_active };
+                let law = Law { information: &self.live.pass.information, active, explains: self.explains() };
                 self.bank.spawn(number, &law);
             }
             let oldest = number.saturating_sub((OLDEST / settings.sample_time) as u64);

@@ -1,7 +1,8 @@
 //! The evidence of a switch that the law in use meets without one.
 //!
 //! Under the right law it stays below what the false-alarm interval asks. A real record has error that no law models: its
-//! evidence rises again and again, and only what stands out from that is a switch. What chance brings in the time gone by does not count.
+//! evidence rises again and again, and only what stands out from that is a switch. What chance brings in the time gone by does not count,
+//! nor what rose once while the law was still young and has not come again since.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +21,10 @@ const LUCK: f64 = 3.0;
 /// Largest evidence that came and went in blocks of the stage.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Usual {
-    before: f64,
+    /// Until the stage had its length of the last doubling, and since then.
+    before: [f64; 2],
+    /// Samples at the last doubling.
+    doubled: u64,
     last: f64,
     present: f64,
     /// Largest evidence of the rise that is not past yet.
@@ -42,15 +46,19 @@ impl Usual {
         }
         self.count += 1;
         if self.count.is_multiple_of(BLOCK) {
-            self.before = self.before.max(self.last);
+            self.before[1] = self.before[1].max(self.last);
             (self.last, self.present) = (self.present, 0.0);
+            if self.count >= 2 * self.doubled {
+                (self.before, self.doubled) = ([self.before[1], 0.0], self.count);
+            }
         }
     }
 
     /// The evidence that stands out, nats; `chance` is what a right law meets once in a sample.
     pub fn level(&self, chance: f64) -> f64 {
         let expected = chance + (self.count.max(1) as f64).ln() + LUCK;
-        if self.before > expected { STANDS_OUT * self.before } else { 0.0 }
+        let before = self.before[0].max(self.before[1]);
+        if before > expected { STANDS_OUT * before } else { 0.0 }
     }
 }
 
@@ -72,6 +80,16 @@ mod tests {
         let mut usual = Usual::default();
         (0..BLOCK).for_each(|_| usual.add(30.0));
         (0..BLOCK / 2).for_each(|_| usual.add(1.0));
+        assert_eq!(usual.level(-4.4), 0.0);
+    }
+
+    #[test]
+    fn what_does_not_come_again_counts_until_the_record_is_four_times_as_long_at_most() {
+        let mut usual = Usual::default();
+        (0..BLOCK).for_each(|_| usual.add(30.0));
+        (0..4 * BLOCK).for_each(|_| usual.add(1.0));
+        assert_eq!(usual.level(-4.4), 60.0);
+        (0..20 * BLOCK).for_each(|_| usual.add(1.0));
         assert_eq!(usual.level(-4.4), 0.0);
     }
 

@@ -22,8 +22,12 @@ const START_ERROR_WITHOUT_Q: f64 = 1.0;
 /// Samples after which an unvouched law is contested by the latest record alone.
 const FRESH_START: u64 = 12_000;
 
-/// What the latest record must explain better than the whole one to replace it, nats per measurement.
+/// What the latest record must explain better than the whole one to replace it, nats per measurement: the noise may have changed …
 const CLEARLY: f64 = 0.1;
+
+/// … or, where it explains itself down to the sensors' noise and the whole one does not, in 1 ÷ √ of the number of measurements: the mean
+/// of the right law's likelihood scatters by 0.7 of that.
+const SURELY: f64 = 2.0;
 
 impl Tracker {
     /// A record that has grown long without a law to vouch for may hold a switch that nobody saw: the weak rows begin anew, so that
@@ -156,7 +160,12 @@ impl Tracker {
     /// What the challenger must explain better than the stage, nats per measurement.
     fn margin(&self) -> f64 {
         let measurements = 2.0 * self.challenger.length(self.window.ready()) as f64;
-        if self.challenger.start > self.stage.start { CLEARLY } else { 3.0 / measurements }
+        let explains = self.challenger.explains && !self.stage.explains;
+        match self.challenger.start > self.stage.start {
+            true if explains => (SURELY / measurements.sqrt()).min(CLEARLY),
+            true => CLEARLY,
+            false => 3.0 / measurements,
+        }
     }
 
     /// Sensor variances before any law: as set, or from differences.
