@@ -39,8 +39,8 @@ const SETTLED: f64 = 1.0;
 /// Largest gain in log-likelihood that another noise level may still promise, nats.
 const GAIN: f64 = 3.0;
 
-/// e below this square vouches for a law.
-pub const VOUCHED: f64 = 0.05 * 0.05;
+/// A stated e below this square vouches for a law: half of eq. (8)'s bound, since what is stated is an expectation.
+pub const VOUCHED: f64 = 0.5 * 0.05 * 0.05;
 
 /// e below this square makes a law good enough to weigh switches against.
 pub const TRUSTED: f64 = 0.2 * 0.2;
@@ -89,8 +89,8 @@ pub struct Stage {
     pub passes: u32,
     /// Passes in a row that changed little.
     calm: u32,
-    /// How many times in a row the law has stood while the record grew as a trial asks.
-    stood: u32,
+    /// Whether the law stood when the record had last grown as a trial asks.
+    stood: bool,
     trial: Trial,
     /// What is known beside the record, about `coefficients`.
     prior: Information,
@@ -144,7 +144,7 @@ impl Stage {
             blocks: Blocks::new(n),
             passes: 0,
             calm: 0,
-            stood: 0,
+            stood: false,
             trial: Trial { length: 0, all: vec![0.0; problem.terms.len()], stood_from: 0 },
             prior: Information::none(n),
             missing: None,
@@ -182,7 +182,7 @@ impl Stage {
         self.known_noise = noise.sensor;
         self.known_noise_weight = prior.noise_weight;
         (self.passes, self.calm) = (0, 0);
-        (self.stood, self.trial.length) = (0, 0);
+        (self.stood, self.trial.length) = (false, 0);
         self.decrement = f64::INFINITY;
         self.closed_at = start;
         self.prior.clear();

@@ -78,6 +78,8 @@ pub struct Tracker {
     challenger: Stage,
     challenging: bool,
     challenged_from: u64,
+    /// How often the weak rows have begun anew since.
+    afresh: u32,
     live: Live,
     bank: Bank,
     roughness: Roughness,
@@ -148,6 +150,7 @@ impl Tracker {
             challenger: Stage::new(problem),
             challenging: false,
             challenged_from: 0,
+            afresh: 0,
             live: Live::new(problem),
             bank: Bank::new(n, HYPOTHESES),
             roughness: Roughness::default(),
@@ -226,7 +229,7 @@ impl Tracker {
             self.challenge(problem, settings);
         }
         self.challenge_noise(problem, settings);
-        self.refine_challenger(problem, settings, BUDGET[1] - used);
+        self.refine_challenger(problem, settings, BUDGET[1] - used, output.valid);
         if self.phase == Phase::Refining {
             self.refine(problem, settings, published, output);
         }
@@ -303,7 +306,7 @@ impl Tracker {
         let trusted = self.stage.settled() && self.stage.stated_error() < TRUSTED && !mixed;
         let worth_monitoring = trusted && self.stage.stands();
         // the std of a law that several share is that of none of them
-        if trusted && (self.is_vouched() || !self.is_unexplained()) {
+        if trusted && (self.stage.is_vouched() || !self.is_unexplained()) {
             self.set_spread(problem);
             self.publish(problem, settings, published, output);
         } else if !output.valid && !output.drifting {

@@ -10,6 +10,9 @@ const TRIAL: f64 = 1.1;
 /// … one that does not, by this: it may have all its error in the sensors, and another maximum of the likelihood is the better one.
 const DOUBTED: f64 = 1.25;
 
+/// A law that has stood for less than the longer trial must be this sure with all terms, as e of eq. (8) squared.
+const SURE: f64 = 0.5 * TRUSTED;
+
 /// Meanwhile the coefficients have moved by less than this, as e of eq. (8).
 const STOOD: f64 = 0.05 * 0.05;
 
@@ -28,8 +31,14 @@ pub(super) struct Trial {
 impl Stage {
     /// Whether the law would hold with other terms too: with all of them its covariance is small enough, or it has stood long.
     pub fn stands(&self) -> bool {
-        let long = self.trial.length as f64 >= LONG * self.trial.stood_from as f64;
-        self.stood > 0 && (long || self.structure.full_error < TRUSTED)
+        let grown = self.trial.length as f64 / self.trial.stood_from as f64;
+        let allowed = if grown < DOUBTED { SURE } else { TRUSTED };
+        self.stood && (grown >= LONG || self.structure.full_error < allowed)
+    }
+
+    /// Whether the law is known.
+    pub fn is_vouched(&self) -> bool {
+        self.stands() && self.stated_error() < VOUCHED
     }
 
     /// Whether both stages found one law in the same record.
@@ -48,7 +57,7 @@ impl Stage {
             return;
         }
         let stood = self.trial.length > 0 && differ_by(&self.all, &self.trial.all) < STOOD;
-        self.stood = if stood { self.stood + 1 } else { 0 };
+        self.stood = stood;
         self.trial.stood_from = if stood { self.trial.stood_from } else { length };
         self.trial.length = length;
         self.trial.all.copy_from_slice(&self.all);

@@ -7,8 +7,11 @@ use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::stage::Prior;
 
-/// Passes after which a challenger that has not settled gives up.
+/// Passes after which a challenger that has not settled gives up …
 const PATIENCE: u32 = 40;
+
+/// … and one that explains its record where the stage does not.
+const LONG_PATIENCE: u32 = 400;
 
 /// Samples from which on the kind of a record's error can be told.
 const ENOUGH: u64 = 500;
@@ -19,7 +22,7 @@ const START_ERROR: f64 = 0.3;
 /// The same where no displacement is measured: each weak row then has an offset of its own, which the filter does not need.
 const START_ERROR_WITHOUT_Q: f64 = 1.0;
 
-/// Samples after which an unvouched law is contested by the latest record alone.
+/// Samples after which an unvouched law is contested by the latest record alone, and the unit of how long that may take.
 const FRESH_START: u64 = 12_000;
 
 /// What the latest record must explain better than the whole one to replace it, nats per measurement: the noise may have changed …
@@ -30,19 +33,27 @@ const CLEARLY: f64 = 0.1;
 const SURELY: f64 = 2.0;
 
 impl Tracker {
+    /// The record from sample `start` on is another law's: the weak rows begin with it, and no challenger is under way.
+    pub(super) fn contest_from(&mut self, start: u64) {
+        self.start.begin(start);
+        (self.challenging, self.challenged_from, self.afresh) = (false, start, 0);
+        (self.next_guess, self.next_noise_challenge) = (0, 0);
+    }
+
     /// A record that has grown long without a law to vouch for may hold a switch that nobody saw: the weak rows begin anew, so that
-    /// the next challenger knows the latest record alone.
+    /// the next challenger knows the latest record alone. How long the law needs nobody knows, nor how long it lasts: the lengths follow the
+    /// universal sequence (Luby, Sinclair and Zuckerman, *Information Processing Letters* 47 (1993), 173).
     pub(super) fn begin_afresh(&mut self) {
         let (end, since) = (self.window.end(), self.challenged_from);
         let due = match self.is_mixed() {
             true => since.max(self.doubted_from) + self.acquaintance,
-            false => since + FRESH_START + 2 * (since - self.stage.start.min(since)),
+            false => since + FRESH_START * universal(self.afresh + 1),
         };
         if self.challenging || self.phase == Phase::Gathering || end < due {
             return;
         }
         self.start.begin(end);
-        (self.challenged_from, self.next_guess) = (end, 0);
+        (self.challenged_from, self.next_guess, self.afresh) = (end, 0, self.afresh + 1);
     }
 
     /// Whether the stage's record seems to hold several laws: a law before explained its own down to the sensors' noise, this one does not.
@@ -136,33 +147,40 @@ impl Tracker {
         self.challenging = true;
     }
 
-    /// Refines the challenger; it takes the stage's place when it explains the record better.
-    pub(super) fn refine_challenger(&mut self, problem: &Problem, settings: &Settings, budget: usize) {
+    /// Refines the challenger; it takes the stage's place when it explains the record better, or is vouched for first.
+    pub(super) fn refine_challenger(&mut self, problem: &Problem, settings: &Settings, budget: usize, valid: bool) {
         if !self.challenging || !self.challenger.refine(problem, settings, &self.window, budget) {
             return;
         }
+        let promising = !valid && self.explains_what_the_stage_does_not();
         if self.challenger.settled() {
-            self.challenging = false;
             let agrees = self.challenger.agrees_with(&self.stage);
             if agrees {
                 self.next_guess = self.window.end() + self.stage.length(self.window.end());
             }
+            let better = self.challenger.likelihood > self.stage.likelihood + self.margin();
             // one that takes the place of a law which explains its record would begin the same law's trial anew
-            if !(agrees && self.stage.explains) && self.challenger.likelihood > self.stage.likelihood + self.margin() {
+            let wins = better && !(agrees && self.stage.explains) || promising && self.challenger.is_vouched();
+            if wins {
                 std::mem::swap(&mut self.challenger, &mut self.stage);
             }
+            self.challenging = promising && !wins;
         } else if self.challenger.passes > PATIENCE {
-            self.challenging = false;
+            self.challenging = promising && self.challenger.passes < LONG_PATIENCE;
         }
         self.challenger.begin_pass(problem, &self.window);
+    }
+
+    /// Whether the challenger explains a later record down to the sensors' noise, and the stage not its own.
+    fn explains_what_the_stage_does_not(&self) -> bool {
+        self.challenger.start > self.stage.start && self.challenger.explains && !self.stage.explains
     }
 
     /// What the challenger must explain better than the stage, nats per measurement.
     fn margin(&self) -> f64 {
         let measurements = 2.0 * self.challenger.length(self.window.ready()) as f64;
-        let explains = self.challenger.explains && !self.stage.explains;
         match self.challenger.start > self.stage.start {
-            true if explains => (SURELY / measurements.sqrt()).min(CLEARLY),
+            true if self.explains_what_the_stage_does_not() => (SURELY / measurements.sqrt()).min(CLEARLY),
             true => CLEARLY,
             false => 3.0 / measurements,
         }
@@ -176,5 +194,23 @@ impl Tracker {
             0.0 => found[index] + f64::MIN_POSITIVE,
             std => std * std,
         })
+    }
+}
+
+/// The universal sequence 1, 1, 2, 1, 1, 2, 4, … from its first on.
+fn universal(number: u32) -> u64 {
+    let number = u64::from(number.max(1));
+    let full = (number + 1).next_power_of_two();
+    if full == number + 1 { full / 2 } else { universal((number - (full / 2 - 1)) as u32) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::universal;
+
+    #[test]
+    fn the_universal_sequence_is_that_of_the_paper() {
+        let first: Vec<u64> = (1..=15).map(universal).collect();
+        assert_eq!(first, [1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8]);
     }
 }

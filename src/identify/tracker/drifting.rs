@@ -70,9 +70,8 @@ impl Tracker {
     pub(super) fn seek_rest(&mut self, since: u64) {
         let since = since.max(self.window.oldest());
         self.resting = true;
-        self.start.begin(since);
-        (self.phase, self.challenging, self.challenged_from) = (Phase::Gathering, false, since);
-        (self.next_guess, self.next_noise_challenge) = (0, 0);
+        self.phase = Phase::Gathering;
+        self.contest_from(since);
     }
 
     fn publish_drift(&mut self, problem: &Problem, published: &mut [Coefficient], output: &mut Output) {

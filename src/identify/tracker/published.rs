@@ -4,7 +4,7 @@ use super::{Phase, Tracker, YOUNG};
 use crate::identify::identifier::{Coefficient, Output, Status};
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
-use crate::identify::stage::{GROWTH, TRUSTED, VOUCHED};
+use crate::identify::stage::{GROWTH, TRUSTED};
 
 impl Tracker {
     /// What the record since the stage's start leaves open: combinations of terms while the weak rows of a first law are
@@ -28,7 +28,7 @@ impl Tracker {
         published: &mut [Coefficient],
         output: &mut Output,
     ) {
-        let vouched = self.is_vouched();
+        let vouched = self.stage.is_vouched();
         if output.drifting && !vouched {
             return;
         }
@@ -55,10 +55,6 @@ impl Tracker {
                 output.status = Status::Tracking;
             }
         }
-    }
-
-    pub(super) fn is_vouched(&self) -> bool {
-        self.stage.stands() && self.stage.stated_error() < VOUCHED
     }
 
     /// How long a law takes to be known, and what it leaves unexplained then.

@@ -170,9 +170,7 @@ impl Tracker {
         (output.valid, output.identified_time) = (false, None);
         self.live.running = false;
         self.bank.clear();
-        self.start.begin(start);
-        (self.challenging, self.challenged_from) = (false, start);
-        (self.next_guess, self.next_noise_challenge) = (0, 0);
+        self.contest_from(start);
         match self.noise_weight > 0.0 {
             true => {
                 output.status = Status::ReIdentifying;

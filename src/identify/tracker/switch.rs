@@ -28,9 +28,8 @@ impl Tracker {
         (self.live.running, self.unusual_since) = (false, None);
         self.bank.clear();
         self.deviation.clear();
-        self.start.begin(end);
-        (self.phase, self.challenging, self.challenged_from) = (Phase::Gathering, false, end);
-        (self.next_guess, self.next_noise_challenge) = (0, 0);
+        self.phase = Phase::Gathering;
+        self.contest_from(end);
         self.forget_trials(output);
         self.trial_due = Some(end);
         (output.status, output.valid, output.identified_time) = (Status::Acquiring, false, None);
@@ -98,10 +97,8 @@ impl Tracker {
         let sensor = self.live.noise.sensor.map(Some);
         self.trials.begin(&self.known, problem, &self.window, start, sensor);
         (self.recognised, self.confirmed, self.experience) = (None, false, 0);
-        self.start.begin(start);
+        self.contest_from(start);
         self.drift.restart(start);
-        (self.challenging, self.challenged_from) = (false, start);
-        (self.next_guess, self.next_noise_challenge) = (0, 0);
         (self.live.running, self.unusual_since) = (false, None);
         self.linger(instant, output.law_number);
         self.deviation.clear();
