@@ -7,7 +7,8 @@
 //! walk fast enough to look like a switch speaks for one.
 //!
 //! When slow wandering has won, its filters go on with the stream: their mean by weight is the law, their covariance its std. A filter
-//! whose coefficients have ceased to wander is begun again and again from the likeliest of them, until it wins: the coefficients rest.
+//! whose coefficients have ceased to wander is begun again and again from the likeliest of them, until for some periods it loses nothing: the
+//! coefficients rest.
 
 use super::problem::Problem;
 use super::stage::first_state;
@@ -24,11 +25,14 @@ const SLOW: usize = 4;
 /// Place of the filter whose coefficients are constant: throughout a trial, or since they may have come to rest.
 const CONSTANT: usize = 5;
 
-/// Place of the filter whose coefficients switch once.
+/// Place of the first filter whose coefficients switch once, at one of several samples.
 const SWITCHED: usize = 6;
 
+/// How many of them there are.
+pub const INSTANTS: usize = 3;
+
 /// Filters.
-const RIVALS: usize = 7;
+const RIVALS: usize = SWITCHED + INSTANTS;
 
 /// A switch moves a coefficient by this part of its reach, as a std, and so much is open at the beginning.
 const WIDTH: f64 = 0.3;
@@ -43,13 +47,16 @@ const DECIDED: f64 = 12.0;
 const LASTING: f64 = 0.25;
 
 /// For how many natural periods a trial goes on.
-const PATIENCE: f64 = 16.0;
+const PATIENCE: f64 = 6.0;
 
 /// For how many natural periods what a walk predicted counts in its weight.
 const MEMORY: f64 = 4.0;
 
-/// Log-likelihood by which coefficients that rest are told from ones that wander, nats.
-const RESTED: f64 = 5.0;
+/// Log-likelihood by which coefficients that wander are told from ones that rest, nats.
+const WANDERED: f64 = 5.0;
+
+/// Coefficients that may have been at rest for this many natural periods are.
+const REST: f64 = 2.0;
 
 /// How far the trial of a drift, or its following, has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -73,8 +80,8 @@ pub struct Before<'a> {
     pub parts: usize,
     /// Its natural period, samples.
     pub period: f64,
-    /// The samples between which the law may have switched.
-    pub switch: [u64; 2],
+    /// Samples at which the law may have switched, in their order.
+    pub switch: [u64; INSTANTS],
     /// The sample to begin with.
     pub start: u64,
 }
@@ -90,7 +97,7 @@ pub struct Moving {
     noise: Noise,
     parts: usize,
     period: f64,
-    switch: [u64; 2],
+    switch: [u64; INSTANTS],
     guard: Guard,
     next: u64,
     /// Since which sample the trial speaks for a drift.
@@ -114,7 +121,7 @@ impl Moving {
             noise: Noise { sensor: [1.0; 2], process: 1.0 },
             parts: 1,
             period: 1.0,
-            switch: [0; 2],
+            switch: [0; INSTANTS],
             guard: Guard::default(),
             next: 0,
             leading_since: None,
@@ -184,8 +191,9 @@ impl Moving {
     fn take(&mut self, problem: &Problem, observation: &Observation) {
         let unknowns = unknowns(problem);
         let count = if self.course == Course::Trial { RIVALS } else { CONSTANT + 1 };
-        if self.course == Course::Trial && self.switch.contains(&self.next) {
-            self.rivals[SWITCHED].wander(&unknowns, &self.reach, [WIDTH; 2]);
+        let switched = self.rivals[SWITCHED..count.max(SWITCHED)].iter_mut().zip(&self.switch);
+        for (rival, _) in switched.filter(|(_, instant)| **instant == self.next) {
+            rival.wander(&unknowns, &self.reach, [WIDTH; 2]);
         }
         let before: [f64; SLOW + 1] = std::array::from_fn(|index| self.rivals[index].log_likelihood);
         for (index, rival) in self.rivals[..count].iter_mut().enumerate().filter(|(index, _)| self.sound[*index]) {
@@ -239,8 +247,8 @@ impl Moving {
     fn decide(&mut self) {
         let lead = self.lead();
         self.leading_since = if lead > DECIDED { self.leading_since.or(Some(self.next)) } else { None };
-        let late = self.next as f64 > self.switch[1] as f64 + PATIENCE * self.period;
-        if self.next > self.switch[1] && (lead < -DECIDED || lead.is_nan() || late) {
+        let late = self.next as f64 > self.switch[INSTANTS - 1] as f64 + PATIENCE * self.period;
+        if self.next > self.switch[INSTANTS - 1] && (lead < -DECIDED || lead.is_nan() || late) {
             self.end();
         }
     }
@@ -249,7 +257,7 @@ impl Moving {
     pub fn found_drift(&self) -> bool {
         let lasting = LASTING * self.period;
         let led = self.leading_since.is_some_and(|since| self.next as f64 > since as f64 + lasting);
-        self.is_on_trial() && led && self.next as f64 > self.switch[1] as f64 + lasting
+        self.is_on_trial() && led && self.next as f64 > self.switch[INSTANTS - 1] as f64 + lasting
     }
 
     /// Follows the drift from now on.
@@ -276,14 +284,15 @@ impl Moving {
 
     fn look_for_rest(&mut self, problem: &Problem) {
         let quiet = self.quiet();
-        if quiet.is_nan() || quiet < -RESTED || !self.rivals[CONSTANT].is_sound(&unknowns(problem)) {
+        if quiet.is_nan() || quiet < -WANDERED || !self.rivals[CONSTANT].is_sound(&unknowns(problem)) {
             self.begin_rest();
         }
     }
 
     /// The sample since which the coefficients have been at rest, if they are.
     pub fn rests_since(&self) -> Option<u64> {
-        (self.is_following() && self.quiet() > RESTED).then_some(self.rest.0)
+        let long = (self.next - self.rest.0) as f64 > REST * self.period;
+        (self.is_following() && long && self.quiet() > 0.0).then_some(self.rest.0)
     }
 
     /// Mean and variance over all walks.

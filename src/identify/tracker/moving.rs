@@ -2,7 +2,7 @@
 
 use super::{SWITCH_SIZE, Tracker};
 use crate::identify::identifier::{Coefficient, Output, Status};
-use crate::identify::moving::Before;
+use crate::identify::moving::{Before, INSTANTS};
 use crate::identify::problem::Problem;
 use crate::identify::stage::TRUSTED;
 use std::f64::consts::TAU;
@@ -11,9 +11,9 @@ use std::f64::consts::TAU;
 const BEFORE: f64 = 2.0;
 
 impl Tracker {
-    /// Puts a drift on trial: instead of a switch between these samples the coefficients may have wandered. `spread` is that of the law
+    /// Puts a drift on trial: instead of a switch at one of these samples the coefficients may have wandered. `spread` is that of the law
     /// in use.
-    pub(super) fn try_drift(&mut self, problem: &Problem, switch: [u64; 2]) {
+    pub(super) fn try_drift(&mut self, problem: &Problem, switch: [u64; INSTANTS]) {
         let tried = self.moving.is_on_trial() || self.moving.is_following();
         if tried || !self.live.explains {
             return;

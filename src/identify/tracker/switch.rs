@@ -18,7 +18,10 @@ const TRIAL: f64 = 80.0;
 /// Evidence that chance brings once in some ten thousand samples, nats.
 const UNUSUAL: f64 = 5.0;
 
-/// A law that is not vouched for needs this many times the evidence.
+/// By so many std of its instant a switch may have come earlier than it seems.
+const EARLIER: f64 = 2.0;
+
+/// A law that is not vouched for, nor stands its trial, needs this many times the evidence.
 const UNPROVEN: f64 = 10.0;
 
 impl Tracker {
@@ -41,7 +44,8 @@ impl Tracker {
         // a stage that does not explain what a law like it did may hold a switch already
         let overdispersion = if self.explained { self.live.overdispersion } else { self.stage.overdispersion };
         let doubt = overdispersion * (1.0 + DOUBT / samples.max(1) as f64);
-        let doubt = if output.valid { doubt } else { UNPROVEN * doubt };
+        let proven = output.valid || self.stage.explains && self.stage.stands();
+        let doubt = if proven { doubt } else { UNPROVEN * doubt };
         // what chance brings is known of a law that explains its record; of another all evidence seen counts as its usual one
         let explains = self.explains();
         let trial = if explains { TRIAL } else { 1.0 };
@@ -85,7 +89,8 @@ impl Tracker {
         self.keep_law(problem, output);
         self.set_spread(problem);
         if output.valid {
-            self.try_drift(problem, [instant, start]);
+            let early = (EARLIER * distance.unwrap_or(0.0) / self.last_interval()) as u64;
+            self.try_drift(problem, [instant.saturating_sub(early), instant, start]);
         }
         self.bank.change(&suspect, &mut self.change);
         let plausible = self.change.iter().zip(&self.spread).all(|(change, spread)| change.abs() < 2.0 * spread);
