@@ -46,8 +46,8 @@ const DECIDED: f64 = 12.0;
 /// … that has lasted this many natural periods.
 const LASTING: f64 = 0.25;
 
-/// For how many natural periods a trial goes on.
-const PATIENCE: f64 = 6.0;
+/// For how many natural periods a trial goes on: as long as a switch explains the record as well, and at most.
+const PATIENCE: [f64; 2] = [3.0, 6.0];
 
 /// For how many natural periods what a walk predicted counts in its weight.
 const MEMORY: f64 = 4.0;
@@ -247,7 +247,8 @@ impl Moving {
     fn decide(&mut self) {
         let lead = self.lead();
         self.leading_since = if lead > DECIDED { self.leading_since.or(Some(self.next)) } else { None };
-        let late = self.next as f64 > self.switch[INSTANTS - 1] as f64 + PATIENCE * self.period;
+        let patience = PATIENCE[usize::from(lead > 0.0)] * self.period;
+        let late = self.next as f64 > self.switch[INSTANTS - 1] as f64 + patience;
         if self.next > self.switch[INSTANTS - 1] && (lead < -DECIDED || lead.is_nan() || late) {
             self.end();
         }

@@ -319,21 +319,26 @@ impl Tracker {
             self.doubt_law(output);
         }
         if !waits && (worth_monitoring || (self.live.running && self.stage.is_calm() && !mixed)) {
-            self.monitor_new_law(problem, output.valid);
+            self.monitor_new_law(problem, self.is_proven(output));
         } else {
             self.stage.begin_pass(problem, &self.window);
         }
     }
 
+    /// Whether the law is vouched for, or has stood its trial and explains its record.
+    fn is_proven(&self, output: &Output) -> bool {
+        output.valid || self.stage.explains && self.stage.stands()
+    }
+
     /// From now on switches are weighed against the stage's new estimate. Hypotheses are linear about the old one: they are carried over
-    /// only between laws as near to each other as those that are vouched for.
-    fn monitor_new_law(&mut self, problem: &Problem, vouched: bool) {
+    /// only between laws as near to each other as those that have stood their trial.
+    fn monitor_new_law(&mut self, problem: &Problem, proven: bool) {
         self.renewed = true;
         if self.live.running {
             for (index, change) in self.change.iter_mut().enumerate() {
                 *change = self.stage.coefficients[index] - self.live.all[problem.free[index]];
             }
-            match vouched && self.live.noise.is_near(&self.stage.noise) {
+            match proven && self.live.noise.is_near(&self.stage.noise) {
                 true => self.bank.shift(&self.change),
                 false => self.bank.clear(),
             }

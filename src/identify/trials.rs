@@ -176,6 +176,11 @@ impl Trials {
         }
     }
 
+    /// The law at `place` is none that the record may have.
+    pub fn rule_out(&mut self, place: usize) {
+        self.trials[place].out = true;
+    }
+
     /// Whether the record rules the law at `place` out.
     pub fn is_out(&self, place: usize) -> bool {
         self.trials[place].out

@@ -189,11 +189,13 @@ impl Tracker {
     }
 
     /// An alarm under a law that its trial has not confirmed yet speaks against the law, not for one more switch: the stage goes on as
-    /// that of another law, from sample `start`.
-    pub(super) fn take_back(&mut self, problem: &Problem, start: u64, output: &mut Output) {
+    /// that of another law.
+    pub(super) fn take_back(&mut self, problem: &Problem, output: &mut Output) {
+        let (start, wrong) = (self.stage.start, self.recognised);
         self.withdraw(problem, start, output);
         let sensor = self.live.noise.sensor.map(Some);
         self.trials.begin(&self.known, problem, &self.window, start, sensor);
+        wrong.into_iter().for_each(|place| self.trials.rule_out(place));
     }
 
     /// Whether the law in use was recognised and its trial has not confirmed it yet.

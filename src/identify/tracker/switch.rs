@@ -44,8 +44,7 @@ impl Tracker {
         // a stage that does not explain what a law like it did may hold a switch already
         let overdispersion = if self.explained { self.live.overdispersion } else { self.stage.overdispersion };
         let doubt = overdispersion * (1.0 + DOUBT / samples.max(1) as f64);
-        let proven = output.valid || self.stage.explains && self.stage.stands();
-        let doubt = if proven { doubt } else { UNPROVEN * doubt };
+        let doubt = if self.is_proven(output) { doubt } else { UNPROVEN * doubt };
         // what chance brings is known of a law that explains its record; of another all evidence seen counts as its usual one
         let explains = self.explains();
         let trial = if explains { TRIAL } else { 1.0 };
@@ -84,7 +83,7 @@ impl Tracker {
         let time = |number: u64| self.window.sample(number).t;
         let distance = self.bank.distance_of_switch(time(instant), self.now(), time);
         if self.is_unconfirmed() || self.was_never_right(instant, last) {
-            return self.take_back(problem, start, output);
+            return self.take_back(problem, output);
         }
         self.keep_law(problem, output);
         self.set_spread(problem);
