@@ -318,16 +318,14 @@ impl Tracker {
         if self.unexplained_passes >= LASTS && output.valid && !waits && !output.drifting {
             self.doubt_law(output);
         }
-        if !waits && (worth_monitoring || (self.live.running && self.stage.is_calm() && !mixed)) {
-            self.monitor_new_law(problem, self.is_proven(output));
+        let proven = output.valid || self.stage.explains && self.stage.stands();
+        // a law that has stood its trial is not left for one that has not: what happened to it may be a switch
+        let later = self.live.running && self.live.proven && !proven;
+        if !waits && !later && (worth_monitoring || (self.live.running && self.stage.is_calm() && !mixed)) {
+            self.monitor_new_law(problem, proven);
         } else {
             self.stage.begin_pass(problem, &self.window);
         }
-    }
-
-    /// Whether the law is vouched for, or has stood its trial and explains its record.
-    fn is_proven(&self, output: &Output) -> bool {
-        output.valid || self.stage.explains && self.stage.stands()
     }
 
     /// From now on switches are weighed against the stage's new estimate. Hypotheses are linear about the old one: they are carried over
@@ -346,6 +344,7 @@ impl Tracker {
             self.end_lingering();
         }
         self.live.adopt(problem, &mut self.stage, &self.window);
+        self.live.proven = proven;
         self.set_spread(problem);
         self.bank.set_spread(&self.spread);
     }

@@ -37,6 +37,8 @@ pub(super) struct Live {
     distrust: f64,
     /// Whether it explained its record but for the sensors' noise.
     pub(super) explains: bool,
+    /// Whether it was vouched for, or had stood its trial and explained its record.
+    pub(super) proven: bool,
     /// Covariance of the free coefficients, n × n.
     covariance: Vec<f64>,
     /// For how long an error of the law acts one way, s.
@@ -63,6 +65,7 @@ impl Live {
             dispersed_at: 0,
             distrust: DISTRUST,
             explains: false,
+            proven: false,
             covariance: vec![0.0; n * n],
             lasting: 0.0,
             slopes: vec![0.0; n],
@@ -145,7 +148,7 @@ impl Live {
     ) {
         self.noise = trials.noise(place);
         (self.overdispersion, self.dispersed_at) = (1.0, window.ready());
-        self.explains = true;
+        (self.explains, self.proven) = (true, true);
         trials.hand_over(place, problem, window, &mut self.pass);
         self.pass.information.merge(&law.information);
         self.all.copy_from_slice(&problem.known);

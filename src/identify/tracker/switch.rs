@@ -44,7 +44,7 @@ impl Tracker {
         // a stage that does not explain what a law like it did may hold a switch already
         let overdispersion = if self.explained { self.live.overdispersion } else { self.stage.overdispersion };
         let doubt = overdispersion * (1.0 + DOUBT / samples.max(1) as f64);
-        let doubt = if self.is_proven(output) { doubt } else { UNPROVEN * doubt };
+        let doubt = if output.valid || self.live.proven { doubt } else { UNPROVEN * doubt };
         // what chance brings is known of a law that explains its record; of another all evidence seen counts as its usual one
         let explains = self.explains();
         let trial = if explains { TRIAL } else { 1.0 };
