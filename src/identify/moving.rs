@@ -55,7 +55,7 @@ const MEMORY: f64 = 4.0;
 /// Log-likelihood by which coefficients that wander are told from ones that rest, nats.
 const WANDERED: f64 = 5.0;
 
-/// Coefficients that may have been at rest for this many natural periods are.
+/// Coefficients that may have been at rest for this many natural periods are; a constant law that has explained as many is the law.
 const REST: f64 = 2.0;
 
 /// How far the trial of a drift, or its following, has come.
@@ -144,6 +144,13 @@ impl Moving {
     /// Ends trial and following.
     pub fn end(&mut self) {
         self.course = Course::Idle;
+    }
+
+    /// A constant law has explained this many samples: where they are many, no drift is on trial any more.
+    pub fn end_trial(&mut self, samples: u64) {
+        if self.is_on_trial() && samples as f64 > REST * self.period {
+            self.end();
+        }
     }
 
     /// Puts a drift on trial against a switch.

@@ -48,6 +48,9 @@ impl Tracker {
         output.noise_qd = problem.channels.qd.then(|| std(1));
         if vouched {
             (output.valid, output.drifting) = (true, false);
+            if self.stage.explains {
+                self.moving.end_trial(self.stage.length(self.window.ready()));
+            }
             self.number_law(settings, output);
             self.get_acquainted(output);
             output.identified_time.get_or_insert(self.now());
