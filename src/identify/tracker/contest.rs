@@ -25,6 +25,9 @@ const START_ERROR_WITHOUT_Q: f64 = 1.0;
 /// Samples after which an unvouched law is contested by the latest record alone, and the unit of how long that may take.
 const FRESH_START: u64 = 12_000;
 
+/// Overdispersion of a record that is far from explained.
+const FAR: f64 = 10.0;
+
 /// What the latest record must explain better than the whole one to replace it, nats per measurement: the noise may have changed …
 const CLEARLY: f64 = 0.1;
 
@@ -57,9 +60,10 @@ impl Tracker {
     }
 
     /// Whether the stage's record seems to hold several laws: a law before explained its own down to the sensors' noise, this one does not.
-    /// A record that stays so for long lacks an effect instead.
+    /// A record that stays so for long and is not far from explained lacks an effect instead.
     pub(super) fn is_mixed(&self) -> bool {
-        self.is_unexplained() && self.stage.length(self.window.ready()) < FRESH_START
+        let short = self.stage.length(self.window.ready()) < FRESH_START;
+        self.is_unexplained() && (short || self.stage.overdispersion > FAR)
     }
 
     /// Whether the stage's law does not explain its record, where one before it did.
