@@ -75,3 +75,28 @@ fn a_law_that_challengers_confirm_is_vouched_for() {
     let found = figures(Builtin::VanDerPolSine, &Builtin::VanDerPolSine.random(40).with_noise(0.01));
     assert_eq!((found.missed(), found.false_alarms), (0, 0), "{found:#?}");
 }
+
+/// Its first law is a wrong one if it is vouched for too early: the record then held several laws until its end, and every switch was missed.
+#[test]
+fn a_motion_that_many_laws_explain_for_a_while_is_followed() {
+    let mut scenario = Builtin::VanDerPolSine.random(52_006).with_noise(0.03);
+    scenario.stages.truncate(3);
+    scenario.duration = scenario.stages[2].start + 12.0;
+    let found = figures(Builtin::VanDerPolSine, &scenario);
+    assert_eq!((found.missed(), found.false_alarms), (0, 0), "{found:#?}");
+}
+
+/// One coefficient after the other changes by a third or a tenth, before the law in between is known to a twentieth: two switches in a row
+/// were read as a drift, and what followed it was missed.
+#[test]
+fn small_switches_in_much_noise_are_no_drift() {
+    let mut scenario = Builtin::DuffingSine.random(11_006).with_noise(0.1);
+    for (index, (coefficient, factor)) in [(3, 1.0 / 1.5), (0, 1.1), (1, 1.2), (2, 1.5)].into_iter().enumerate() {
+        let before = scenario.stages[index].clone();
+        let stage = &mut scenario.stages[index + 1];
+        (stage.amplitude, stage.omega, stage.coefficients) = (before.amplitude, before.omega, before.coefficients);
+        stage.coefficients[coefficient] *= factor;
+    }
+    let found = figures(Builtin::DuffingSine, &scenario);
+    assert_eq!((found.missed(), found.false_alarms), (0, 0), "{found:#?}");
+}

@@ -319,3 +319,30 @@ fn beside(step: &Linearized, from: State, state: State) -> State {
     let (dq, dqd) = (state.q - from.q, state.qd - from.qd);
     State { q: step.state.q + a * dq + b * dqd, qd: step.state.qd + c * dq + d * dqd }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Half a radian from sample to sample: in one step of the integrator the motion would be lost.
+    #[test]
+    fn the_first_run_takes_steps_as_fine_as_the_second() {
+        let (omega, dt) = (50.0_f64, 0.01);
+        let terms = [Term::Inertia, Term::power(1, 0)];
+        let motion = Motion { terms: &terms, coefficients: &[1.0, omega * omega] };
+        let noise = Noise { sensor: [1e-8, 1e-8 * omega * omega], process: 1e-12 };
+        let at = |t: f64| [(omega * t).cos(), -omega * (omega * t).sin()];
+        let mut pass = Pass::new(1);
+        let mut squares = || {
+            pass.begin(Filter { state: State { q: 1.0, qd: 0.0 }, covariance: [1e-8, 0.0, 1e-8 * omega * omega] });
+            for k in 1..400 {
+                let measured = at(f64::from(k) * dt).map(Some);
+                let observation = Observation { dt, drive: Drive::Held(0.0), measured, unseen: 0.0 };
+                pass.step(&motion, &terms[1..], &noise, &observation);
+            }
+            pass.track.squares.iter().sum::<f64>()
+        };
+        let [first, second] = [squares(), squares()];
+        assert!(second < 10.0 && first < second + 10.0, "{first}, then {second}");
+    }
+}
