@@ -63,7 +63,8 @@ impl Tracker {
     /// How long a law takes to be known, and what it leaves unexplained then.
     fn get_acquainted(&mut self, output: &Output) {
         let length = self.stage.length(self.window.ready());
-        if length >= YOUNG {
+        // a law that explained its record and does not any more says nothing against it: the record has changed
+        if length >= YOUNG && (self.stage.explains || output.identified_time.is_none()) {
             self.explained = self.stage.explains;
         }
         if output.identified_time.is_none() {
