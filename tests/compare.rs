@@ -148,7 +148,7 @@ fn reversals_are_named(seed: u64) -> bool {
 fn hidden_coulomb_friction_is_located_around_velocity_reversals() {
     let first = seed();
     let missed: Vec<u64> = (first..first + 12).filter(|seed| !reversals_are_named(*seed)).collect();
-    assert!(missed.len() <= 4, "missed in seeds {missed:?}");
+    assert!(missed.len() <= 3, "missed in seeds {missed:?}");
 }
 
 #[test]
