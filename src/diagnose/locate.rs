@@ -18,10 +18,6 @@ const SIDE: usize = 6;
 /// Evidence that a place must have, nats.
 const EVIDENCE: f64 = 3.0;
 
-/// Share of the energy that a place must hold, and how many times its share of the time.
-const SHARE: f64 = 0.25;
-const CONTRAST: f64 = 1.3;
-
 /// Share of the evidence of the best place below which another is not worth saying.
 const WORTH: f64 = 0.15;
 
@@ -115,7 +111,7 @@ pub fn locate(left: &[Left], period: f64) -> Vec<Fail> {
         (0..=left.iter().map(|left| left.recording).max().unwrap_or(0)).filter_map(|r| setting.in_time(left, r)),
     );
     fails.extend(setting.in_frequency(left));
-    fails.retain(|fail| fail.evidence > EVIDENCE && fail.share > SHARE && fail.share > CONTRAST * fail.time_share);
+    fails.retain(|fail| fail.evidence > EVIDENCE);
     fails.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let worth = fails.first().map_or(0.0, |fail| WORTH * fail.evidence);
     fails.retain(|fail| fail.evidence >= worth);
@@ -156,7 +152,7 @@ impl Setting {
             bins.add(bin(&edges, place.t), excess(place), 1.0);
         }
         let bins = settled(&mut bins);
-        let peak = bins.widened(&bins.peak(1.0)?, LASTING);
+        let peak = Some(bins.widened(&bins.peak(1.0)?, LASTING)).filter(Peak::stands_out)?;
         let bounds = bounds(&edges, peak.from, peak.to);
         Some(Fail { recording: Some(recording), ..self.fail(Over::Time, &peak, bounds) })
     }
@@ -172,7 +168,7 @@ impl Setting {
         rows.iter_mut().for_each(|row| {
             settled(row);
         });
-        let best = rectangles().map(|range| (range, peak(&rows, range)));
+        let best = rectangles().map(|range| (range, peak(&rows, range))).filter(|(_, peak)| peak.stands_out());
         let best = best.max_by(|a, b| a.1.divergence.total_cmp(&b.1.divergence));
         let fail = best.map(|([from, to, low, high], peak)| Fail {
             velocity: bounds(&edges[1], low, high),

@@ -6,6 +6,10 @@
 /// Bins with less energy across which a region goes on.
 const BRIDGED: usize = 2;
 
+/// Share of the energy that a region must hold, and how many times its share of the baseline.
+const SHARE: f64 = 0.25;
+const CONTRAST: f64 = 1.3;
+
 /// Bins over one quantity: the energy in each, and what it is measured against.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bins {
@@ -28,6 +32,14 @@ pub struct Peak {
     pub baseline: f64,
     /// Evidence per independent place, nats, as far as it counts.
     pub divergence: f64,
+}
+
+impl Peak {
+    /// Whether it holds much of the energy, and much more of it than of the baseline. The widest region of much evidence may not, where one
+    /// within it does.
+    pub fn stands_out(&self) -> bool {
+        self.share > SHARE && self.share > CONTRAST * self.baseline
+    }
 }
 
 /// p ln(p/b) + (1 − p) ln((1 − p)/(1 − b)); 0 where the region holds no more than its share.
@@ -68,7 +80,7 @@ impl Bins {
             let counts = if from > 0 && to < count { closed } else { 1.0 };
             Peak { from, to, share, baseline, divergence: counts * divergence(share, baseline) }
         });
-        peaks.max_by(|a, b| a.divergence.total_cmp(&b.divergence)).filter(|peak| peak.divergence > 0.0)
+        peaks.filter(Peak::stands_out).max_by(|a, b| a.divergence.total_cmp(&b.divergence)).filter(|peak| peak.divergence > 0.0)
     }
 
     /// The region with the bins beside it that hold that part of its energy per baseline, and more of it than the rest does; its evidence stays.
