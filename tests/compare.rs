@@ -143,12 +143,11 @@ fn reversals_are_named(seed: u64) -> bool {
     upper.is_some_and(|upper| upper < 0.9 * speed) && lower.is_none_or(|lower| lower > -0.9 * speed)
 }
 
-/// In some four motions of a hundred another place holds more of the error, or none stands out.
 #[test]
 fn hidden_coulomb_friction_is_located_around_velocity_reversals() {
     let first = seed();
     let missed: Vec<u64> = (first..first + 12).filter(|seed| !reversals_are_named(*seed)).collect();
-    assert!(missed.len() <= 3, "missed in seeds {missed:?}");
+    assert!(missed.is_empty(), "missed in seeds {missed:?}");
 }
 
 #[test]
