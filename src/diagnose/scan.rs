@@ -80,7 +80,14 @@ impl Bins {
             let counts = if from > 0 && to < count { closed } else { 1.0 };
             Peak { from, to, share, baseline, divergence: counts * divergence(share, baseline) }
         });
-        peaks.filter(Peak::stands_out).max_by(|a, b| a.divergence.total_cmp(&b.divergence)).filter(|peak| peak.divergence > 0.0)
+        let best = peaks.filter(Peak::stands_out).max_by(|a, b| a.divergence.total_cmp(&b.divergence));
+        best.filter(|peak| peak.divergence > 0.0)
+    }
+
+    /// The bins from one to before another.
+    fn region(&self, from: usize, to: usize, divergence: f64) -> Peak {
+        let part = |values: &[f64]| values[from..to].iter().sum::<f64>() / values.iter().sum::<f64>();
+        Peak { from, to, share: part(&self.energy), baseline: part(&self.baseline), divergence }
     }
 
     /// The region with the bins beside it that hold that part of its energy per baseline, and more of it than the rest does; its evidence stays.
@@ -98,8 +105,7 @@ impl Bins {
         while let Some(bin) = (to..count.min(to + BRIDGED + 1)).rfind(lasts) {
             to = bin + 1;
         }
-        let (share, baseline) = ((energy[to] - energy[from]) / all, (baseline[to] - baseline[from]) / whole);
-        Peak { from, to, share, baseline, divergence: peak.divergence }
+        self.region(from, to, peak.divergence)
     }
 }
 
@@ -123,6 +129,13 @@ mod tests {
         let peak = bins.peak(1.0).unwrap();
         assert_eq!((peak.from, peak.to), (3, 5));
         assert!((peak.share - 0.8).abs() < 1e-12 && (peak.baseline - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_peak_is_sought_among_what_stands_out() {
+        let bins = Bins { energy: vec![0.40, 0.39, 0.21], baseline: vec![0.30, 0.32, 0.38] };
+        assert!(divergence(0.79, 0.62) > divergence(0.40, 0.30));
+        assert_eq!(bins.peak(1.0).map(|peak| (peak.from, peak.to)), Some((0, 1)));
     }
 
     #[test]

@@ -3,6 +3,9 @@
 use super::locate::{Bounds, Fail, Over};
 use crate::law::Units;
 
+/// A magnitude's region that begins at this part of its upper end begins at zero, but for where the plant stands still.
+const NEAR_ZERO: f64 = 0.1;
+
 /// Share of the motion's frequency by which a band may miss a multiple of it.
 const NEAR: f64 = 0.15;
 
@@ -31,7 +34,10 @@ impl Fail {
     }
 
     fn reason(&self, period: f64) -> String {
-        let Bounds { lower, upper } = self.bounds;
+        let Bounds { lower, upper } = match self.over {
+            Over::Speed | Over::Excursion | Over::Amplitude => self.bounds.from_zero(),
+            _ => self.bounds,
+        };
         let three = |low: &str, high: &str, middle: &str| match (lower, upper) {
             (None, Some(_)) => low.to_string(),
             (Some(_), None) => high.to_string(),
@@ -103,6 +109,11 @@ impl Over {
 }
 
 impl Bounds {
+    fn from_zero(self) -> Bounds {
+        let near_zero = |lower: &f64| self.upper.is_some_and(|upper| *lower < NEAR_ZERO * upper);
+        Bounds { lower: self.lower.filter(|lower| !near_zero(lower)), ..self }
+    }
+
     pub(super) fn text(self, over: Over, units: &Units) -> String {
         let (name, unit) = (over.symbol(), over.unit(units));
         match (self.lower.map(number), self.upper.map(number)) {
@@ -163,5 +174,9 @@ mod tests {
         let sentence = "63 % of the error lies within |q̇| < 0.0200 m/s (10 % of the time): around velocity reversals";
         assert_eq!(fail.sentence(None, 1.0, &written.units()), sentence);
         assert_eq!(fail.sentence(None, 1.0, &Units::default()), sentence.replace(" m/s", ""));
+        let but_for_rest = Bounds { lower: Some(0.001), ..fail.bounds };
+        assert_eq!(Fail { bounds: but_for_rest, ..fail }.reason(1.0), "around velocity reversals");
+        let medium = Bounds { lower: Some(0.01), ..fail.bounds };
+        assert_eq!(Fail { bounds: medium, ..fail }.reason(1.0), "at medium speed");
     }
 }
