@@ -33,6 +33,25 @@ impl Scales {
         (self.force, self.restoring, self.stiffness, self.count) = (0.0, 0.0, 0.0, 0.0);
     }
 
+    /// Remembers others as if they had been seen over so many samples.
+    pub fn remember(&mut self, others: &Scales, count: f64) {
+        self.clear();
+        if others.count > 0.0 {
+            self.merge(others, count / others.count);
+        }
+    }
+
+    /// Takes others, each sample of theirs counted `weight` times.
+    pub fn merge(&mut self, others: &Scales, weight: f64) {
+        for (sum, slopes) in self.slopes.iter_mut().zip(&others.slopes) {
+            *sum += weight * slopes;
+        }
+        self.force += weight * others.force;
+        self.restoring += weight * others.restoring;
+        self.stiffness += weight * others.stiffness;
+        self.count += weight * others.count;
+    }
+
     /// Takes the interval that the pass has just run over, under the coefficients `all`.
     pub fn add(&mut self, problem: &Problem, all: &[f64], pass: &Pass, observation: &Observation) {
         let motion = Motion { terms: &problem.terms, coefficients: all };

@@ -114,6 +114,7 @@ pub struct Stage {
     blocks: Blocks,
     known_noise: [f64; 2],
     known_noise_weight: f64,
+    known_scales: Scales,
 }
 
 /// Information from the first half of a long record, to be folded into the prior.
@@ -164,6 +165,7 @@ impl Stage {
             inertia_prior: None,
             known_noise: [0.0; 2],
             known_noise_weight: 0.0,
+            known_scales: Scales::new(n),
         }
     }
 
@@ -181,6 +183,7 @@ impl Stage {
         }
         self.known_noise = noise.sensor;
         self.known_noise_weight = prior.noise_weight;
+        self.known_scales.remember(prior.scales, prior.noise_weight);
         (self.passes, self.calm) = (0, 0);
         (self.stood, self.trial.length) = (false, 0);
         self.decrement = f64::INFINITY;
@@ -206,13 +209,22 @@ impl Stage {
     }
 
     /// Begins a stage at sample `start` with a law that is known: its coefficients, and its information beside the record's.
-    pub fn begin_known(&mut self, problem: &Problem, window: &Window, start: u64, law: &KnownLaw, noise: Noise) {
+    pub fn begin_known(
+        &mut self,
+        problem: &Problem,
+        window: &Window,
+        start: u64,
+        law: &KnownLaw,
+        noise: Noise,
+        scales: &Scales,
+    ) {
         let prior = Prior {
             centre: &law.coefficients,
             std: &law.spread,
             log_inertia: 1.0,
             structure: Some(&law.active),
             noise_weight: NOISE_MEMORY,
+            scales,
         };
         self.begin(problem, window, start, &law.coefficients, prior, noise);
         self.active.copy_from_slice(&law.active);
@@ -308,6 +320,7 @@ impl Stage {
             self.next_look = (LOOK_AGAIN * self.length(self.next) as f64) as u64;
         }
         std::mem::swap(&mut self.scales, &mut self.running_scales);
+        self.scales.merge(&self.known_scales, 1.0);
         self.passes += 1;
         self.information.clone_from_slices(&self.pass.information);
         self.information.merge(&self.prior);

@@ -16,6 +16,7 @@ use super::known::KnownLaws;
 use super::moving::Moving;
 use super::problem::Problem;
 use super::roughness::Roughness;
+use super::scales::Scales;
 use super::settings::Settings;
 use super::stage::{Stage, TRUSTED};
 use super::start::Start;
@@ -97,6 +98,8 @@ pub struct Tracker {
     next_noise_challenge: u64,
     spread: Vec<f64>,
     noise_weight: f64,
+    /// How large the motion was before the last switch.
+    scales: Scales,
     all_active: Vec<bool>,
     change: Vec<f64>,
     centre: Vec<f64>,
@@ -166,6 +169,7 @@ impl Tracker {
             next_noise_challenge: 0,
             spread: vec![1.0; n],
             noise_weight: 0.0,
+            scales: Scales::new(n),
             all_active: vec![true; n],
             change: vec![0.0; n],
             centre: vec![0.0; n],
@@ -306,7 +310,7 @@ impl Tracker {
         let trusted = self.stage.settled() && self.stage.stated_error() < TRUSTED && !mixed;
         let worth_monitoring = trusted && self.stage.stands();
         // the std of a law that several share is that of none of them
-        if trusted && (self.stage.is_vouched() || !self.is_unexplained()) {
+        if trusted && (self.stage.is_vouched() || self.stage.is_beyond_doubt() || self.recognised.is_some()) {
             self.set_spread(problem);
             self.publish(problem, settings, published, output);
         } else if !output.valid && !output.drifting {

@@ -21,6 +21,12 @@ const UNEXPLAINED: f64 = 5.0;
 /// Overdispersion that is no chance: with 16 blocks it is 1 ± 0.35 for one coefficient of the right law.
 const LASTING: f64 = 2.5;
 
+/// A law errs where a thirtieth of the process noise would make the record less likely by this, nats.
+const ERRS: f64 = 3.0;
+
+/// Sensor variance ÷ that of the law before from which on the record may hold an error that is none of the sensors'.
+const LOUDER: f64 = 1.3;
+
 /// Smallest sensor noise std, relative to the largest value measured: rounding and the integration's own error.
 const NOISE_FLOOR: f64 = 3e-7;
 
@@ -33,13 +39,22 @@ impl Stage {
         self.tell_error(track);
         let before = self.noise;
         self.follow_sensors(settings, track);
-        let factor = self.process_factor(track);
+        let gains = self.pass.rivals.each_ref().map(|rival| rival.log_likelihood() - track.log_likelihood());
+        let factor = self.process_factor(track, gains);
         let force = settings.noise_excitation / self.all[problem.inertia];
         let floor = force * force * settings.sample_time + self.unforgetting(problem, self.mean_interval(window));
+        self.explains &= gains[0] > -ERRS || self.noise.process < 2.0 * floor;
         self.noise.process = (self.noise.process * factor).max(floor);
         if self.has_come_to_rest(&before) {
             self.gain = self.gain.min(0.0);
         }
+    }
+
+    /// Whether nothing speaks against the law: no error that lasts, and none that the sensors seem to have since it began.
+    pub fn is_beyond_doubt(&self) -> bool {
+        let known = self.known_noise_weight > 0.0;
+        let louder = self.noise.sensor.iter().zip(self.known_noise).any(|(now, before)| *now > LOUDER * before);
+        self.explains && self.overdispersion == 1.0 && !(known && louder)
     }
 
     /// What the pass says of the law's own error.
@@ -70,10 +85,8 @@ impl Stage {
         }
     }
 
-    /// By which factor the process noise goes where the likelihood wants it.
-    fn process_factor(&mut self, track: &Track) -> f64 {
-        let likelihoods = self.pass.rivals.map(|rival| rival.log_likelihood());
-        let [less, more] = likelihoods.map(|likelihood| likelihood - track.log_likelihood());
+    /// By which factor the process noise goes where the likelihood wants it, which less or more of it would change by so many nats.
+    fn process_factor(&mut self, track: &Track, [less, more]: [f64; 2]) -> f64 {
         self.gain = less.max(more);
         self.likelihood = track.log_likelihood() / track.total().max(1.0);
         let ratio = match (less >= more, less > -0.1, more > 0.1) {

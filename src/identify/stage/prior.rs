@@ -1,5 +1,6 @@
 //! What is known of a stage's coefficients beside its record.
 
+use super::Scales;
 use serde::{Deserialize, Serialize};
 
 /// What is known of the free coefficients before any data.
@@ -13,8 +14,10 @@ pub struct Prior<'a> {
     pub log_inertia: f64,
     /// Which terms the law before had, after a switch.
     pub structure: Option<&'a [bool]>,
-    /// How many samples the sensors' variances are known from.
+    /// How many samples the sensors' variances and the motion's scales are known from.
     pub noise_weight: f64,
+    /// How large the motion was before; counts only as `noise_weight` says.
+    pub scales: &'a Scales,
 }
 
 /// The inertia's prior, normal in its logarithm: as the inertia goes to 0 the law becomes one of first order, whose

@@ -120,6 +120,7 @@ impl Tracker {
             log_inertia: INERTIA_SPREAD,
             structure,
             noise_weight: self.noise_weight,
+            scales: &self.scales,
         };
         challenger.begin(problem, window, since, &fit.coefficients, prior, noise);
         self.challenging = self.phase == Phase::Refining;
@@ -146,6 +147,7 @@ impl Tracker {
             log_inertia: INERTIA_SPREAD,
             structure: (self.noise_weight > 0.0).then_some(self.live.active.as_slice()),
             noise_weight: 0.0,
+            scales: &self.scales,
         };
         self.challenger.begin(problem, &self.window, self.stage.start, &self.stage.coefficients, prior, noise);
         self.challenging = true;

@@ -138,7 +138,7 @@ impl Tracker {
         (self.recognised, self.confirmed) = (Some(place), false);
         self.end_lingering();
         let law = &self.known.laws()[place];
-        self.stage.begin_known(problem, &self.window, self.stage.start, law, self.trials.noise(place));
+        self.stage.begin_known(problem, &self.window, self.stage.start, law, self.trials.noise(place), &self.scales);
         (self.phase, self.challenging) = (Phase::Refining, false);
         self.live.running = false;
         self.spread.copy_from_slice(&law.spread);

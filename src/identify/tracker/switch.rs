@@ -87,6 +87,7 @@ impl Tracker {
         }
         self.keep_law(problem, output);
         self.set_spread(problem);
+        self.scales.remember(&self.stage.scales, 1.0);
         if output.valid {
             let early = (EARLIER * distance.unwrap_or(0.0) / self.last_interval()) as u64;
             self.try_drift(problem, [instant.saturating_sub(early), instant, start]);
@@ -133,6 +134,7 @@ impl Tracker {
             log_inertia: INERTIA_SPREAD,
             structure: Some(&self.live.active),
             noise_weight: self.noise_weight,
+            scales: &self.scales,
         };
         self.stage.begin(problem, &self.window, start, &self.change, prior, noise);
     }
