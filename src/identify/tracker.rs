@@ -1,6 +1,7 @@
 //! Our method: acquire → track → suspect → re-identify.
 
 mod contest;
+mod doubt;
 mod drifting;
 mod live;
 mod loudness;
@@ -24,8 +25,9 @@ use super::trials::Trials;
 use super::usual::Usual;
 use super::window::Window;
 use crate::evidence::{Bank, Law};
+use doubt::Doubt;
 use live::Live;
-use recognition::Lingering;
+use recognition::{Lingering, Sight};
 use serde::{Deserialize, Serialize};
 
 /// Hypotheses of a switch that are kept.
@@ -109,10 +111,12 @@ pub struct Tracker {
     recognised: Option<usize>,
     /// Whether that law's trial has confirmed it.
     confirmed: bool,
+    /// What speaks against it until then.
+    doubt: Doubt,
     /// Whether a recognised law was taken back in this step.
     retracted: bool,
-    /// Place of the known law that is to be recognised in this step.
-    in_sight: Option<usize>,
+    /// The known law that is to be recognised in this step.
+    in_sight: Option<Sight>,
     lingering: Option<Lingering>,
     /// Start of a record on which the known laws are to be tried as soon as it has begun.
     trial_due: Option<u64>,
@@ -177,6 +181,7 @@ impl Tracker {
             trials: Trials::new(problem),
             recognised: None,
             confirmed: false,
+            doubt: Doubt::default(),
             retracted: false,
             in_sight: None,
             lingering: None,

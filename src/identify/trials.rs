@@ -39,15 +39,22 @@ struct Trial {
     scale: f64,
 }
 
-/// The law that stands out.
+/// What the record says on one known law against the others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verdict {
     /// Its place among the known laws.
     pub place: usize,
     /// Log-evidence against any law, nats.
     pub against_any: f64,
-    /// Log-evidence against the next best known law, nats.
-    pub against_known: f64,
+    /// The place of the best other known law, and the log-evidence against it, nats.
+    pub rival: Option<(usize, f64)>,
+}
+
+impl Verdict {
+    /// Log-evidence against the best other known law, nats.
+    pub fn against_known(&self) -> f64 {
+        self.rival.map_or(f64::INFINITY, |(_, against)| against)
+    }
 }
 
 /// Every known law's trial.
@@ -151,12 +158,23 @@ impl Trials {
         self.verdict(count)
     }
 
+    /// On the law that stands out.
     fn verdict(&self, count: usize) -> Option<Verdict> {
-        let left = || self.trials[..count].iter().enumerate().filter(|(_, trial)| !trial.out);
-        let (place, best) = left().max_by(|a, b| a.1.evidence.total_cmp(&b.1.evidence))?;
-        let others = left().filter(|(other, _)| *other != place).map(|(_, trial)| trial.evidence);
-        let next = others.fold(f64::NEG_INFINITY, f64::max);
-        Some(Verdict { place, against_any: best.against_any, against_known: (best.evidence - next) / best.scale })
+        let (place, _) = self.best(count, None)?;
+        self.verdict_on(place, count)
+    }
+
+    fn verdict_on(&self, place: usize, count: usize) -> Option<Verdict> {
+        let own = self.trials.get(place).filter(|trial| !trial.out)?;
+        let rival = self.best(count, Some(place)).map(|(rival, best)| (rival, (own.evidence - best) / own.scale));
+        Some(Verdict { place, against_any: own.against_any, rival })
+    }
+
+    /// The place and the evidence of the likeliest law but one.
+    fn best(&self, count: usize, but: Option<usize>) -> Option<(usize, f64)> {
+        let left = self.trials[..count].iter().enumerate();
+        let left = left.filter(|(place, trial)| !trial.out && Some(*place) != but);
+        left.map(|(place, trial)| (place, trial.evidence)).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Gives away the run of the law at `place` for another one's room; it begins anew.
@@ -165,25 +183,14 @@ impl Trials {
         self.trials[place].begin(problem, window, self.start);
     }
 
-    /// Evidence of the law at `place` against any other, known or not, as last weighed, nats; −∞ where the record rules it out.
-    pub fn against_rest(&self, place: usize, known: &KnownLaws) -> f64 {
-        let own = &self.trials[place];
-        let others = self.trials[..known.laws().len()].iter().filter(|trial| !trial.out);
-        let best = others.map(|trial| trial.evidence).fold(f64::NEG_INFINITY, f64::max);
-        match own.out {
-            true => f64::NEG_INFINITY,
-            false => own.against_any.min((own.evidence - best) / own.scale),
-        }
+    /// What the record says on the law at `place`, as last weighed; nothing where it rules it out.
+    pub fn on(&self, place: usize, known: &KnownLaws) -> Option<Verdict> {
+        self.verdict_on(place, known.laws().len())
     }
 
     /// The law at `place` is none that the record may have.
     pub fn rule_out(&mut self, place: usize) {
         self.trials[place].out = true;
-    }
-
-    /// Whether the record rules the law at `place` out.
-    pub fn is_out(&self, place: usize) -> bool {
-        self.trials[place].out
     }
 
     /// The noise levels under which the law at `place` is on trial.

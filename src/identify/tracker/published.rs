@@ -97,9 +97,10 @@ impl Tracker {
     fn publish_free(&self, free: usize, coefficient: &mut Coefficient) {
         let std = self.stage.std(free);
         if !self.stage.active[free] {
-            (coefficient.value, coefficient.std) = (0.0, Some(0.0));
+            (coefficient.value, coefficient.std) = (0.0, Some(self.recognition_std(free, 0.0)));
         } else if std < self.spread[free] {
-            (coefficient.value, coefficient.std) = (self.stage.coefficients[free], Some(std));
+            let value = self.stage.coefficients[free];
+            (coefficient.value, coefficient.std) = (value, Some(std.hypot(self.recognition_std(free, value))));
         } else {
             coefficient.std = None;
         }

@@ -3,6 +3,7 @@
 //! At the alarm the bank of hypotheses has seen the switch already, with the state carried on from before: each known law is weighed
 //! by it at once. Where that does not decide, the laws go on trial over the record since the stage's start.
 
+use super::doubt::Doubt;
 use super::{Phase, Tracker, alarm_level};
 use crate::identify::identifier::{Coefficient, Output, Status};
 use crate::identify::known::{KnownLaw, ROOM, Weighed};
@@ -10,6 +11,7 @@ use crate::identify::problem::Problem;
 use crate::identify::saved::{SavedLaw, SavedLaws, SavedLawsError};
 use crate::identify::settings::Settings;
 use crate::identify::stage::VOUCHED;
+use crate::identify::trials::Verdict;
 use serde::{Deserialize, Serialize};
 
 /// Evidence against any other law that makes a known one recognised in the step of the alarm, in alarm levels: it is more likely
@@ -35,6 +37,19 @@ pub(super) struct Lingering {
     until: u64,
     /// Number of the law that was left.
     number: Option<u32>,
+}
+
+/// A known law that stands out, and what speaks against it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Sight {
+    place: usize,
+    doubt: Doubt,
+}
+
+impl From<Verdict> for Sight {
+    fn from(verdict: Verdict) -> Sight {
+        Sight { place: verdict.place, doubt: Doubt::of(verdict.against_any, verdict.rival) }
+    }
 }
 
 impl Tracker {
@@ -79,21 +94,24 @@ impl Tracker {
     }
 
     /// The place of the known law that the bank's hypotheses speak for, other than the one of that number.
-    fn in_sight(&mut self, problem: &Problem, settings: &Settings, number: Option<u32>) -> Option<usize> {
-        let (mut best, mut next) = ((f64::NEG_INFINITY, 0.0, None), f64::NEG_INFINITY);
+    fn in_sight(&mut self, problem: &Problem, settings: &Settings, number: Option<u32>) -> Option<Sight> {
+        let nobody = (f64::NEG_INFINITY, 0.0, None);
+        let (mut best, mut next) = (nobody, nobody);
         for place in 0..self.known.laws().len() {
             if Some(self.known.laws()[place].number) == number {
                 continue;
             }
             let Weighed { known, any } = self.known.at_a_switch(place, problem, &self.live.all, &mut self.bank);
             match known > best.0 {
-                true => (best, next) = ((known, any, Some(place)), best.0),
-                false => next = next.max(known),
+                true => (best, next) = ((known, any, Some(place)), best),
+                false if known > next.0 => next = (known, any, Some(place)),
+                false => {}
             }
         }
         let (known, any, place) = best;
         let level = alarm_level(settings);
-        place.filter(|_| known - any > AT_ALARM * level && known - next > AMONG_KNOWN * level)
+        let place = place.filter(|_| known - any > AT_ALARM * level && known - next.0 > AMONG_KNOWN * level)?;
+        Some(Sight { place, doubt: Doubt::of(known - any, next.2.map(|rival| (rival, known - next.0))) })
     }
 
     /// Carries the trial of the known laws on; returns how many samples it ran, of [`super::BUDGET`] at most.
@@ -105,23 +123,28 @@ impl Tracker {
         output: &mut Output,
     ) -> usize {
         self.weigh_after_alarm(problem, settings);
-        if let Some(place) = self.in_sight.take() {
-            self.recognise(problem, place, published, output);
+        if let Some(sight) = self.in_sight.take() {
+            self.recognise(problem, sight, published, output);
         }
         let Tracker { trials, known, window, .. } = self;
         let used = trials.advance(known, problem, window, self.recognised, super::BUDGET[1]);
         self.run_recognised(problem);
         let verdict = self.trials.weigh(&mut self.known, &self.window);
         let level = alarm_level(settings);
-        let found = verdict
-            .filter(|verdict| verdict.against_any > ON_TRIAL * level && verdict.against_known > AMONG_KNOWN * level);
+        let stands_out =
+            |verdict: &Verdict| verdict.against_any > ON_TRIAL * level && verdict.against_known() > AMONG_KNOWN * level;
+        let found = verdict.filter(stands_out).map(Sight::from);
         match (self.recognised, found) {
             (Some(place), Some(found)) if place == found.place => self.confirmed = true,
             (Some(place), _) if self.is_contradicted(place, verdict.is_some(), level) => {
                 self.withdraw(problem, self.stage.start, output);
-                self.in_sight = found.map(|found| found.place);
+                self.in_sight = found;
             }
-            (None, Some(found)) if !output.valid => self.recognise(problem, found.place, published, output),
+            (Some(place), _) if verdict.is_some() => {
+                self.doubt =
+                    self.trials.on(place, &self.known).map_or(self.doubt, |verdict| Sight::from(verdict).doubt);
+            }
+            (None, Some(found)) if !output.valid => self.recognise(problem, found, published, output),
             _ => {}
         }
         used
@@ -129,13 +152,14 @@ impl Tracker {
 
     /// Whether the record rules the recognised law out, or what has just been weighed speaks for another one.
     fn is_contradicted(&self, place: usize, weighed: bool, level: f64) -> bool {
-        let against = || self.trials.against_rest(place, &self.known) < -CONTRADICTED * level;
-        self.trials.is_running() && (self.trials.is_out(place) || weighed && against())
+        let against = |verdict: Verdict| verdict.against_any.min(verdict.against_known()) < -CONTRADICTED * level;
+        self.trials.is_running() && self.trials.on(place, &self.known).is_none_or(|verdict| weighed && against(verdict))
     }
 
-    /// The law at `place` is the law in use from now on, until the stage's own estimate takes over from it.
-    fn recognise(&mut self, problem: &Problem, place: usize, published: &mut [Coefficient], output: &mut Output) {
-        (self.recognised, self.confirmed) = (Some(place), false);
+    /// The law in sight is the law in use from now on, until the stage's own estimate takes over from it.
+    fn recognise(&mut self, problem: &Problem, sight: Sight, published: &mut [Coefficient], output: &mut Output) {
+        let Sight { place, doubt } = sight;
+        (self.recognised, self.confirmed, self.doubt) = (Some(place), false, doubt);
         self.end_lingering();
         let law = &self.known.laws()[place];
         self.stage.begin_known(problem, &self.window, self.stage.start, law, self.trials.noise(place), &self.scales);
@@ -144,7 +168,7 @@ impl Tracker {
         self.spread.copy_from_slice(&law.spread);
         self.bank.set_spread(&self.spread);
         self.experience = law.samples;
-        publish_known(problem, law, published);
+        self.publish_known(problem, law, published);
         (output.law_number, output.recognised) = (Some(law.number), true);
         output.valid = true;
         output.identified_time = Some(self.now());
@@ -281,14 +305,23 @@ impl Tracker {
             self.trials.begin(&self.known, problem, &self.window, start, given);
         }
     }
-}
 
-fn publish_known(problem: &Problem, law: &KnownLaw, published: &mut [Coefficient]) {
-    for (coefficient, known) in published.iter_mut().zip(&problem.known) {
-        (coefficient.value, coefficient.std) = (*known, Some(0.0));
+    fn publish_known(&self, problem: &Problem, law: &KnownLaw, published: &mut [Coefficient]) {
+        for (coefficient, known) in published.iter_mut().zip(&problem.known) {
+            (coefficient.value, coefficient.std) = (*known, Some(0.0));
+        }
+        for (free, index) in problem.free.iter().enumerate() {
+            let (coefficient, value) = (&mut published[*index], law.coefficients[free]);
+            let std = law.variance(free).sqrt().hypot(self.recognition_std(free, value));
+            (coefficient.value, coefficient.std) = (value, Some(std));
+        }
     }
-    for (free, index) in problem.free.iter().enumerate() {
-        let coefficient = &mut published[*index];
-        (coefficient.value, coefficient.std) = (law.coefficients[free], Some(law.variance(free).sqrt()));
+
+    /// What a free coefficient's std owes to the doubt whether the law was recognised rightly.
+    pub(super) fn recognition_std(&self, free: usize, value: f64) -> f64 {
+        match self.is_unconfirmed() && self.trials.is_running() {
+            true => self.doubt.variance(self.known.laws(), free, value, self.spread[free]).sqrt(),
+            false => 0.0,
+        }
     }
 }
