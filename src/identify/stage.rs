@@ -6,6 +6,7 @@
 //! coefficients; the likelihood then takes the process noise down, pass by pass, to where the data want it, and the fit
 //! becomes the maximum likelihood of the trajectory without passing through its wrong minima.
 
+mod constancy;
 mod first_state;
 mod levels;
 mod prior;
@@ -21,6 +22,7 @@ use super::structure::Structure;
 use super::window::Window;
 use crate::evidence::{Information, Lack, Missing, Noise, Pass, Solution};
 use crate::law::Motion;
+use constancy::Constancy;
 pub(super) use first_state::first_state;
 use prior::InertiaPrior;
 pub use prior::Prior;
@@ -115,6 +117,7 @@ pub struct Stage {
     known_noise: [f64; 2],
     known_noise_weight: f64,
     known_scales: Scales,
+    constancy: Constancy,
 }
 
 /// Information from the first half of a long record, to be folded into the prior.
@@ -166,6 +169,7 @@ impl Stage {
             known_noise: [0.0; 2],
             known_noise_weight: 0.0,
             known_scales: Scales::new(n),
+            constancy: Constancy::new(n),
         }
     }
 
@@ -186,6 +190,7 @@ impl Stage {
         self.known_scales.remember(prior.scales, prior.noise_weight);
         (self.passes, self.calm) = (0, 0);
         (self.stood, self.trial.length) = (false, 0);
+        self.constancy.clear();
         self.decrement = f64::INFINITY;
         self.closed_at = start;
         self.prior.clear();
@@ -352,6 +357,7 @@ impl Stage {
         self.follow_noise(problem, settings, &track, window);
         self.calm = if self.is_calm() { self.calm + 1 } else { 0 };
         self.confirm();
+        self.compare();
         self.foretell();
         self.fold(window);
     }

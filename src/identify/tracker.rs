@@ -314,8 +314,7 @@ impl Tracker {
         let mixed = self.is_mixed();
         let trusted = self.stage.settled() && self.stage.stated_error() < TRUSTED && !mixed;
         let worth_monitoring = trusted && self.stage.stands();
-        // the std of a law that several share is that of none of them
-        if trusted && (self.stage.is_vouched() || self.stage.is_beyond_doubt() || self.recognised.is_some()) {
+        if trusted {
             self.set_spread(problem);
             self.publish(problem, settings, published, output);
         } else if !output.valid && !output.drifting {

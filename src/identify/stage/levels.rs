@@ -50,11 +50,12 @@ impl Stage {
         }
     }
 
-    /// Whether nothing speaks against the law: no error that lasts, and none that the sensors seem to have since it began.
+    /// Whether nothing speaks against the law: no error that lasts, none that the sensors seem to have since it began, no estimate that a longer
+    /// record contradicted.
     pub fn is_beyond_doubt(&self) -> bool {
         let known = self.known_noise_weight > 0.0;
         let louder = self.noise.sensor.iter().zip(self.known_noise).any(|(now, before)| *now > LOUDER * before);
-        self.explains && self.overdispersion == 1.0 && !(known && louder)
+        self.explains && self.overdispersion == 1.0 && !(known && louder) && !self.constancy.broken
     }
 
     /// What the pass says of the law's own error.

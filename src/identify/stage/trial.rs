@@ -63,6 +63,17 @@ impl Stage {
         self.trial.all.copy_from_slice(&self.all);
     }
 
+    /// Compares the estimate with the one before, once both are worth telling.
+    pub(super) fn compare(&mut self) {
+        if !(self.settled() && self.explains && self.stated_error() < TRUSTED) {
+            return;
+        }
+        for free in 0..self.active.len() {
+            let std = if self.active[free] { self.std(free) } else { f64::INFINITY };
+            self.constancy.take(free, self.coefficients[free], std);
+        }
+    }
+
     /// How long the record has to get for the law to be known.
     pub(super) fn foretell(&mut self) {
         let squares: f64 = self.all.iter().map(|value| value * value).sum();

@@ -37,7 +37,9 @@ mod tests {
     use super::*;
 
     fn law(value: f64) -> KnownLaw {
-        KnownLaw { coefficients: vec![value], ..KnownLaw::none(1) }
+        let mut law = KnownLaw::none(1);
+        law.coefficients[0] = value;
+        law
     }
 
     #[test]

@@ -38,6 +38,11 @@ impl Tracker {
                 Some(free) => self.publish_free(free, coefficient),
             }
         }
+        // of a law that does not explain its record, or that several share, the std is that of none
+        if !(vouched || self.stage.is_beyond_doubt() || self.recognised.is_some()) {
+            problem.free.iter().for_each(|index| published[*index].std = None);
+            return;
+        }
         self.noise_known = true;
         let std = |channel: usize| {
             let lately = self.live.loudness.lately(channel).filter(|_| self.live.running);
