@@ -6,8 +6,11 @@ use serde::{Deserialize, Serialize};
 /// A reading this many stds off is far off: by chance one in five hundred million is.
 const FAR: f64 = 6.0;
 
-/// Readings far off in a row that are no outliers.
+/// Readings far off that are no outliers …
 const LASTS: u32 = 3;
+
+/// … among so many: another inertia under a rough excitation leaves residuals of either sign, large and small.
+const AMONG: u32 = 5;
 
 /// Where a motion leaves the law each residual is larger than the one before, by half at least.
 const GROWS: f64 = 1.5;
@@ -18,6 +21,7 @@ const BEYOND: f64 = 30.0;
 /// What a channel's last readings were like.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Guard {
+    /// Which of the last readings were far off, the latest in the lowest bit.
     far: [u32; 2],
     last: [f64; 2],
 }
@@ -27,15 +31,16 @@ impl Guard {
     #[inline]
     pub fn admits(&mut self, channel: Channel, residual: f64, variance: f64) -> bool {
         let index = channel as usize;
-        if residual * residual <= FAR * FAR * variance {
-            self.far[index] = 0;
+        let far = residual * residual > FAR * FAR * variance;
+        let row = self.far[index] & 1 == 1;
+        self.far[index] = (self.far[index] << 1 | u32::from(far)) & ((1 << AMONG) - 1);
+        if !far {
             return true;
         }
-        self.far[index] += 1;
         let last = std::mem::replace(&mut self.last[index], residual);
         let beyond = |residual: f64| residual * residual > BEYOND * BEYOND * variance;
         let leaves = residual / last > GROWS || (beyond(residual) && beyond(last));
-        (self.far[index] > 1 && leaves) || self.far[index] >= LASTS
+        (row && leaves) || self.far[index].count_ones() >= LASTS
     }
 }
 
@@ -50,13 +55,18 @@ mod tests {
 
     #[test]
     fn outliers_do_not_count_alone_or_in_pairs() {
-        assert_eq!(admitted(&[1.0, 20.0, -2.0, 20.0, 19.0, 0.5]), [true, false, true, false, false, true]);
+        assert_eq!(admitted(&[1.0, 20.0, 19.0, -2.0, 0.5, 0.5, 20.0]), [true, false, false, true, true, true, false]);
     }
 
     #[test]
     fn a_motion_that_leaves_the_law_counts_from_its_second_reading_on() {
         assert_eq!(admitted(&[1.0, 20.0, 45.0, 70.0]), [true, false, true, true]);
         assert_eq!(admitted(&[1.0, 800.0, -300.0]), [true, false, true]);
+    }
+
+    #[test]
+    fn the_third_of_five_counts() {
+        assert_eq!(admitted(&[-7.0, 9.0, 3.0, 8.0, 2.0, 1.0, -9.0]), [false, false, true, true, true, true, false]);
     }
 
     #[test]
