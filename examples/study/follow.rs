@@ -214,4 +214,19 @@ mod tests {
         assert!((run.stages[0].wrong - vouched).abs() < 1e-3 && run.stages[0].worst >= RIGHT, "{run:?}");
         assert!(run.stages[0].normalised.iter().any(|z| z.abs() > 10.0));
     }
+
+    /// Its second switch is taken for a return of the first law, for nine samples in which the excitation all but vanishes: a prior from the
+    /// forces of those alone held the new law to the old one for six seconds.
+    #[test]
+    fn a_law_that_was_taken_for_another_leaves_no_trace() {
+        let plant = Plant::VanDerPol;
+        let scenario = plant.rapid(plant.period(), 3, 0.01, 510);
+        let mut identifier = Identifier::new(&plant.model(), Settings::default()).unwrap();
+        let run = follow(&mut identifier, &scenario, &record(&scenario).unwrap()).unwrap();
+        for stage in &run.stages {
+            assert!(stage.error < RIGHT && stage.told == 1.0, "{stage:?}");
+            assert!(stage.stated.iter().all(|z| z.abs() < 6.0), "{stage:?}");
+            assert!(stage.normalised.iter().all(|z| z.abs() < 6.0), "{stage:?}");
+        }
+    }
 }

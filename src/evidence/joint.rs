@@ -243,3 +243,83 @@ fn scale(unknowns: &Unknowns, all: &[f64], mass: f64, slopes: &[f64], scaled: &m
         scaled[index] = -mass * all.zip(slopes).map(|(value, slope)| value * slope).sum::<f64>();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::Drive;
+
+    const TERMS: [Term; 3] = [Term::Inertia, Term::power(0, 1), Term::power(1, 0)];
+    const TRUTH: [f64; 3] = [2.0, 1.5, 80.0];
+    const DT: f64 = 0.005;
+    const VARIANCES: [f64; 2] = [1e-8, 1e-6];
+
+    fn unknowns() -> Unknowns<'static> {
+        Unknowns { terms: &TERMS, free: &[0, 1, 2], free_terms: &TERMS, inertia: 0, free_inertia: Some(0) }
+    }
+
+    /// A filter that begins with coefficients a tenth off and is told that they may be, after `seconds` of a driven motion seen without noise.
+    fn followed(seconds: f64, wander: f64) -> Joint {
+        let mut joint = Joint::new(3, 3);
+        let all = TRUTH.map(|value| 1.1 * value);
+        let start = Start { all: &all, reach: &TRUTH, width: 0.2, state: State::default(), variances: VARIANCES };
+        joint.begin(&unknowns(), &start);
+        let (motion, mut state) = (Motion { terms: &TERMS, coefficients: &TRUTH }, State::default());
+        for k in 0..(seconds / DT) as usize {
+            let force = 30.0 * (5.0 * k as f64 * DT).sin() + 10.0;
+            state = motion.step_linear(state, DT, force, force);
+            let observation = Observation {
+                dt: DT,
+                drive: Drive::Held(force),
+                measured: [Some(state.q), Some(state.qd)],
+                unseen: 0.0,
+            };
+            joint.wander(&unknowns(), &TRUTH, [wander; 2]);
+            joint.advance(&unknowns(), 1e-10, 2, &observation);
+            joint.update(Channel::Q, state.q, VARIANCES[0]);
+            joint.update(Channel::Qd, state.qd, VARIANCES[1]);
+        }
+        joint
+    }
+
+    #[test]
+    fn coefficients_are_found_within_their_std() {
+        let joint = followed(3.0, 0.0);
+        assert!(joint.is_sound(&unknowns()));
+        for (free, truth) in TRUTH.iter().enumerate() {
+            let (value, variance) = joint.coefficient(&unknowns(), free);
+            assert!(
+                (value - truth).abs() < 3.0 * variance.sqrt() && variance.sqrt() < 0.01 * truth,
+                "{free}: {value} ± {}",
+                variance.sqrt()
+            );
+        }
+    }
+
+    #[test]
+    fn what_wanders_is_known_less() {
+        let [still, wandering] = [0.0, 0.01].map(|wander| followed(3.0, wander).coefficient(&unknowns(), 2).1);
+        assert!(wandering > 10.0 * still, "{still} and {wandering}");
+    }
+
+    /// θ = κ ÷ b: the variance to first order is that of the tangent, whatever moves κ and b together.
+    #[test]
+    fn an_inertia_that_wanders_takes_no_other_coefficient_with_it() {
+        let mut joint = Joint::new(3, 3);
+        let start = Start { all: &TRUTH, reach: &TRUTH, width: 0.0, state: State::default(), variances: VARIANCES };
+        joint.begin(&unknowns(), &start);
+        joint.wander(&unknowns(), &TRUTH, [0.0, 0.1]);
+        let variances = [0, 1, 2].map(|free| joint.coefficient(&unknowns(), free).1);
+        assert!((variances[0].sqrt() - 0.1 * TRUTH[0]).abs() < 1e-12, "{variances:?}");
+        assert!(variances[1].abs() < 1e-15 && variances[2].abs() < 1e-12, "{variances:?}");
+    }
+
+    #[test]
+    fn the_covariance_stays_symmetric() {
+        let (joint, size) = (followed(1.0, 0.01), 5);
+        for (row, column) in (0..size).flat_map(|row| (0..row).map(move |column| (row, column))) {
+            let [here, there] = [row * size + column, column * size + row].map(|place| joint.covariance[place]);
+            assert!((here - there).abs() <= 1e-9 * here.abs().max(1e-12), "{row}, {column}: {here} and {there}");
+        }
+    }
+}

@@ -89,3 +89,22 @@ impl Scales {
         (self.slopes[index] / self.count.max(1.0)).sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_short_record_counts_for_what_it_is_beside_what_was_before() {
+        let before = Scales { slopes: vec![4e4], force: 9e4, restoring: 1e4, stiffness: 1e6, count: 1e4 };
+        let mut scales = Scales { slopes: vec![0.0], force: 1.0, restoring: 0.0, stiffness: 1e3, count: 10.0 };
+        let mut known = Scales::new(1);
+        known.remember(&before, 490.0);
+        scales.merge(&known, 1.0);
+        assert!((scales.slope(0) - (4.0 * 0.98_f64).sqrt()).abs() < 1e-12);
+        assert!((scales.restoring_acceleration() - 0.98_f64.sqrt()).abs() < 1e-12);
+        assert!((scales.natural_time() - 0.1).abs() < 1e-12);
+        known.remember(&Scales::new(1), 490.0);
+        assert_eq!(known, Scales::new(1));
+    }
+}

@@ -112,15 +112,16 @@ fn remove(directory: &Path) -> Result<(), Error> {
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;
-    use std::os::unix::fs::PermissionsExt;
 
     /// A directory of the test's own, with a shell script in it that stands in for Python.
     fn stand_in(name: &str, script: &str) -> (PathBuf, String) {
         let directory = std::env::temp_dir().join(format!("switchid-xtask-{name}-{}", std::process::id()));
         std::fs::create_dir_all(directory.join("environment/bin")).unwrap();
         let program = directory.join("python");
-        std::fs::write(&program, format!("#!/bin/sh\n{script}\n")).unwrap();
-        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+        // written by a process of its own: what another test starts meanwhile would inherit the open file, and keep it from being run
+        let write = r#"printf '#!/bin/sh\n%s\n' "$2" > "$1" && chmod 755 "$1""#;
+        let written = Command::new("/bin/sh").args(["-c", write, "sh"]).arg(&program).arg(script).status().unwrap();
+        assert!(written.success());
         std::fs::write(directory.join("requirements.txt"), "fmpy==0.3.32\n").unwrap();
         (directory, program.display().to_string())
     }
