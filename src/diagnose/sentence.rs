@@ -35,7 +35,7 @@ impl Fail {
 
     fn reason(&self, period: f64) -> String {
         let Bounds { lower, upper } = match self.over {
-            Over::Speed | Over::Excursion | Over::Amplitude => self.bounds.from_zero(),
+            Over::Speed | Over::Excursion | Over::Amplitude => self.bounds.reaching_zero(),
             _ => self.bounds,
         };
         let three = |low: &str, high: &str, middle: &str| match (lower, upper) {
@@ -109,7 +109,7 @@ impl Over {
 }
 
 impl Bounds {
-    fn from_zero(self) -> Bounds {
+    fn reaching_zero(self) -> Bounds {
         let near_zero = |lower: &f64| self.upper.is_some_and(|upper| *lower < NEAR_ZERO * upper);
         Bounds { lower: self.lower.filter(|lower| !near_zero(lower)), ..self }
     }
