@@ -301,7 +301,7 @@ impl Tracker {
     }
 
     fn refine(&mut self, problem: &Problem, settings: &Settings, published: &mut [Coefficient], output: &mut Output) {
-        let young = !output.valid || !self.stage.settled() || self.stage.length(self.window.ready()) < YOUNG;
+        let young = !output.valid || self.stage.length(self.window.ready()) < YOUNG;
         let budget = BUDGET[usize::from(young)];
         let suspense = output.status == Status::SwitchSuspected && self.window.end() < self.suspected + SUSPENSE;
         if suspense || !self.stage.refine(problem, settings, &self.window, budget) {
