@@ -42,7 +42,8 @@ const OLDEST: f64 = 8.0;
 /// Hypotheses looked at in a step.
 const LOOKS: usize = 3;
 
-/// Samples of refinement in a step, while tracking and while the law is not settled.
+/// Samples of refinement in a step, while tracking and while the fit has yet to converge: what a law that does not explain its record
+/// still gains by more passes is no better law.
 const BUDGET: [usize; 2] = [6, 40];
 
 /// A stage with fewer samples than this is refined at the faster pace: its law is not yet linear within its std.
@@ -302,7 +303,8 @@ impl Tracker {
 
     fn refine(&mut self, problem: &Problem, settings: &Settings, published: &mut [Coefficient], output: &mut Output) {
         let young = !output.valid || self.stage.length(self.window.ready()) < YOUNG;
-        let budget = BUDGET[usize::from(young)];
+        let converging = self.stage.explains && !self.stage.settled();
+        let budget = BUDGET[usize::from(young || converging)];
         let suspense = output.status == Status::SwitchSuspected && self.window.end() < self.suspected + SUSPENSE;
         if suspense || !self.stage.refine(problem, settings, &self.window, budget) {
             return;
