@@ -44,7 +44,7 @@ pub struct Filter {
 }
 
 /// What a measurement says that the filter did not expect.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Innovation {
     /// Measured minus expected.
     pub residual: f64,

@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 /// Ratios by which the process noise of the two rival filters differs from the one in use, unless told otherwise.
 pub const RIVALS: [f64; 2] = [1.0 / 30.0, 6.0];
 
+/// A reading that may be an outlier speaks for a switch as one this many stds off does.
+const DOUBTFUL: f64 = 3.0;
+
 /// Most parts into which an interval between two samples is cut.
 const MAX_PARTS: usize = 8;
 
@@ -136,6 +139,8 @@ pub struct Pass {
     pub sensitivity: Vec<[f64; 2]>,
     /// What the last interval between samples did to small changes.
     pub map: IntervalMap,
+    /// What readings that do not count would say of another law, by channel: as much as one [`DOUBTFUL`] stds off.
+    pub set_aside: [Option<Innovation>; 2],
     /// Parts into which an interval is cut: what the fastest motion asks for, of the run before at first, then of this one too.
     pub parts: usize,
     rival_filters: [Filter; 2],
@@ -168,6 +173,7 @@ impl Pass {
             information: Information::none(n),
             sensitivity: vec![[0.0; 2]; n],
             map: IntervalMap { transition: [[0.0; 2]; 2], input: vec![[0.0; 2]; n], push: [0.0; 2] },
+            set_aside: [None; 2],
             parts: 1,
             rival_filters: [filter; 2],
             fastest: 0.0,
@@ -267,9 +273,13 @@ impl Pass {
     fn correct(&mut self, channel: Channel, noise: &Noise, observation: &Observation) -> Option<Innovation> {
         let measured = observation.measured[channel as usize]?;
         let variance = noise.sensor[channel as usize];
+        self.set_aside[channel as usize] = None;
         if let Some(guard) = &mut self.guard {
             let (residual, total) = self.filter.residual(channel, measured, variance);
             if !guard.admits(channel, residual, total) {
+                let precision = (DOUBTFUL / residual).powi(2);
+                let innovation = Innovation { residual, variance: precision.recip(), precision, gain: [0.0; 2] };
+                self.set_aside[channel as usize] = Some(innovation);
                 return None;
             }
         }

@@ -76,6 +76,7 @@ impl Live {
         }
     }
 
+    /// Takes a sample; returns what it says of a switch, readings that do not count included.
     pub(super) fn step(&mut self, problem: &Problem, observation: &Observation) -> [Option<Innovation>; 2] {
         let motion = Motion { terms: &problem.terms, coefficients: &self.all };
         let sensor = [0, 1].map(|channel| self.noise.sensor[channel] * self.loudness.factor(channel));
@@ -83,7 +84,9 @@ impl Live {
         let innovations = self.pass.step(&motion, &problem.free_terms, &noise, observation);
         self.loudness.add(&innovations, &observation.measured);
         self.follow_slopes(observation.dt, problem.free_inertia());
-        innovations
+        let [q, qd] = innovations;
+        let [q_aside, qd_aside] = self.pass.set_aside;
+        [q.or(q_aside), qd.or(qd_aside)]
     }
 
     /// Slopes after an interval. The inertia's goes with the acceleration, which a rough excitation turns around faster than the motion
