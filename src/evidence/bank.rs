@@ -74,6 +74,8 @@ struct Hypothesis {
     evidence: f64,
     /// ½ Σ ε²/s since the start: no change explains more.
     unexplained: f64,
+    /// The same at the last look.
+    unexplained_then: f64,
     /// ∂q/∂δ and ∂q̇/∂δ, each n long and filled up with zeros.
     sensitivity: [Vec<Lane>; 2],
     information: Information,
@@ -119,6 +121,7 @@ impl Bank {
             looked: 0,
             evidence: 0.0,
             unexplained: 0.0,
+            unexplained_then: 0.0,
             sensitivity: [lanes(), lanes()],
             information: Information::none(n),
             prior: Information::none(n).matrix,
@@ -160,7 +163,7 @@ impl Bank {
         let n = self.n;
         let hypothesis = &mut self.hypotheses[self.count];
         (hypothesis.start, hypothesis.age, hypothesis.looked) = (start, 0, 0);
-        (hypothesis.evidence, hypothesis.unexplained) = (0.0, 0.0);
+        (hypothesis.evidence, hypothesis.unexplained, hypothesis.unexplained_then) = (0.0, 0.0, 0.0);
         hypothesis.sensitivity.iter_mut().for_each(|channel| channel.fill([0.0; WIDTH]));
         hypothesis.information.clear();
         let trust = if law.explains { CAUTION } else { MORE_CAUTION };
@@ -214,8 +217,12 @@ impl Bank {
         }
     }
 
-    /// Looks at up to `looks` hypotheses, those that have waited longest for their age.
+    /// Looks at up to `looks` hypotheses: first that which may by now hold most, then those that have waited longest for their age.
     pub fn look(&mut self, looks: usize) {
+        let promises = self.hypotheses[..self.count].iter().map(Hypothesis::promise).enumerate();
+        if let Some((index, _)) = promises.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            self.look_at(index);
+        }
         for _ in 0..looks {
             let waiting = self.hypotheses[..self.count].iter().map(Hypothesis::wait).enumerate();
             match waiting.max_by(|a, b| a.1.total_cmp(&b.1)) {
@@ -229,6 +236,7 @@ impl Bank {
         let evidence = self.evidence(index);
         let hypothesis = &mut self.hypotheses[index];
         (hypothesis.evidence, hypothesis.looked) = (evidence, hypothesis.age);
+        hypothesis.unexplained_then = hypothesis.unexplained;
     }
 
     /// The hypothesis with most evidence, as last looked at.
@@ -327,6 +335,12 @@ impl Bank {
 }
 
 impl Hypothesis {
+    /// Evidence at the last look, and what has come since.
+    fn promise(&self) -> f64 {
+        let fresh = self.unexplained - self.unexplained_then;
+        if fresh > 0.0 && self.unexplained > SILENT { self.evidence + fresh } else { f64::NEG_INFINITY }
+    }
+
     /// Samples since the last look, in terms of how often one is due at this age; 0 where none can find anything.
     fn wait(&self) -> f64 {
         let wait = f64::from(self.age - self.looked) / (1.0 + f64::from(self.age) / AGING);

@@ -54,11 +54,12 @@ impl Usual {
         }
     }
 
-    /// The evidence that stands out, nats; `chance` is what a right law meets once in a sample.
-    pub fn level(&self, chance: f64) -> f64 {
-        let expected = chance + (self.count.max(1) as f64).ln() + LUCK;
+    /// The evidence that stands out, nats: `asked` under the right law, which meets `chance` once in a sample.
+    pub fn level(&self, asked: f64, chance: f64) -> f64 {
+        let expected = (chance + (self.count.max(1) as f64).ln() + LUCK).max(0.0);
         let before = self.before[0].max(self.before[1]);
-        if before > expected { STANDS_OUT * before } else { 0.0 }
+        let excess = (before - expected).max(0.0);
+        asked.max((STANDS_OUT * before).min(asked + STANDS_OUT * excess))
     }
 }
 
@@ -70,9 +71,9 @@ mod tests {
     fn a_rise_counts_only_when_it_is_past() {
         let mut usual = Usual::default();
         (0..5 * BLOCK).for_each(|_| usual.add(30.0));
-        assert_eq!(usual.level(-4.4), 0.0);
+        assert_eq!(usual.level(15.0, -4.4), 15.0);
         (0..2 * BLOCK).for_each(|_| usual.add(1.0));
-        assert_eq!(usual.level(-4.4), 60.0);
+        assert_eq!(usual.level(15.0, -4.4), 60.0);
     }
 
     #[test]
@@ -80,7 +81,7 @@ mod tests {
         let mut usual = Usual::default();
         (0..BLOCK).for_each(|_| usual.add(30.0));
         (0..BLOCK / 2).for_each(|_| usual.add(1.0));
-        assert_eq!(usual.level(-4.4), 0.0);
+        assert_eq!(usual.level(15.0, -4.4), 15.0);
     }
 
     #[test]
@@ -88,9 +89,18 @@ mod tests {
         let mut usual = Usual::default();
         (0..BLOCK).for_each(|_| usual.add(30.0));
         (0..4 * BLOCK).for_each(|_| usual.add(1.0));
-        assert_eq!(usual.level(-4.4), 60.0);
+        assert_eq!(usual.level(15.0, -4.4), 60.0);
         (0..20 * BLOCK).for_each(|_| usual.add(1.0));
-        assert_eq!(usual.level(-4.4), 0.0);
+        assert_eq!(usual.level(15.0, -4.4), 15.0);
+    }
+
+    #[test]
+    fn a_little_more_than_chance_brings_raises_the_level_a_little() {
+        let mut usual = Usual::default();
+        (0..3 * BLOCK).for_each(|_| usual.add(9.0));
+        (0..3 * BLOCK).for_each(|_| usual.add(0.0));
+        let level = usual.level(15.0, -4.4);
+        assert!(15.0 < level && level < 18.5, "{level}");
     }
 
     #[test]
@@ -98,6 +108,6 @@ mod tests {
         let mut usual = Usual::default();
         (0..3 * BLOCK).for_each(|_| usual.add(6.0));
         (0..3 * BLOCK).for_each(|_| usual.add(0.0));
-        assert_eq!(usual.level(-4.4), 0.0);
+        assert_eq!(usual.level(15.0, -4.4), 15.0);
     }
 }

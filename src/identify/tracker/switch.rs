@@ -50,7 +50,7 @@ impl Tracker {
         let trial = if explains { TRIAL } else { 1.0 };
         let level = doubt * (settings.false_alarm_interval / (trial * settings.sample_time)).ln().max(3.0);
         let chance = if explains { -TRIAL.ln() } else { f64::NEG_INFINITY };
-        let level = level.max(self.usual.level(chance));
+        let level = self.usual.level(level, chance);
         if output.valid {
             self.usual.add(suspect.evidence);
         }
