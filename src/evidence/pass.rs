@@ -10,9 +10,6 @@ use serde::{Deserialize, Serialize};
 /// Ratios by which the process noise of the two rival filters differs from the one in use, unless told otherwise.
 pub const RIVALS: [f64; 2] = [1.0 / 30.0, 6.0];
 
-/// A reading that may be an outlier speaks for a switch as one this many stds off does.
-const DOUBTFUL: f64 = 3.0;
-
 /// Most parts into which an interval between two samples is cut.
 const MAX_PARTS: usize = 8;
 
@@ -139,7 +136,7 @@ pub struct Pass {
     pub sensitivity: Vec<[f64; 2]>,
     /// What the last interval between samples did to small changes.
     pub map: IntervalMap,
-    /// What readings that do not count would say of another law, by channel: as much as one [`DOUBTFUL`] stds off.
+    /// What readings that do not count say of another law, by channel.
     pub set_aside: [Option<Innovation>; 2],
     /// Parts into which an interval is cut: what the fastest motion asks for, of the run before at first, then of this one too.
     pub parts: usize,
@@ -277,7 +274,7 @@ impl Pass {
         if let Some(guard) = &mut self.guard {
             let (residual, total) = self.filter.residual(channel, measured, variance);
             if !guard.admits(channel, residual, total) {
-                let precision = (DOUBTFUL / residual).powi(2);
+                let precision = guard.precision(channel, residual);
                 let innovation = Innovation { residual, variance: precision.recip(), precision, gain: [0.0; 2] };
                 self.set_aside[channel as usize] = Some(innovation);
                 return None;
