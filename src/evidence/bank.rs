@@ -319,13 +319,15 @@ impl Bank {
         0.5 * (self.system.squares() - hypothesis.at_mean - log_determinants)
     }
 
-    /// The hypothesis whose neighbours leave the smallest gap, relative to their age.
+    /// The hypothesis whose neighbours leave the smallest gap, relative to their age; the suspect is kept.
     fn least_missed(&self, now: u64) -> usize {
+        let suspect = self.suspect().map(|suspect| suspect.index);
         let gap = |index: usize| {
             let (before, after) = (self.hypotheses[index - 1].start, self.hypotheses[index + 1].start);
             (after - before) as f64 / ((now - after) as f64 + 4.0)
         };
-        (1..self.count - 1).min_by(|a, b| gap(*a).total_cmp(&gap(*b))).unwrap_or(0)
+        let others = (1..self.count - 1).filter(|index| Some(*index) != suspect);
+        others.min_by(|a, b| gap(*a).total_cmp(&gap(*b))).unwrap_or(0)
     }
 
     fn remove(&mut self, index: usize) {
