@@ -68,15 +68,13 @@ impl Bins {
     /// The interval of bins that stands out most; none where all is even. An interval that is closed at both ends was sought among many more
     /// than one that is open: its divergence counts `closed` times.
     pub fn peak(&self, closed: f64) -> Option<Peak> {
-        let [energy, baseline] = [&self.energy, &self.baseline].map(|values| cumulated(values));
-        let count = self.energy.len();
-        let (all, whole) = (energy[count], baseline[count]);
-        if all <= 0.0 || whole <= 0.0 {
+        let (sums, count) = (Sums::of(self), self.energy.len());
+        if sums.whole.iter().any(|whole| *whole <= 0.0) {
             return None;
         }
         let intervals = (0..count).flat_map(|from| (from + 1..=count).map(move |to| (from, to)));
         let peaks = intervals.map(|(from, to)| {
-            let (share, baseline) = ((energy[to] - energy[from]) / all, (baseline[to] - baseline[from]) / whole);
+            let [share, baseline] = sums.shares(from, to);
             let counts = if from > 0 && to < count { closed } else { 1.0 };
             Peak { from, to, share, baseline, divergence: counts * divergence(share, baseline) }
         });
@@ -84,17 +82,10 @@ impl Bins {
         best.filter(|peak| peak.divergence > 0.0)
     }
 
-    /// The bins from one to before another.
-    fn region(&self, from: usize, to: usize, divergence: f64) -> Peak {
-        let part = |values: &[f64]| values[from..to].iter().sum::<f64>() / values.iter().sum::<f64>();
-        Peak { from, to, share: part(&self.energy), baseline: part(&self.baseline), divergence }
-    }
-
     /// The region with the bins beside it that hold that part of its energy per baseline, and more of it than the rest does; its evidence stays.
     pub fn widened(&self, peak: &Peak, part: f64) -> Peak {
-        let [energy, baseline] = [&self.energy, &self.baseline].map(|values| cumulated(values));
-        let count = self.energy.len();
-        let (all, whole) = (energy[count], baseline[count]);
+        let sums = Sums::of(self);
+        let ([all, whole], count) = (sums.whole, self.energy.len());
         let rest = (1.0 - peak.share) * all / ((1.0 - peak.baseline) * whole).max(f64::MIN_POSITIVE);
         let least = rest.max(part * peak.share * all / (peak.baseline * whole));
         let lasts = |bin: &usize| self.energy[*bin] > least * self.baseline[*bin];
@@ -105,17 +96,35 @@ impl Bins {
         while let Some(bin) = (to..count.min(to + BRIDGED + 1)).rfind(lasts) {
             to = bin + 1;
         }
-        self.region(from, to, peak.divergence)
+        let [share, baseline] = sums.shares(from, to);
+        Peak { from, to, share, baseline, divergence: peak.divergence }
     }
 }
 
-fn cumulated(values: &[f64]) -> Vec<f64> {
-    let mut sum = 0.0;
-    let sums = values.iter().map(|value| {
-        sum += value;
-        sum
-    });
-    std::iter::once(0.0).chain(sums).collect()
+/// Energy and baseline of all bins before each.
+struct Sums {
+    before: [Vec<f64>; 2],
+    /// Of all bins.
+    whole: [f64; 2],
+}
+
+impl Sums {
+    fn of(bins: &Bins) -> Sums {
+        let before = [&bins.energy, &bins.baseline].map(|values| {
+            let sums = values.iter().scan(0.0, |sum, value| {
+                *sum += value;
+                Some(*sum)
+            });
+            std::iter::once(0.0).chain(sums).collect::<Vec<f64>>()
+        });
+        let whole = before.each_ref().map(|sums| sums[bins.energy.len()]);
+        Sums { before, whole }
+    }
+
+    /// Shares of the energy and of the baseline in the bins from one to before another.
+    fn shares(&self, from: usize, to: usize) -> [f64; 2] {
+        [0, 1].map(|of| (self.before[of][to] - self.before[of][from]) / self.whole[of])
+    }
 }
 
 #[cfg(test)]

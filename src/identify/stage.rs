@@ -354,6 +354,7 @@ impl Stage {
         self.move_to_new_coefficients();
         let active = self.active.iter().filter(|active| **active).count().max(1);
         self.decrement = self.information.quadratic(&self.previous) / active as f64;
+        self.tell_error(problem, settings, &track, window);
         self.follow_noise(problem, settings, &track, window);
         self.calm = if self.is_calm() { self.calm + 1 } else { 0 };
         self.confirm();

@@ -36,15 +36,10 @@ const AT_REST: f64 = 0.05;
 impl Stage {
     /// Takes the noise levels of the next pass from the one that has just closed.
     pub(super) fn follow_noise(&mut self, problem: &Problem, settings: &Settings, track: &Track, window: &Window) {
-        self.tell_error(track);
         let before = self.noise;
         self.follow_sensors(settings, track);
-        let gains = self.pass.rivals.each_ref().map(|rival| rival.log_likelihood() - track.log_likelihood());
-        let factor = self.process_factor(track, gains);
-        let force = settings.noise_excitation / self.all[problem.inertia];
-        let floor = force * force * settings.sample_time + self.unforgetting(problem, self.mean_interval(window));
-        self.explains &= gains[0] > -ERRS || self.noise.process < 2.0 * floor;
-        self.noise.process = (self.noise.process * factor).max(floor);
+        let factor = self.process_factor(track);
+        self.noise.process = (self.noise.process * factor).max(self.process_floor(problem, settings, window));
         if self.has_come_to_rest(&before) {
             self.gain = self.gain.min(0.0);
         }
@@ -58,15 +53,17 @@ impl Stage {
         self.explains && self.overdispersion == 1.0 && !(known && louder) && !self.constancy.broken
     }
 
-    /// What the pass says of the law's own error.
-    fn tell_error(&mut self, track: &Track) {
+    /// What the pass says of the law's own error, under the noise levels that it ran with.
+    pub(super) fn tell_error(&mut self, problem: &Problem, settings: &Settings, track: &Track, window: &Window) {
         let exceeds = |factor: f64| {
             Channel::ALL.iter().any(|channel| track.variance(*channel) > factor * self.noise.sensor[*channel as usize])
         };
         let overdispersion = self.blocks.overdispersion(&self.pass.information);
+        let errs =
+            self.gains(track)[0] <= -ERRS && self.noise.process >= 2.0 * self.process_floor(problem, settings, window);
         self.overdispersion = if overdispersion > LASTING { overdispersion } else { 1.0 };
         self.process_matters = exceeds(PROCESS_SHARE);
-        self.explains = !exceeds(FORGETTING) && overdispersion < UNEXPLAINED;
+        self.explains = !exceeds(FORGETTING) && overdispersion < UNEXPLAINED && !errs;
     }
 
     /// Sensor variances that are not given follow the innovations.
@@ -86,8 +83,14 @@ impl Stage {
         }
     }
 
-    /// By which factor the process noise goes where the likelihood wants it, which less or more of it would change by so many nats.
-    fn process_factor(&mut self, track: &Track, [less, more]: [f64; 2]) -> f64 {
+    /// What less and more process noise would add to the log-likelihood.
+    fn gains(&self, track: &Track) -> [f64; 2] {
+        self.pass.rivals.each_ref().map(|rival| rival.log_likelihood() - track.log_likelihood())
+    }
+
+    /// By which factor the process noise goes where the likelihood wants it.
+    fn process_factor(&mut self, track: &Track) -> f64 {
+        let [less, more] = self.gains(track);
         self.gain = less.max(more);
         self.likelihood = track.log_likelihood() / track.total().max(1.0);
         let ratio = match (less >= more, less > -0.1, more > 0.1) {
@@ -102,6 +105,12 @@ impl Stage {
         let rests = |new: f64, old: f64| (new / old - 1.0).abs() <= AT_REST;
         let mut sensors = self.noise.sensor.iter().zip(before.sensor);
         rests(self.noise.process, before.process) && sensors.all(|(new, old)| rests(*new, old))
+    }
+
+    /// Least intensity of process noise: what the excitation's own noise makes, or too little to tell from none.
+    fn process_floor(&self, problem: &Problem, settings: &Settings, window: &Window) -> f64 {
+        let force = settings.noise_excitation / self.all[problem.inertia];
+        force * force * settings.sample_time + self.unforgetting(problem, self.mean_interval(window))
     }
 
     /// Time from sample to sample of the record, s.
