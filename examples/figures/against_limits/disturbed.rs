@@ -8,6 +8,9 @@ use switchid::simulate::Reading;
 /// Share of readings that are outliers, and how far off, in σ.
 const OUTLIERS: (f64, f64) = (0.005, 20.0);
 
+/// Share of readings that are spikes, and between what they are off, in σ.
+const SPIKES: (f64, [f64; 2]) = (0.005, [5.0, 50.0]);
+
 /// Share of samples that are dropped one by one; one gap is this long besides, samples.
 const DROPPED: (f64, usize) = (0.05, 100);
 
@@ -18,6 +21,8 @@ pub enum Disturbance {
     None,
     /// One reading in 200 is 20 σ off, either way.
     Outliers,
+    /// One reading in 200 is 5 to 50 σ off, either way.
+    Spikes,
     /// Readings are rounded to multiples of 2σ.
     Quantised,
     /// One sample in 20 is missing, and 100 in a row.
@@ -28,14 +33,21 @@ pub enum Disturbance {
 
 impl Disturbance {
     /// All of them.
-    pub const ALL: [Disturbance; 5] =
-        [Disturbance::None, Disturbance::Outliers, Disturbance::Quantised, Disturbance::Dropped, Disturbance::Louder];
+    pub const ALL: [Disturbance; 6] = [
+        Disturbance::None,
+        Disturbance::Outliers,
+        Disturbance::Spikes,
+        Disturbance::Quantised,
+        Disturbance::Dropped,
+        Disturbance::Louder,
+    ];
 
     /// Its name in a table.
     pub fn id(self) -> &'static str {
         match self {
             Disturbance::None => "Gaussian",
             Disturbance::Outliers => "0.5 % of readings 20 σ off",
+            Disturbance::Spikes => "0.5 % of readings 5 to 50 σ off",
             Disturbance::Quantised => "rounded to 2 σ",
             Disturbance::Dropped => "5 % dropped, a gap of 0.1 s",
             Disturbance::Louder => "3 σ in the second half",
@@ -64,6 +76,10 @@ impl Disturbance {
                     let mut off = || sigma * outlier(&mut generator);
                     disturbed.push(Reading { q: reading.q + off(), qd: reading.qd + off(), ..*reading });
                 }
+                Disturbance::Spikes => {
+                    let mut off = || sigma * spike(&mut generator);
+                    disturbed.push(Reading { q: reading.q + off(), qd: reading.qd + off(), ..*reading });
+                }
                 Disturbance::Quantised => {
                     disturbed.push(Reading { q: rounded(reading.q), qd: rounded(reading.qd), ..*reading });
                 }
@@ -87,6 +103,16 @@ fn outlier(generator: &mut ChaCha8Rng) -> f64 {
         true => -OUTLIERS.1,
         false => 0.0,
     }
+}
+
+/// The same, as far off as it happens to be.
+fn spike(generator: &mut ChaCha8Rng) -> f64 {
+    if !generator.random_bool(SPIKES.0) {
+        return 0.0;
+    }
+    let [least, most] = SPIKES.1;
+    let size = generator.random_range(least..most);
+    if generator.random_bool(0.5) { size } else { -size }
 }
 
 fn normal(generator: &mut ChaCha8Rng) -> f64 {
