@@ -29,7 +29,7 @@ const CONSTANT: usize = 5;
 const SWITCHED: usize = 6;
 
 /// How many of them there are.
-pub const INSTANTS: usize = 3;
+pub const INSTANTS: usize = 5;
 
 /// Filters.
 const RIVALS: usize = SWITCHED + INSTANTS;

@@ -90,7 +90,10 @@ impl Tracker {
         self.scales.remember(&self.stage.scales, 1.0);
         if output.valid {
             let early = (EARLIER * distance.unwrap_or(0.0) / self.last_interval()) as u64;
-            self.try_drift(problem, [instant.saturating_sub(early), instant, start]);
+            let earliest = instant.saturating_sub(early);
+            let between = |first: u64, last: u64| first + last.saturating_sub(first) / 2;
+            let instants = [earliest, between(earliest, instant), instant, between(instant, start), start];
+            self.try_drift(problem, instants);
         }
         self.bank.change(&suspect, &mut self.change);
         let plausible = self.change.iter().zip(&self.spread).all(|(change, spread)| change.abs() < 2.0 * spread);
