@@ -164,6 +164,14 @@ impl Solution {
         self.covariance[index * self.step.len() + index]
     }
 
+    /// Std of the coefficient under `overdispersion` times this covariance; infinite where it is not determined.
+    pub fn std(&self, index: usize, overdispersion: f64) -> f64 {
+        match self.determined[index] {
+            true => (overdispersion * self.variance(index)).sqrt(),
+            false => f64::INFINITY,
+        }
+    }
+
     /// The smallest ratio of a pivot to its diagonal entry: 1 for orthogonal sensitivities, 0 for collinear ones.
     pub fn smallest_pivot(&self) -> f64 {
         (0..self.step.len()).map(|row| self.system.pivot(row)).fold(1.0, f64::min)

@@ -293,10 +293,7 @@ impl Stage {
 
     /// Std of the free coefficient; infinite where the data do not determine it.
     pub fn std(&self, free: usize) -> f64 {
-        match self.solution.determined[free] {
-            true => (self.overdispersion * self.solution.variance(free)).sqrt(),
-            false => f64::INFINITY,
-        }
+        self.solution.std(free, self.overdispersion)
     }
 
     /// The variance that the estimate states for e of eq. (8), relative: tr Cov ÷ Σθ².

@@ -63,15 +63,17 @@ impl Stage {
         self.trial.all.copy_from_slice(&self.all);
     }
 
-    /// Compares the estimate with the one before, once both are worth telling.
+    /// Compares the estimate with those of shorter records, once it is one.
     pub(super) fn compare(&mut self) {
-        if !(self.settled() && self.explains && self.stated_error() < TRUSTED) {
+        if !(self.settled() && self.explains) {
             return;
         }
-        for free in 0..self.active.len() {
-            let std = if self.active[free] { self.std(free) } else { f64::INFINITY };
-            self.constancy.take(free, self.coefficients[free], std);
-        }
+        let length = self.length(self.next);
+        let Stage { constancy, coefficients, active, solution, overdispersion, .. } = self;
+        constancy.take(length, |free| {
+            let std = if active[free] { solution.std(free, *overdispersion) } else { f64::INFINITY };
+            (coefficients[free], std)
+        });
     }
 
     /// How long the record has to get for the law to be known.
