@@ -53,6 +53,9 @@ const LOOK_AGAIN: f64 = 1.4;
 /// For how many samples the sensor noise of the last stage counts in the next one.
 pub const NOISE_MEMORY: f64 = 500.0;
 
+/// Passes in a row that may leave what can be integrated: each is repeated with a thousand times the process noise.
+const LOST: u32 = 6;
+
 /// The record of a stage is folded into a prior when it fills this fraction of the window.
 const FULL: f64 = 0.9;
 
@@ -89,6 +92,8 @@ pub struct Stage {
     pub overdispersion: f64,
     /// Passes closed in this stage.
     pub passes: u32,
+    /// Passes in a row that left what can be integrated.
+    astray: u32,
     /// Passes in a row that changed little.
     calm: u32,
     /// Whether the law stood when the record had last grown as a trial asks.
@@ -147,6 +152,7 @@ impl Stage {
             overdispersion: 1.0,
             blocks: Blocks::new(n),
             passes: 0,
+            astray: 0,
             calm: 0,
             stood: false,
             trial: Trial { length: 0, all: vec![0.0; problem.terms.len()], stood_from: 0 },
@@ -188,7 +194,7 @@ impl Stage {
         self.known_noise = noise.sensor;
         self.known_noise_weight = prior.noise_weight;
         self.known_scales.remember(prior.scales, prior.noise_weight);
-        (self.passes, self.calm) = (0, 0);
+        (self.passes, self.astray, self.calm) = (0, 0, 0);
         (self.stood, self.trial.length) = (false, 0);
         self.constancy.clear();
         self.decrement = f64::INFINITY;
@@ -343,6 +349,7 @@ impl Stage {
         if !self.coefficients.iter().all(|value| value.is_finite()) {
             return self.recover(problem, window);
         }
+        self.astray = 0;
         self.limit_step(problem);
         problem.scatter(&self.coefficients, &mut self.all);
         for (step, value) in self.previous.iter_mut().zip(&self.coefficients) {
@@ -371,7 +378,13 @@ impl Stage {
         self.noise.process = if self.noise.process.is_finite() { 1e3 * self.noise.process } else { 1.0 };
         (self.decrement, self.gain) = (f64::INFINITY, f64::INFINITY);
         (self.passes, self.calm) = (0, 0);
+        self.astray += 1;
         self.begin_pass(problem, window);
+    }
+
+    /// Whether no process noise keeps the run where it can be integrated: the coefficients are beyond repair.
+    pub fn is_lost(&self) -> bool {
+        self.astray >= LOST
     }
 
     /// Keeps the inertia from losing more than half of itself in one step.

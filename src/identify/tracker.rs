@@ -309,7 +309,7 @@ impl Tracker {
         if suspense || !self.stage.refine(problem, settings, &self.window, budget) {
             return;
         }
-        if self.leave(problem, settings, output) {
+        if self.give_up_guess() || self.leave(problem, settings, output) {
             return;
         }
         output.missing = self.stage.missing;

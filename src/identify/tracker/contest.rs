@@ -159,7 +159,9 @@ impl Tracker {
             return;
         }
         let promising = !valid && self.explains_what_the_stage_does_not();
-        if self.challenger.settled() {
+        if self.challenger.is_lost() {
+            self.challenging = false;
+        } else if self.challenger.settled() {
             let agrees = self.challenger.agrees_with(&self.stage);
             if agrees {
                 self.next_guess = self.window.end() + self.stage.length(self.window.end());
@@ -175,6 +177,15 @@ impl Tracker {
             self.challenging = promising && self.challenger.passes < LONG_PATIENCE;
         }
         self.challenger.begin_pass(problem, &self.window);
+    }
+
+    /// A first guess from which no fit can be begun is forgotten: the weak rows, more of them by now, are asked for another.
+    pub(super) fn give_up_guess(&mut self) -> bool {
+        let lost = self.stage.is_lost() && !self.live.running;
+        if lost {
+            (self.phase, self.challenging) = (Phase::Gathering, false);
+        }
+        lost
     }
 
     /// Whether the challenger explains a later record down to the sensors' noise, and the stage not its own.
@@ -212,11 +223,47 @@ fn universal(number: u32) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::universal;
+    use super::*;
+    use crate::evidence::Noise;
+    use crate::identify::{Identifier, Sample};
+    use crate::law::Model;
+    use crate::simulate::{Builtin, record};
 
     #[test]
     fn the_universal_sequence_is_that_of_the_paper() {
         let first: Vec<u64> = (1..=15).map(universal).collect();
         assert_eq!(first, [1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8]);
+    }
+
+    /// Stage and challenger begin from coefficients that no run survives.
+    fn lead_astray(tracker: &mut Tracker, problem: &Problem) {
+        let absurd: Vec<f64> = (0..problem.n()).map(|index| if index == 0 { 0.6 } else { -1e6 }).collect();
+        let noise = Noise { sensor: [1e-4; 2], process: 1.0 };
+        let (centre, std) = (vec![0.0; problem.n()], vec![1e9; problem.n()]);
+        let Tracker { stage, challenger, window, scales, .. } = tracker;
+        for stage in [stage, challenger] {
+            let (structure, noise_weight) = (None, 0.0);
+            let prior = Prior { centre: &centre, std: &std, log_inertia: 1.0, structure, noise_weight, scales };
+            stage.begin(problem, window, 0, &absurd, prior, noise);
+        }
+        (tracker.phase, tracker.challenging) = (Phase::Refining, true);
+    }
+
+    #[test]
+    fn a_first_law_from_which_no_fit_can_be_begun_is_forgotten() {
+        let (model, settings) = (Model::cubic_library(), Settings::default());
+        let blank = Identifier::new(&model, settings).unwrap();
+        let (mut output, mut published) = (blank.output().clone(), blank.coefficients().to_vec());
+        let problem = Problem::new(&model, &settings);
+        let mut tracker = Tracker::new(&problem, &settings);
+        let scenario = Builtin::VanDerPolWhite.random(32).with_noise(0.01);
+        for (index, reading) in record(&scenario).unwrap().iter().take(6000).enumerate() {
+            if index == 100 {
+                lead_astray(&mut tracker, &problem);
+            }
+            let sample = Sample { t: reading.t, q: reading.q, qd: reading.qd, excitation: reading.excitation };
+            tracker.step(&problem, &settings, sample, &mut published, &mut output);
+        }
+        assert!(output.valid, "{output:?}");
     }
 }
