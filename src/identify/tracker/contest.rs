@@ -253,7 +253,7 @@ mod tests {
     fn a_first_law_from_which_no_fit_can_be_begun_is_forgotten() {
         let (model, settings) = (Model::cubic_library(), Settings::default());
         let blank = Identifier::new(&model, settings).unwrap();
-        let (mut output, mut published) = (blank.output().clone(), blank.coefficients().to_vec());
+        let (mut output, mut published) = (*blank.output(), blank.coefficients().to_vec());
         let problem = Problem::new(&model, &settings);
         let mut tracker = Tracker::new(&problem, &settings);
         let scenario = Builtin::VanDerPolWhite.random(32).with_noise(0.01);
