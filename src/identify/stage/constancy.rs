@@ -1,8 +1,8 @@
 //! Estimates of one law in a growing record: what the longer record says lies within the std of what the shorter one said.
 //!
 //! For an efficient estimate Cov(θ_new − θ_old) = Cov(θ_old) − Cov(θ_new) (Hausman, *Econometrica* 46 (1978), 1251). A record that comes to
-//! hold another law too may still be explained whole, by a third one, which it changes from one to the next, a little at a time: the estimate
-//! is compared with those of records down to a third as long.
+//! hold another law too may still be explained whole, by a third one, which goes from one to the other a little at a time: the estimate is
+//! compared with those of records down to a third as long.
 
 use serde::{Deserialize, Serialize};
 
@@ -68,7 +68,7 @@ impl Estimate {
         known.any(|(free, (old, old_std))| {
             let (value, std) = estimate(free);
             let variance = (old_std * old_std - std * std).max(LEAST * old_std * old_std);
-            (value - old).powi(2) > FAR * FAR * variance
+            std.is_finite() && (value - old).powi(2) > FAR * FAR * variance
         })
     }
 }
@@ -87,6 +87,21 @@ mod tests {
     fn what_leaves_its_own_std_is_contradicted() {
         assert!(!broken(&[(100, 50.0, f64::INFINITY), (200, 3.0, 0.1), (300, 3.2, 0.05)]));
         assert!(broken(&[(200, 3.0, 0.1), (300, 3.4, 0.05)]));
+    }
+
+    #[test]
+    fn a_term_that_is_dropped_contradicts_nothing() {
+        assert!(!broken(&[(200, 0.2, 0.1), (300, 0.0, f64::INFINITY)]));
+    }
+
+    #[test]
+    fn another_stage_is_compared_with_nothing_before() {
+        let mut constancy = Constancy::new(1);
+        [3.0, 4.0].iter().zip([200, 300]).for_each(|(value, length)| constancy.take(length, |_| (*value, 0.1)));
+        assert!(constancy.broken);
+        constancy.clear();
+        constancy.take(100, |_| (9.0, 0.1));
+        assert!(!constancy.broken);
     }
 
     #[test]

@@ -224,7 +224,6 @@ fn universal(number: u32) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evidence::Noise;
     use crate::identify::{Identifier, Sample};
     use crate::law::Model;
     use crate::simulate::{Builtin, record};
