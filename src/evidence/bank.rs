@@ -18,6 +18,7 @@ mod instant;
 use super::filter::Innovation;
 use super::information::Information;
 use super::pass::IntervalMap;
+use super::single::{Single, either};
 use super::symmetric::{Lane, System, WIDTH};
 use super::weighing::{Belief, Weighing, likelihood};
 use serde::{Deserialize, Serialize};
@@ -109,6 +110,7 @@ pub struct Bank {
     spread_log_determinant: f64,
     shared: Shared,
     system: System,
+    single: Single,
 }
 
 impl Bank {
@@ -138,6 +140,7 @@ impl Bank {
             spread_log_determinant: 0.0,
             shared: Shared { input: [lanes(), lanes()], rows: [lanes(), lanes()] },
             system: System::new(n),
+            single: Single::new(n),
         }
     }
 
@@ -272,7 +275,7 @@ impl Bank {
 
     /// Writes the most plausible change of the coefficients under the suspect into `change`.
     pub fn change(&mut self, suspect: &Suspect, change: &mut [f64]) {
-        self.switched(suspect.index);
+        self.all_switched(suspect.index);
         self.system.solve(change);
     }
 
@@ -284,19 +287,29 @@ impl Bank {
         match starts.max_by(|a, b| a.1.total_cmp(&b.1)) {
             Some((index, _)) => {
                 let known = weighing.evidence(&self.hypotheses[index].information, belief);
-                [known, self.switched(index)]
+                [known, self.weigh(index)[0]]
             }
             None => [f64::NEG_INFINITY, 0.0],
         }
     }
 
+    /// Log-evidence of a switch against that of none.
     fn evidence(&mut self, index: usize) -> f64 {
-        let switched = self.switched(index);
-        switched - self.unswitched(index)
+        let [switched, unswitched] = self.weigh(index);
+        switched - unswitched
     }
 
-    /// Log-evidence of a switch; leaves the eliminated system behind.
-    fn switched(&mut self, index: usize) -> f64 {
+    /// Log-evidence of a switch, of one coefficient or of all, and of none, against the law in use exactly as it is.
+    fn weigh(&mut self, index: usize) -> [f64; 2] {
+        let all = self.all_switched(index);
+        let unswitched = self.unswitched(index);
+        let hypothesis = &self.hypotheses[index];
+        let one = self.single.evidence(&hypothesis.information, &self.system, &hypothesis.active, &self.spread);
+        [either(all, unswitched + one), unswitched]
+    }
+
+    /// Log-evidence of a switch of all coefficients; leaves the eliminated system behind.
+    fn all_switched(&mut self, index: usize) -> f64 {
         let information = &self.hypotheses[index].information;
         self.system.load(&information.matrix, None);
         for (row, spread) in self.spread.iter().enumerate() {
@@ -307,7 +320,7 @@ impl Bank {
         0.5 * (self.system.squares() - self.system.log_determinant() + self.spread_log_determinant)
     }
 
-    /// Log-evidence of no switch.
+    /// Log-evidence of no switch; leaves the eliminated system behind.
     fn unswitched(&mut self, index: usize) -> f64 {
         let hypothesis = &self.hypotheses[index];
         self.system.load(&hypothesis.information.matrix, Some(&hypothesis.prior));

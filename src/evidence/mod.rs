@@ -13,6 +13,7 @@
 //! - [`Lack`]: effects that the law does not have, by the score test in the stream;
 //! - [`Information`]: sums of them, and their solution;
 //! - [`Weighing`]: which of two beliefs about the coefficients a record speaks for;
+//! - [`Single`]: a change of one coefficient alone;
 //! - [`Bank`]: hypotheses that the law switched at one of many instants (Willsky and Jones, IEEE TAC 21, 1976).
 
 mod bank;
@@ -22,6 +23,7 @@ mod information;
 mod joint;
 mod lack;
 mod pass;
+mod single;
 mod symmetric;
 mod weighing;
 
@@ -32,5 +34,6 @@ pub use information::{Information, Solution};
 pub use joint::{Joint, Start, Unknowns};
 pub use lack::{Lack, Missing};
 pub use pass::{IntervalMap, Observation, Pass, RIVALS, Track, gains};
+pub use single::{Single, either};
 pub use symmetric::LogSum;
 pub use weighing::{Belief, Weighing};

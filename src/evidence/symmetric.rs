@@ -138,6 +138,31 @@ impl System {
         }
     }
 
+    /// Takes more right sides through the elimination, the columns of B, of which a row has as many lanes as n needs: U⁻ᵀ B.
+    pub fn forward(&self, columns: &mut [Lane]) {
+        let width = self.n.div_ceil(WIDTH);
+        for k in 0..self.n {
+            let (head, tail) = columns.split_at_mut((k + 1) * width);
+            let (above, row) = (&head[k * width..], self.rows[k * self.lanes..(k + 1) * self.lanes].as_flattened());
+            for (below, entry) in tail.chunks_exact_mut(width).zip(&row[k + 1..]) {
+                let factor = entry * self.inverse_pivots[k];
+                for (entries, above) in below.iter_mut().zip(above) {
+                    *entries = std::array::from_fn(|lane| entries[lane] - factor * above[lane]);
+                }
+            }
+        }
+    }
+
+    /// βᵀ A⁻¹ β and βᵀ A⁻¹ b, β being the column of B that [`System::forward`] made of.
+    pub fn products(&self, columns: &[Lane], column: usize) -> [f64; 2] {
+        let width = self.n.div_ceil(WIDTH);
+        let rows = self.rows.chunks_exact(self.lanes).zip(columns.chunks_exact(width)).zip(&self.inverse_pivots);
+        rows.fold([0.0; 2], |[own, pulled], ((row, columns), inverse)| {
+            let entry = columns.as_flattened()[column];
+            [own + entry * entry * inverse, pulled + entry * row.as_flattened()[self.n] * inverse]
+        })
+    }
+
     /// Whether the unknown could be solved for.
     #[inline]
     pub fn is_solved(&self, unknown: usize) -> bool {

@@ -12,6 +12,7 @@
 //! the record speaks for. The wider belief pays for what it leaves open.
 
 use super::information::Information;
+use super::single::Single;
 use super::symmetric::{System, WIDTH};
 use serde::{Deserialize, Serialize};
 
@@ -35,6 +36,7 @@ pub struct Belief {
 pub struct Weighing {
     record: Information,
     system: System,
+    single: Single,
 }
 
 impl Belief {
@@ -75,7 +77,7 @@ impl Belief {
 impl Weighing {
     /// Room for `n` coefficients.
     pub fn new(n: usize) -> Weighing {
-        Weighing { record: Information::none(n), system: System::new(n) }
+        Weighing { record: Information::none(n), system: System::new(n), single: Single::new(n) }
     }
 
     /// Log-evidence of the belief, nats, against certainty that the coefficients are at the record's point.
@@ -88,6 +90,12 @@ impl Weighing {
         self.isolate(&belief.open);
         self.system.eliminate(TOLERANCE);
         at_offset + 0.5 * (self.system.squares() - self.system.log_determinant() + belief.log_determinant)
+    }
+
+    /// Log-evidence, nats, of a change of one coefficient alone against the belief that has just been weighed; `precision` is 1/τ² of
+    /// each.
+    pub fn evidence_of_a_change(&mut self, belief: &Belief, precision: &[f64]) -> f64 {
+        self.single.evidence(&self.record, &self.system, &belief.open, precision)
     }
 
     fn isolate(&mut self, open: &[bool]) {

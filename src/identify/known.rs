@@ -5,7 +5,7 @@
 
 use super::problem::Problem;
 use super::stage::Stage;
-use crate::evidence::{Bank, Belief, Information, Noise, Solution, Weighing};
+use crate::evidence::{Bank, Belief, Information, Noise, Solution, Weighing, either};
 use serde::{Deserialize, Serialize};
 
 /// Laws that are kept.
@@ -124,6 +124,7 @@ pub struct KnownLaws {
     solution: Solution,
     belief: Belief,
     weighing: Weighing,
+    precision: Vec<f64>,
 }
 
 impl KnownLaws {
@@ -138,6 +139,7 @@ impl KnownLaws {
             solution: Solution::none(n),
             belief: Belief::none(n),
             weighing: Weighing::new(n),
+            precision: vec![1.0; n],
         }
     }
 
@@ -202,10 +204,20 @@ impl KnownLaws {
         for (offset, (known, point)) in belief.offset.iter_mut().zip(law.coefficients.iter().zip(point)) {
             *offset = known - point;
         }
-        belief.set_information(&law.information, &law.active, weighing);
-        let known = weighing.evidence(record, belief);
         belief.set_variances(law.spread.iter().map(|spread| spread * spread));
-        Weighed { known, any: weighing.evidence(record, belief) }
+        let any = weighing.evidence(record, belief);
+        belief.set_information(&law.information, &law.active, weighing);
+        Weighed { known: weighing.evidence(record, belief), any }
+    }
+
+    /// The same about the law's own coefficients, where it is the one that has just been left: what it may lead to is a law that differs
+    /// from it in one coefficient alone, or any.
+    pub fn weigh_left(&mut self, place: usize, record: &Information) -> Weighed {
+        let Weighed { known, any } = self.weigh(place, None, record);
+        let KnownLaws { laws, belief, weighing, precision, .. } = self;
+        precision.iter_mut().zip(&laws[place].spread).for_each(|(slot, spread)| *slot = (spread * spread).recip());
+        let changed = known + weighing.evidence_of_a_change(belief, precision);
+        Weighed { known, any: either(any, changed) }
     }
 
     /// The number of the known law that a stage has found again, if there is one whose evidence passes `level`, nats.

@@ -63,6 +63,8 @@ pub struct Trials {
     trials: Vec<Trial>,
     all: Vec<f64>,
     start: u64,
+    /// The place of the law that was left at the start.
+    left: Option<usize>,
     running: bool,
     next_weighing: u64,
 }
@@ -79,7 +81,14 @@ impl Trials {
             against_any: 0.0,
             scale: 1.0,
         };
-        Trials { trials: vec![trial; ROOM], all: problem.known.clone(), start: 0, running: false, next_weighing: 0 }
+        Trials {
+            trials: vec![trial; ROOM],
+            all: problem.known.clone(),
+            start: 0,
+            left: None,
+            running: false,
+            next_weighing: 0,
+        }
     }
 
     /// Puts all known laws on trial over the record from sample `start`, of which there are two at least. The sensors' noise is theirs
@@ -100,6 +109,11 @@ impl Trials {
             trial.noise = Noise { sensor, process: law.noise.process };
             trial.begin(problem, window, start);
         }
+    }
+
+    /// The record's start is that of a switch from the law at `place`.
+    pub fn set_left(&mut self, place: Option<usize>) {
+        self.left = place;
     }
 
     /// Ends the trial.
@@ -153,7 +167,7 @@ impl Trials {
         }
         self.next_weighing = self.start + (GROWTH * (end - self.start) as f64) as u64 + 1;
         for (place, trial) in self.trials[..count].iter_mut().enumerate().filter(|(_, trial)| !trial.out) {
-            trial.weigh(place, known);
+            trial.weigh(place, known, self.left == Some(place));
         }
         self.verdict(count)
     }
@@ -221,8 +235,11 @@ impl Trial {
     }
 
     /// Error beyond what is stated, and that no other coefficients explain, makes all evidence smaller.
-    fn weigh(&mut self, place: usize, known: &mut KnownLaws) {
-        let weighed = known.weigh(place, None, &self.pass.information);
+    fn weigh(&mut self, place: usize, known: &mut KnownLaws, left: bool) {
+        let weighed = match left {
+            true => known.weigh_left(place, &self.pass.information),
+            false => known.weigh(place, None, &self.pass.information),
+        };
         let track = &self.pass.track;
         let unexplained = (track.squares[0] + track.squares[1] - 2.0 * weighed.any.max(0.0)) / track.total().max(1.0);
         self.scale = unexplained.max(1.0);

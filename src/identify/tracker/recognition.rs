@@ -303,6 +303,7 @@ impl Tracker {
             let given = [settings.noise_q, settings.noise_qd].map(|std| (std > 0.0).then_some(std * std));
             self.stage.start = start;
             self.trials.begin(&self.known, problem, &self.window, start, given);
+            self.trials.set_left(None);
         }
     }
 

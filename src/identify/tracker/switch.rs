@@ -104,6 +104,7 @@ impl Tracker {
         self.begin_new_law(problem, start);
         let sensor = self.live.noise.sensor.map(Some);
         self.trials.begin(&self.known, problem, &self.window, start, sensor);
+        self.trials.set_left(output.law_number.and_then(|number| self.known.position(number)));
         (self.recognised, self.confirmed, self.experience) = (None, false, 0);
         self.contest_from(start);
         self.drift.restart(start);
