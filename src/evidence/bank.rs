@@ -18,7 +18,7 @@ mod instant;
 use super::filter::Innovation;
 use super::information::Information;
 use super::pass::IntervalMap;
-use super::single::{Single, either};
+use super::single::{Single, either, log_sum};
 use super::symmetric::{Lane, System, WIDTH};
 use super::weighing::{Belief, Weighing, likelihood};
 use serde::{Deserialize, Serialize};
@@ -41,6 +41,9 @@ const MARGIN: f64 = 5.0;
 /// Looks at a hypothesis this much older come half as often, samples.
 const AGING: f64 = 20.0;
 
+/// A law of this probability is none, as a logarithm.
+const NEGLIGIBLE: f64 = -60.0;
+
 /// A hypothesis whose innovations together hold less than this cannot speak for a switch, nats.
 const SILENT: f64 = 4.0;
 
@@ -49,8 +52,10 @@ const SILENT: f64 = 4.0;
 pub struct Law<'a> {
     /// Information on the coefficients from the stage so far.
     pub information: &'a Information,
-    /// Which of them the law has.
-    pub active: &'a [bool],
+    /// Which of them it may have.
+    pub open: &'a [bool],
+    /// Which of those it has.
+    pub own: &'a [bool],
     /// Whether it explains its record down to the sensors' noise.
     pub explains: bool,
 }
@@ -84,10 +89,22 @@ struct Hypothesis {
     prior: Vec<f64>,
     /// Λμ of "no switch": what the stage up to the start says about the coefficients in use.
     pull: Vec<f64>,
+    /// With every coefficient that the law may have.
+    full: Unswitched,
+    /// With its own alone, where it has dropped others.
+    own: Unswitched,
+}
+
+/// "No switch", of a law with certain terms.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Unswitched {
+    active: Vec<bool>,
     /// μᵀΛμ.
     at_mean: f64,
-    prior_log_determinant: f64,
-    active: Vec<bool>,
+    /// ln det Λ.
+    log_determinant: f64,
+    /// Logarithm of its probability before the hypothesis starts.
+    log_weight: f64,
 }
 
 /// What a step of the stream does to every hypothesis alike.
@@ -128,9 +145,8 @@ impl Bank {
             information: Information::none(n),
             prior: Information::none(n).matrix,
             pull: vec![0.0; n],
-            at_mean: 0.0,
-            prior_log_determinant: 0.0,
-            active: vec![false; n],
+            full: Unswitched::none(n),
+            own: Unswitched::none(n),
         };
         Bank {
             n,
@@ -171,22 +187,22 @@ impl Bank {
         hypothesis.information.clear();
         let trust = if law.explains { CAUTION } else { MORE_CAUTION };
         hypothesis.prior.iter_mut().zip(&law.information.matrix).for_each(|(slot, entry)| *slot = trust * entry);
-        for (index, (slot, active)) in hypothesis.active.iter_mut().zip(law.active).enumerate() {
-            *slot = *active && law.information.matrix[index * n + index] > 0.0;
+        for (index, (slot, open)) in hypothesis.full.active.iter_mut().zip(law.open).enumerate() {
+            *slot = *open && law.information.matrix[index * n + index] > 0.0;
         }
-        for ((pull, score), active) in hypothesis.pull.iter_mut().zip(&law.information.score).zip(&hypothesis.active) {
-            *pull = if *active { trust * score } else { 0.0 };
+        hypothesis.pull.iter_mut().zip(&law.information.score).for_each(|(pull, score)| *pull = trust * score);
+        hypothesis.full.settle(&hypothesis.prior, &mut hypothesis.pull, &mut self.system);
+        hypothesis.full.log_weight = 0.0;
+        let mut dropped = false;
+        for ((slot, full), own) in hypothesis.own.active.iter_mut().zip(&hypothesis.full.active).zip(law.own) {
+            *slot = *full && *own;
+            dropped |= *full && !*own;
         }
-        self.system.load(&hypothesis.prior, None);
-        self.system.set_right(hypothesis.pull.iter().copied());
-        hypothesis.isolate_inactive(&mut self.system);
-        self.system.eliminate(TOLERANCE);
-        for (index, (active, pull)) in hypothesis.active.iter_mut().zip(&mut hypothesis.pull).enumerate() {
-            *active &= self.system.is_solved(index);
-            *pull = if *active { *pull } else { 0.0 };
+        hypothesis.own.log_weight = f64::NEG_INFINITY;
+        if dropped {
+            hypothesis.own.settle_beside(&hypothesis.prior, &hypothesis.pull, &mut self.system);
+            hypothesis.share(&self.spread);
         }
-        hypothesis.at_mean = self.system.squares();
-        hypothesis.prior_log_determinant = self.system.log_determinant();
         self.count += 1;
     }
 
@@ -302,10 +318,17 @@ impl Bank {
     /// Log-evidence of a switch, of one coefficient or of all, and of none, against the law in use exactly as it is.
     fn weigh(&mut self, index: usize) -> [f64; 2] {
         let all = self.all_switched(index);
-        let unswitched = self.unswitched(index);
-        let hypothesis = &self.hypotheses[index];
-        let one = self.single.evidence(&hypothesis.information, &self.system, &hypothesis.active, &self.spread);
-        [either(all, unswitched + one), unswitched]
+        let Bank { hypotheses, system, single, spread, .. } = self;
+        let hypothesis = &hypotheses[index];
+        let [mut one, mut none] = [f64::NEG_INFINITY; 2];
+        for law in [&hypothesis.full, &hypothesis.own] {
+            if law.log_weight > NEGLIGIBLE {
+                let unswitched = law.log_weight + law.evidence(hypothesis, system);
+                none = log_sum(none, unswitched);
+                one = log_sum(one, unswitched + single.evidence(&hypothesis.information, system, &law.active, spread));
+            }
+        }
+        [either(all, one), none]
     }
 
     /// Log-evidence of a switch of all coefficients; leaves the eliminated system behind.
@@ -318,18 +341,6 @@ impl Bank {
         self.system.set_right(information.score.iter().copied());
         self.system.eliminate(TOLERANCE);
         0.5 * (self.system.squares() - self.system.log_determinant() + self.spread_log_determinant)
-    }
-
-    /// Log-evidence of no switch; leaves the eliminated system behind.
-    fn unswitched(&mut self, index: usize) -> f64 {
-        let hypothesis = &self.hypotheses[index];
-        self.system.load(&hypothesis.information.matrix, Some(&hypothesis.prior));
-        self.system
-            .set_right(hypothesis.information.score.iter().zip(&hypothesis.pull).map(|(score, pull)| score + pull));
-        hypothesis.isolate_inactive(&mut self.system);
-        self.system.eliminate(TOLERANCE);
-        let log_determinants = self.system.log_determinant() - hypothesis.prior_log_determinant;
-        0.5 * (self.system.squares() - hypothesis.at_mean - log_determinants)
     }
 
     /// The hypothesis whose neighbours leave the smallest gap, relative to their age; the suspect is kept.
@@ -362,20 +373,23 @@ impl Hypothesis {
         if self.unexplained > SILENT { wait } else { 0.0 }
     }
 
-    /// Takes what the hypothesis does not have out of the system.
-    fn isolate_inactive(&self, system: &mut System) {
-        for (unknown, _) in self.active.iter().enumerate().filter(|(_, active)| !**active) {
-            system.isolate(unknown);
-        }
+    /// Shares the probability among the law's own terms alone and all that it may have: what all of them gain in likelihood, against how
+    /// much of what a dropped one could have been the record leaves (Savage and Dickey).
+    fn share(&mut self, precision: &[f64]) {
+        let Hypothesis { full, own, .. } = self;
+        let dropped = full.active.iter().zip(&own.active).zip(precision).filter(|((full, own), _)| **full && !**own);
+        let width: f64 = dropped.map(|(_, precision)| -0.5 * precision.ln()).sum();
+        let odds =
+            0.5 * (own.at_mean - full.at_mean) + 0.5 * (full.log_determinant - own.log_determinant) + width;
+        own.log_weight = -(1.0 + (-odds).exp()).ln();
+        full.log_weight = -(1.0 + odds.exp()).ln();
     }
 
     /// Moves the point about which δ is counted: Λμ becomes Λ(μ − step).
     fn shift(&mut self, step: &[f64]) {
-        let (n, active) = (step.len(), &self.active);
+        let (n, active) = (step.len(), &self.full.active);
         self.information.shift(step);
-        for row in (0..n).filter(|row| active[*row]) {
-            self.at_mean -= step[row] * self.pull[row];
-        }
+        let before: f64 = (0..n).filter(|row| active[*row]).map(|row| step[row] * self.pull[row]).sum();
         for row in (0..n).filter(|row| active[*row]) {
             self.pull[row] -= self.prior[row * n + row] * step[row];
             for column in (row + 1..n).filter(|column| active[*column]) {
@@ -384,8 +398,51 @@ impl Hypothesis {
                 self.pull[column] -= entry * step[row];
             }
         }
-        for row in (0..n).filter(|row| active[*row]) {
-            self.at_mean -= step[row] * self.pull[row];
+        let after: f64 = (0..n).filter(|row| active[*row]).map(|row| step[row] * self.pull[row]).sum();
+        self.full.at_mean -= before + after;
+        self.own.at_mean -= before + after;
+        // what it did not have moves: its terms are others now
+        if (0..n).any(|row| step[row] != 0.0 && !self.own.active[row]) {
+            (self.full.log_weight, self.own.log_weight) = (0.0, f64::NEG_INFINITY);
+        }
+    }
+}
+
+impl Unswitched {
+    fn none(n: usize) -> Unswitched {
+        Unswitched { active: vec![false; n], at_mean: 0.0, log_determinant: 0.0, log_weight: 0.0 }
+    }
+
+    /// Leaves out what the prior says nothing of.
+    fn settle(&mut self, prior: &[f64], pull: &mut [f64], system: &mut System) {
+        self.settle_beside(prior, pull, system);
+        for (index, (active, pull)) in self.active.iter_mut().zip(pull).enumerate() {
+            *active &= system.is_solved(index);
+            *pull = if *active { *pull } else { 0.0 };
+        }
+    }
+
+    fn settle_beside(&mut self, prior: &[f64], pull: &[f64], system: &mut System) {
+        system.load(prior, None);
+        system.set_right(pull.iter().copied());
+        self.isolate_inactive(system);
+        system.eliminate(TOLERANCE);
+        (self.at_mean, self.log_determinant) = (system.squares(), system.log_determinant());
+    }
+
+    /// Log-evidence of no switch; leaves the eliminated system behind.
+    fn evidence(&self, hypothesis: &Hypothesis, system: &mut System) -> f64 {
+        system.load(&hypothesis.information.matrix, Some(&hypothesis.prior));
+        system.set_right(hypothesis.information.score.iter().zip(&hypothesis.pull).map(|(score, pull)| score + pull));
+        self.isolate_inactive(system);
+        system.eliminate(TOLERANCE);
+        0.5 * (system.squares() - self.at_mean - (system.log_determinant() - self.log_determinant))
+    }
+
+    /// Takes what the law does not have out of the system.
+    fn isolate_inactive(&self, system: &mut System) {
+        for (unknown, _) in self.active.iter().enumerate().filter(|(_, active)| !**active) {
+            system.isolate(unknown);
         }
     }
 }

@@ -62,7 +62,12 @@ impl Single {
 
 /// Log-evidence of either of two hypotheses, each as likely beforehand.
 pub fn either(first: f64, second: f64) -> f64 {
-    first.max(second) + (0.5 * (1.0 + (-(first - second).abs()).exp())).ln()
+    log_sum(first, second) - std::f64::consts::LN_2
+}
+
+/// ln(exp(first) + exp(second)); not both may be −∞.
+pub fn log_sum(first: f64, second: f64) -> f64 {
+    first.max(second) + (-(first - second).abs()).exp().ln_1p()
 }
 
 #[cfg(test)]

@@ -282,8 +282,9 @@ impl Tracker {
             self.predict(problem, settings, number, &observation, output);
             if number.is_multiple_of(SPAWN_EVERY) {
                 // of a law that came back only its own terms are known from before: to seek the others too would make it look unlikely
-                let active = if self.recognised.is_some() { &self.live.active } else { &self.all_active };
-                let law = Law { information: &self.live.pass.information, active, explains: self.explains() };
+                let own = &self.live.active;
+                let open = if self.recognised.is_some() { own } else { &self.all_active };
+                let law = Law { information: &self.live.pass.information, open, own, explains: self.explains() };
                 self.bank.spawn(number, &law);
             }
             let oldest = number.saturating_sub((OLDEST / settings.sample_time) as u64);
