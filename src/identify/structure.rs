@@ -56,6 +56,11 @@ impl Structure {
         self.surcharge.fill(0.0);
     }
 
+    /// Whether these are the terms of the law before, where one is known.
+    pub fn is_as_before(&self, active: &[bool]) -> bool {
+        self.surcharge.iter().zip(active).all(|(surcharge, active)| *surcharge == if *active { -LOYALTY } else { LOYALTY })
+    }
+
     /// The structure is likely to be that of a law with these terms.
     pub fn remember(&mut self, active: &[bool]) {
         for (surcharge, active) in self.surcharge.iter_mut().zip(active) {

@@ -33,7 +33,7 @@ impl Stage {
     pub fn stands(&self) -> bool {
         let grown = self.trial.length as f64 / self.trial.stood_from as f64;
         let allowed = if grown < DOUBTED { SURE } else { TRUSTED };
-        self.stood && (grown >= LONG || self.structure.full_error < allowed)
+        self.stood && (grown >= LONG || self.structure.full_error < allowed || self.explains && self.structure.is_as_before(&self.active))
     }
 
     /// Whether the law is known.
