@@ -38,8 +38,14 @@ const OVERWHELMING: f64 = 10.0;
 /// Starts with this much less evidence than the best are as good, nats.
 const MARGIN: f64 = 5.0;
 
+/// Starts with this much less evidence than the best are none that a switch may have had, nats.
+const FAR_BELOW: f64 = 12.0;
+
 /// Looks at a hypothesis this much older come half as often, samples.
 const AGING: f64 = 20.0;
+
+/// Evidence that chance seldom gives a start which lies between others, nats.
+const OUTSTANDING: f64 = 4.0;
 
 /// A law of this probability is none, as a logarithm.
 const NEGLIGIBLE: f64 = -60.0;
@@ -283,6 +289,19 @@ impl Bank {
         self.hypotheses[(self.latest(suspect, level) + 1).min(self.count - 1)].start
     }
 
+    /// Writes the starts with most evidence into `starts`, in their order; those that are left where few are plausible repeat the last.
+    pub fn likeliest_starts(&self, starts: &mut [u64]) {
+        let least = self.suspect().map_or(0.0, |suspect| suspect.evidence) - FAR_BELOW;
+        let mut bound = (f64::INFINITY, usize::MAX);
+        for slot in starts.iter_mut() {
+            let live = self.hypotheses[..self.count].iter().map(|hypothesis| hypothesis.evidence).zip(0..);
+            let below = live.filter(|next| *next < bound && next.0 > least);
+            bound = below.max_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).unwrap_or(bound);
+            *slot = self.hypotheses[bound.1.min(self.count - 1)].start;
+        }
+        starts.sort_unstable();
+    }
+
     fn latest(&self, suspect: &Suspect, level: f64) -> usize {
         let enough = level.min(suspect.evidence - MARGIN);
         let plausible = |hypothesis: &Hypothesis| hypothesis.evidence >= enough;
@@ -343,14 +362,19 @@ impl Bank {
         0.5 * (self.system.squares() - self.system.log_determinant() + self.spread_log_determinant)
     }
 
-    /// The hypothesis whose neighbours leave the smallest gap, relative to their age; the suspect is kept.
+    /// The hypothesis whose neighbours leave the smallest gap, relative to their age; one that stands out from them is kept.
     fn least_missed(&self, now: u64) -> usize {
-        let suspect = self.suspect().map(|suspect| suspect.index);
+        let most = self.suspect().map_or(0.0, |suspect| suspect.evidence);
+        let evidence = |index: usize| self.hypotheses[index].evidence;
+        let stands_out = |index: usize| {
+            let own = evidence(index);
+            own >= most || own > OUTSTANDING && own > 0.5 * most && own > evidence(index - 1) && own > evidence(index + 1)
+        };
         let gap = |index: usize| {
             let (before, after) = (self.hypotheses[index - 1].start, self.hypotheses[index + 1].start);
             (after - before) as f64 / ((now - after) as f64 + 4.0)
         };
-        let others = (1..self.count - 1).filter(|index| Some(*index) != suspect);
+        let others = (1..self.count - 1).filter(|index| !stands_out(*index));
         others.min_by(|a, b| gap(*a).total_cmp(&gap(*b))).unwrap_or(0)
     }
 

@@ -171,7 +171,7 @@ impl Live {
 
 /// How many times the covariance of a law counts that is known from so many samples.
 fn distrust(samples: u64) -> f64 {
-    1.0 + (DISTRUST - 1.0) * (LINEAR / samples.max(1) as f64).min(1.0).powi(2)
+    DISTRUST * (LINEAR / samples.max(1) as f64).min(1.0).powi(4)
 }
 
 impl Tracker {

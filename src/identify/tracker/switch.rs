@@ -3,6 +3,7 @@
 use super::{INERTIA_SPREAD, PRIOR_WIDTH, Phase, SWITCH_SIZE, Tracker};
 use crate::evidence::{Noise, Suspect};
 use crate::identify::identifier::{Output, Status};
+use crate::identify::moving::INSTANTS;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::stage::{NOISE_MEMORY, Prior};
@@ -13,13 +14,10 @@ const DOUBT: f64 = 2000.0;
 
 /// Neighbouring samples and starts share their noise, and the evidence is a mean over all sizes of a switch: it rises by chance as if one
 /// sample in so many were a trial of its own.
-const TRIAL: f64 = 50.0;
+const TRIAL: f64 = 100.0;
 
 /// Evidence that chance brings once in some ten thousand samples, nats.
 const UNUSUAL: f64 = 5.0;
-
-/// By so many std of its instant a switch may have come earlier than it seems.
-const EARLIER: f64 = 2.0;
 
 /// A law that is not vouched for, nor stands its trial, needs this many times the evidence.
 const UNPROVEN: f64 = 10.0;
@@ -89,10 +87,8 @@ impl Tracker {
         self.set_spread(problem);
         self.scales.remember(&self.stage.scales, 1.0);
         if output.valid {
-            let early = (EARLIER * distance.unwrap_or(0.0) / self.last_interval()) as u64;
-            let earliest = instant.saturating_sub(early);
-            let between = |first: u64, last: u64| first + last.saturating_sub(first) / 2;
-            let instants = [earliest, between(earliest, instant), instant, between(instant, start), start];
+            let mut instants = [0; INSTANTS];
+            self.bank.likeliest_starts(&mut instants);
             self.try_drift(problem, instants);
         }
         self.bank.change(&suspect, &mut self.change);
