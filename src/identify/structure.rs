@@ -35,8 +35,10 @@ pub struct Structure {
     /// What the price of each term adds to 2 ln N.
     surcharge: Vec<f64>,
     present: Present,
-    /// Relative error of eq. (8) that the last solution with all terms states.
+    /// Relative error of eq. (8) that the last solution with all terms states, and what it has of the dropped ones.
     pub full_error: f64,
+    /// That solution's values.
+    full: Vec<f64>,
 }
 
 impl Structure {
@@ -48,6 +50,7 @@ impl Structure {
             surcharge: vec![0.0; n],
             present: Present(vec![true; n]),
             full_error: f64::INFINITY,
+            full: vec![0.0; n],
         }
     }
 
@@ -84,12 +87,16 @@ impl Structure {
         active.fill(true);
         self.solve(information, coefficients, active, solution);
         self.full_error = stated(&self.values, solution);
+        self.full.copy_from_slice(&self.values);
         let clear = solution.smallest_pivot() > CLEAR;
         if !clear && present {
             active.copy_from_slice(&self.present.0);
             self.add_missing(information, price, coefficients, active, solution);
         }
         self.drop_needless(information, maybe, price, coefficients, active, solution);
+        // a term may be large and yet too uncertain for its price: without it the law would be another one
+        let dropped = self.full.iter().zip(active.iter()).filter(|(_, active)| !**active);
+        self.full_error += dropped.map(|(value, _)| value * value).sum::<f64>() / sum_of_squares(&self.full);
         coefficients.copy_from_slice(&self.values);
     }
 
@@ -178,8 +185,11 @@ fn stated(values: &[f64], solution: &Solution) -> f64 {
     if !solution.determined.iter().all(|determined| *determined) {
         return f64::INFINITY;
     }
-    let squares: f64 = values.iter().map(|value| value * value).sum();
-    (0..values.len()).map(|index| solution.variance(index)).sum::<f64>() / squares
+    (0..values.len()).map(|index| solution.variance(index)).sum::<f64>() / sum_of_squares(values)
+}
+
+fn sum_of_squares(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum()
 }
 
 #[cfg(test)]

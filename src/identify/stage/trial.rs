@@ -16,8 +16,11 @@ const SURE: f64 = 0.5 * TRUSTED;
 /// Meanwhile the coefficients have moved by less than this, as e of eq. (8).
 const STOOD: f64 = 0.05 * 0.05;
 
-/// A law that has stood while its record grew by this factor stands whatever other terms might have done.
+/// A law that has stood while its record grew by this factor stands whatever other terms might have done …
 const LONG: f64 = 2.4;
+
+/// … if that has so many samples: within a small part of a motion other terms do nothing.
+const SAMPLES: u64 = 2000;
 
 /// All coefficients as they were when the record had some length.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,11 +32,14 @@ pub(super) struct Trial {
 }
 
 impl Stage {
-    /// Whether the law would hold with other terms too: with all of them its covariance is small enough, or it has stood long.
+    /// Whether the law would hold with other terms too: with all of them it is sure enough, it has stood long, or it explains its record
+    /// with the terms of the law before.
     pub fn stands(&self) -> bool {
         let grown = self.trial.length as f64 / self.trial.stood_from as f64;
         let allowed = if grown < DOUBTED { SURE } else { TRUSTED };
-        self.stood && (grown >= LONG || self.structure.full_error < allowed || self.explains && self.structure.is_as_before(&self.active))
+        let sure = self.structure.full_error < allowed;
+        let long = grown >= LONG && self.trial.length >= SAMPLES;
+        self.stood && (sure || long || self.explains && self.structure.is_as_before(&self.active))
     }
 
     /// Whether the law is known.

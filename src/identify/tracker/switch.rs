@@ -80,7 +80,7 @@ impl Tracker {
         let start = (self.bank.after(&suspect, level) + 1).min(last);
         let time = |number: u64| self.window.sample(number).t;
         let distance = self.bank.distance_of_switch(time(instant), self.now(), time);
-        if self.is_unconfirmed() || self.was_never_right(instant, last) {
+        if self.is_unconfirmed() || self.was_never_right(instant, last, suspect.evidence) {
             return self.take_back(problem, output);
         }
         self.keep_law(problem, output);
