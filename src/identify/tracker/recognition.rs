@@ -31,7 +31,7 @@ const LINGER: u64 = 3;
 const CONTRADICTED: f64 = 0.15;
 
 /// One law recognised wrongly is likelier beforehand than one more switch so soon, nats.
-const ONE_MISTAKE: f64 = 5.0;
+const ONE_MISTAKE: f64 = 10.0;
 
 /// The time after an alarm in which the bank still speaks for known laws.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
