@@ -2,7 +2,7 @@
 //!
 //! A smooth motion leaves third differences small; under a rough excitation, held from sample to sample, they follow from it:
 //! Δ³q̇ ≈ (F₂ − 2F₁ + F₀) dt/m and Δ³q ≈ (F₂ − F₀) dt²/2m. What a regression on these leaves is noise, of 20 times the sensor's variance. A
-//! difference far off holds an outlier and is left out.
+//! difference far off holds an outlier and is left out, and so are its neighbours: the outlier is in them too, a third as large.
 
 use super::identifier::Sample;
 use serde::{Deserialize, Serialize};
@@ -33,6 +33,8 @@ struct Moments {
     dr: f64,
     rr: f64,
     far: u32,
+    /// The last difference and what explains it, until the next one is no outlier either.
+    waiting: Option<[f64; 2]>,
     /// Slope, and mean square of what it leaves, of the first differences; none before.
     first: Option<[f64; 2]>,
 }
@@ -41,13 +43,20 @@ impl Moments {
     fn add(&mut self, difference: f64, explaining: f64) {
         let beyond_numbers = !(difference * difference).is_finite() || !(explaining * explaining).is_finite();
         if beyond_numbers || self.is_far(difference, explaining) {
-            self.far += 1;
+            (self.far, self.waiting) = (self.far + 1, None);
             if self.far > LASTS {
                 *self = Moments::default();
             }
             return;
         }
-        self.far = 0;
+        let follows = std::mem::take(&mut self.far) > 0;
+        let next = (!follows).then_some([difference, explaining]);
+        if let Some([difference, explaining]) = std::mem::replace(&mut self.waiting, next) {
+            self.count_in(difference, explaining);
+        }
+    }
+
+    fn count_in(&mut self, difference: f64, explaining: f64) {
         self.count = (self.count + 1.0).min(MEMORY);
         let share = self.count.recip();
         self.dd += share * (difference * difference - self.dd);

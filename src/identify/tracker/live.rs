@@ -123,8 +123,10 @@ impl Live {
         self.covariance.copy_from_slice(&stage.solution.covariance);
         let [before, last] = [window.ready() - 2, window.ready() - 1].map(|number| window.sample(number).t);
         self.lasting = stage.scales.natural_time().min(LONGEST_ERROR * (last - before));
-        if !self.running {
+        if !(self.running && self.proven) {
             self.loudness = Loudness::USUAL;
+        }
+        if !self.running {
             self.restart_prediction(last);
         }
         self.next = window.ready();
