@@ -9,11 +9,14 @@
 //! ½ (g + Λμ)ᵀ (M + Λ)⁻¹ (g + Λμ) − ½ μᵀΛμ − ½ ln det(M + Λ) + ½ ln det Λ   (+ what all priors share)
 //! ```
 //!
-//! "No switch" has the information that the stage gave on its own coefficients up to the start; "switch" a prior as wide as
-//! physics makes plausible. Their difference is the evidence of a switch (Willsky and Jones 1976, with a prior in the
-//! place of the maximum). Starts are kept on a grid whose spacing grows with age.
+//! "No switch" has the information that the stage gave on its coefficients up to the start, on all that the law may have or on its own
+//! alone; "switch" a prior as wide as physics makes plausible, of all coefficients or of one ([`super::Single`]). Their difference is
+//! the evidence of a switch (Willsky and Jones 1976, with a prior in the place of the maximum). Starts are kept on a grid whose spacing grows
+//! with age, and where the evidence has a peak.
 
+mod hypothesis;
 mod instant;
+mod unswitched;
 
 use super::filter::Innovation;
 use super::information::Information;
@@ -21,16 +24,11 @@ use super::pass::IntervalMap;
 use super::single::{Single, either, log_sum};
 use super::symmetric::{Lane, System, WIDTH};
 use super::weighing::{Belief, Weighing, likelihood};
+use hypothesis::Hypothesis;
 use serde::{Deserialize, Serialize};
 
 /// Pivots this far below their diagonal are rounding.
 const TOLERANCE: f64 = 1e-13;
-
-/// A law that explains its record is trusted with this fraction of its information: its covariance is that of a linearisation.
-const CAUTION: f64 = 0.3;
-
-/// One that does not, with this: what it leaves comes and goes with the motion.
-const MORE_CAUTION: f64 = 0.03;
 
 /// Evidence of this many levels at once comes from the last samples alone.
 const OVERWHELMING: f64 = 10.0;
@@ -41,17 +39,8 @@ const MARGIN: f64 = 5.0;
 /// Starts with this much less evidence than the best are none that a switch may have had, nats.
 const FAR_BELOW: f64 = 12.0;
 
-/// Looks at a hypothesis this much older come half as often, samples.
-const AGING: f64 = 20.0;
-
 /// Evidence that chance seldom gives a start which lies between others, nats.
 const OUTSTANDING: f64 = 4.0;
-
-/// A law of this probability is none, as a logarithm.
-const NEGLIGIBLE: f64 = -60.0;
-
-/// A hypothesis whose innovations together hold less than this cannot speak for a switch, nats.
-const SILENT: f64 = 4.0;
 
 /// What the law in use knows of its coefficients when a hypothesis starts.
 #[derive(Clone, Copy, Debug)]
@@ -75,42 +64,6 @@ pub struct Suspect {
     pub start: u64,
     /// The hypothesis it is.
     index: usize,
-}
-
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Hypothesis {
-    start: u64,
-    age: u32,
-    /// Age at the last look.
-    looked: u32,
-    evidence: f64,
-    /// ½ Σ ε²/s since the start: no change explains more.
-    unexplained: f64,
-    /// The same at the last look.
-    unexplained_then: f64,
-    /// ∂q/∂δ and ∂q̇/∂δ, each n long and filled up with zeros.
-    sensitivity: [Vec<Lane>; 2],
-    information: Information,
-    /// Λ of "no switch", as [`Information::matrix`].
-    prior: Vec<f64>,
-    /// Λμ of "no switch": what the stage up to the start says about the coefficients in use.
-    pull: Vec<f64>,
-    /// With every coefficient that the law may have.
-    full: Unswitched,
-    /// With its own alone, where it has dropped others.
-    own: Unswitched,
-}
-
-/// "No switch", of a law with certain terms.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Unswitched {
-    active: Vec<bool>,
-    /// μᵀΛμ.
-    at_mean: f64,
-    /// ln det Λ.
-    log_determinant: f64,
-    /// Logarithm of its probability before the hypothesis starts.
-    log_weight: f64,
 }
 
 /// What a step of the stream does to every hypothesis alike.
@@ -140,23 +93,9 @@ impl Bank {
     /// Room for `capacity` ≥ 4 hypotheses on `n` coefficients.
     pub fn new(n: usize, capacity: usize) -> Bank {
         let lanes = || vec![[0.0; WIDTH]; n.div_ceil(WIDTH)];
-        let hypothesis = Hypothesis {
-            start: 0,
-            age: 0,
-            looked: 0,
-            evidence: 0.0,
-            unexplained: 0.0,
-            unexplained_then: 0.0,
-            sensitivity: [lanes(), lanes()],
-            information: Information::none(n),
-            prior: Information::none(n).matrix,
-            pull: vec![0.0; n],
-            full: Unswitched::none(n),
-            own: Unswitched::none(n),
-        };
         Bank {
             n,
-            hypotheses: vec![hypothesis; capacity],
+            hypotheses: vec![Hypothesis::none(n); capacity],
             count: 0,
             spread: vec![1.0; n],
             spread_log_determinant: 0.0,
@@ -185,30 +124,7 @@ impl Bank {
             let least = self.least_missed(start);
             self.remove(least);
         }
-        let n = self.n;
-        let hypothesis = &mut self.hypotheses[self.count];
-        (hypothesis.start, hypothesis.age, hypothesis.looked) = (start, 0, 0);
-        (hypothesis.evidence, hypothesis.unexplained, hypothesis.unexplained_then) = (0.0, 0.0, 0.0);
-        hypothesis.sensitivity.iter_mut().for_each(|channel| channel.fill([0.0; WIDTH]));
-        hypothesis.information.clear();
-        let trust = if law.explains { CAUTION } else { MORE_CAUTION };
-        hypothesis.prior.iter_mut().zip(&law.information.matrix).for_each(|(slot, entry)| *slot = trust * entry);
-        for (index, (slot, open)) in hypothesis.full.active.iter_mut().zip(law.open).enumerate() {
-            *slot = *open && law.information.matrix[index * n + index] > 0.0;
-        }
-        hypothesis.pull.iter_mut().zip(&law.information.score).for_each(|(pull, score)| *pull = trust * score);
-        hypothesis.full.settle(&hypothesis.prior, &mut hypothesis.pull, &mut self.system);
-        hypothesis.full.log_weight = 0.0;
-        let mut dropped = false;
-        for ((slot, full), own) in hypothesis.own.active.iter_mut().zip(&hypothesis.full.active).zip(law.own) {
-            *slot = *full && *own;
-            dropped |= *full && !*own;
-        }
-        hypothesis.own.log_weight = f64::NEG_INFINITY;
-        if dropped {
-            hypothesis.own.settle_beside(&hypothesis.prior, &hypothesis.pull, &mut self.system);
-            hypothesis.share(&self.spread);
-        }
+        self.hypotheses[self.count].begin(start, law, &self.spread, &mut self.system);
         self.count += 1;
     }
 
@@ -340,12 +256,10 @@ impl Bank {
         let Bank { hypotheses, system, single, spread, .. } = self;
         let hypothesis = &hypotheses[index];
         let [mut one, mut none] = [f64::NEG_INFINITY; 2];
-        for law in [&hypothesis.full, &hypothesis.own] {
-            if law.log_weight > NEGLIGIBLE {
-                let unswitched = law.log_weight + law.evidence(hypothesis, system);
-                none = log_sum(none, unswitched);
-                one = log_sum(one, unswitched + single.evidence(&hypothesis.information, system, &law.active, spread));
-            }
+        for law in hypothesis.likely_laws() {
+            let unswitched = law.log_weight + hypothesis.unswitched(law, system);
+            none = log_sum(none, unswitched);
+            one = log_sum(one, unswitched + single.evidence(&hypothesis.information, system, &law.active, spread));
         }
         [either(all, one), none]
     }
@@ -362,13 +276,17 @@ impl Bank {
         0.5 * (self.system.squares() - self.system.log_determinant() + self.spread_log_determinant)
     }
 
-    /// The hypothesis whose neighbours leave the smallest gap, relative to their age; one that stands out from them is kept.
+    /// The hypothesis whose neighbours leave the smallest gap, relative to their age; the suspect is kept, and one that stands out as much
+    /// from its other neighbours.
     fn least_missed(&self, now: u64) -> usize {
-        let most = self.suspect().map_or(0.0, |suspect| suspect.evidence);
+        let suspect = self.suspect();
+        let most = suspect.map_or(0.0, |suspect| suspect.evidence);
+        let is_suspect = |index: usize| suspect.is_some_and(|suspect| suspect.index == index);
         let evidence = |index: usize| self.hypotheses[index].evidence;
         let stands_out = |index: usize| {
             let own = evidence(index);
-            own >= most || own > OUTSTANDING && own > 0.5 * most && own > evidence(index - 1) && own > evidence(index + 1)
+            let above = |neighbour: usize| own > evidence(neighbour) || is_suspect(neighbour);
+            is_suspect(index) || own > OUTSTANDING.max(0.5 * most) && above(index - 1) && above(index + 1)
         };
         let gap = |index: usize| {
             let (before, after) = (self.hypotheses[index - 1].start, self.hypotheses[index + 1].start);
@@ -381,93 +299,6 @@ impl Bank {
     fn remove(&mut self, index: usize) {
         self.hypotheses[index..self.count].rotate_left(1);
         self.count -= 1;
-    }
-}
-
-impl Hypothesis {
-    /// Evidence at the last look, and what has come since.
-    fn promise(&self) -> f64 {
-        let fresh = self.unexplained - self.unexplained_then;
-        if fresh > 0.0 && self.unexplained > SILENT { self.evidence + fresh } else { f64::NEG_INFINITY }
-    }
-
-    /// Samples since the last look, in terms of how often one is due at this age; 0 where none can find anything.
-    fn wait(&self) -> f64 {
-        let wait = f64::from(self.age - self.looked) / (1.0 + f64::from(self.age) / AGING);
-        if self.unexplained > SILENT { wait } else { 0.0 }
-    }
-
-    /// Shares the probability among the law's own terms alone and all that it may have: what all of them gain in likelihood, against how
-    /// much of what a dropped one could have been the record leaves (Savage and Dickey).
-    fn share(&mut self, precision: &[f64]) {
-        let Hypothesis { full, own, .. } = self;
-        let dropped = full.active.iter().zip(&own.active).zip(precision).filter(|((full, own), _)| **full && !**own);
-        let width: f64 = dropped.map(|(_, precision)| -0.5 * precision.ln()).sum();
-        let odds =
-            0.5 * (own.at_mean - full.at_mean) + 0.5 * (full.log_determinant - own.log_determinant) + width;
-        own.log_weight = -(1.0 + (-odds).exp()).ln();
-        full.log_weight = -(1.0 + odds.exp()).ln();
-    }
-
-    /// Moves the point about which δ is counted: Λμ becomes Λ(μ − step).
-    fn shift(&mut self, step: &[f64]) {
-        let (n, active) = (step.len(), &self.full.active);
-        self.information.shift(step);
-        let before: f64 = (0..n).filter(|row| active[*row]).map(|row| step[row] * self.pull[row]).sum();
-        for row in (0..n).filter(|row| active[*row]) {
-            self.pull[row] -= self.prior[row * n + row] * step[row];
-            for column in (row + 1..n).filter(|column| active[*column]) {
-                let entry = self.prior[row * n + column];
-                self.pull[row] -= entry * step[column];
-                self.pull[column] -= entry * step[row];
-            }
-        }
-        let after: f64 = (0..n).filter(|row| active[*row]).map(|row| step[row] * self.pull[row]).sum();
-        self.full.at_mean -= before + after;
-        self.own.at_mean -= before + after;
-        // what it did not have moves: its terms are others now
-        if (0..n).any(|row| step[row] != 0.0 && !self.own.active[row]) {
-            (self.full.log_weight, self.own.log_weight) = (0.0, f64::NEG_INFINITY);
-        }
-    }
-}
-
-impl Unswitched {
-    fn none(n: usize) -> Unswitched {
-        Unswitched { active: vec![false; n], at_mean: 0.0, log_determinant: 0.0, log_weight: 0.0 }
-    }
-
-    /// Leaves out what the prior says nothing of.
-    fn settle(&mut self, prior: &[f64], pull: &mut [f64], system: &mut System) {
-        self.settle_beside(prior, pull, system);
-        for (index, (active, pull)) in self.active.iter_mut().zip(pull).enumerate() {
-            *active &= system.is_solved(index);
-            *pull = if *active { *pull } else { 0.0 };
-        }
-    }
-
-    fn settle_beside(&mut self, prior: &[f64], pull: &[f64], system: &mut System) {
-        system.load(prior, None);
-        system.set_right(pull.iter().copied());
-        self.isolate_inactive(system);
-        system.eliminate(TOLERANCE);
-        (self.at_mean, self.log_determinant) = (system.squares(), system.log_determinant());
-    }
-
-    /// Log-evidence of no switch; leaves the eliminated system behind.
-    fn evidence(&self, hypothesis: &Hypothesis, system: &mut System) -> f64 {
-        system.load(&hypothesis.information.matrix, Some(&hypothesis.prior));
-        system.set_right(hypothesis.information.score.iter().zip(&hypothesis.pull).map(|(score, pull)| score + pull));
-        self.isolate_inactive(system);
-        system.eliminate(TOLERANCE);
-        0.5 * (system.squares() - self.at_mean - (system.log_determinant() - self.log_determinant))
-    }
-
-    /// Takes what the law does not have out of the system.
-    fn isolate_inactive(&self, system: &mut System) {
-        for (unknown, _) in self.active.iter().enumerate().filter(|(_, active)| !**active) {
-            system.isolate(unknown);
-        }
     }
 }
 
@@ -518,5 +349,87 @@ impl Shared {
             *q_state = std::array::from_fn(|lane| rest_q * carried_q[lane] - second.gain[0] * seen_qd[lane]);
             *qd_state = std::array::from_fn(|lane| seen_qd[lane] - second.gain[1] * seen_qd[lane]);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::StandardNormal;
+
+    const TRANSITION: [[f64; 2]; 2] = [[0.98, 0.02], [-0.02, 0.98]];
+
+    /// What an interval does to (q, q̇) by unit of each of eight coefficients.
+    fn input(number: u64) -> Vec<[f64; 2]> {
+        (0..8).map(|k| [0.0, 0.1 * (0.05 * (f64::from(k) + 1.0) * number as f64).sin()]).collect()
+    }
+
+    /// A bank that has seen `samples`, q̇ alone measured with std 1; at sample `switch` a coefficient moves by `change`.
+    fn bank(samples: u64, switch: u64, change: f64) -> Bank {
+        let mut generator = ChaCha8Rng::seed_from_u64(7);
+        let (mut bank, mut information) = (Bank::new(8, 12), Information::none(8));
+        bank.set_spread(&[5.0; 8]);
+        (0..8).for_each(|k| information.matrix[9 * k] = 1e4);
+        let (mut q, mut qd) = (0.0, 0.0);
+        for number in 1..=samples {
+            let map = IntervalMap { transition: TRANSITION, input: input(number), push: [0.0; 2] };
+            let moved = if number > switch { change * map.input[2][1] } else { 0.0 };
+            (q, qd) = (0.98 * q + 0.02 * qd, -0.02 * q + 0.98 * qd + moved);
+            let residual = qd + generator.sample::<f64, _>(StandardNormal);
+            let said = Innovation { residual, variance: 1.0, precision: 1.0, gain: [0.0; 2] };
+            bank.step(&map, &[None, Some(said)]);
+            bank.look_at_all();
+            if number.is_multiple_of(2) {
+                bank.spawn(
+                    number,
+                    &Law { information: &information, open: &[true; 8], own: &[true; 8], explains: true },
+                );
+            }
+        }
+        bank
+    }
+
+    /// Of a switch that leaves every coefficient open.
+    fn of_all(bank: &mut Bank, index: usize) -> f64 {
+        let all = bank.all_switched(index);
+        let Bank { hypotheses, system, .. } = bank;
+        let law = hypotheses[index].likely_laws().next().cloned().unwrap();
+        all - hypotheses[index].unswitched(&law, system)
+    }
+
+    #[test]
+    fn a_switch_of_one_coefficient_has_more_evidence_than_all_of_them_leave() {
+        let mut bank = bank(400, 200, 1.0);
+        let suspect = bank.suspect().unwrap();
+        let all = of_all(&mut bank, suspect.index);
+        assert!(suspect.evidence > all + 3.0 && suspect.start.abs_diff(200) < 40, "{suspect:?}, {all}");
+    }
+
+    #[test]
+    fn without_a_switch_nothing_speaks_for_one() {
+        let evidence = bank(400, 400, 0.0).suspect().unwrap().evidence;
+        assert!(evidence < 3.0, "{evidence}");
+    }
+
+    #[test]
+    fn the_likeliest_starts_lie_about_the_switch_in_their_order() {
+        let bank = bank(500, 200, 1.5);
+        let mut starts = [0; 4];
+        bank.likeliest_starts(&mut starts);
+        assert!(starts.is_sorted() && starts.iter().all(|start| start.abs_diff(200) < 60), "{starts:?}");
+    }
+
+    #[test]
+    fn a_start_that_stands_out_is_kept_while_others_are_thinned_out() {
+        let mut bank = bank(60, 60, 0.0);
+        let start = bank.hypotheses[5].start;
+        (bank.hypotheses[5].evidence, bank.hypotheses[8].evidence) = (6.0, 9.0);
+        let nothing = Information::none(8);
+        for number in 61..200 {
+            bank.spawn(number, &Law { information: &nothing, open: &[true; 8], own: &[true; 8], explains: true });
+        }
+        assert!(bank.hypotheses.iter().any(|hypothesis| hypothesis.start == start));
     }
 }

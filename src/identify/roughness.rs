@@ -122,16 +122,16 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
 
-    /// A slow motion with noise of std 0.01, one sample in 200 far off, the first of them soon, under an excitation that pushes q̇ from
+    /// A slow motion with noise of std 0.01, one sample in 200 off by this, the first of them soon, under an excitation that pushes q̇ from
     /// sample to sample.
-    fn found(push: f64) -> f64 {
+    fn found(push: f64, outlier: f64) -> f64 {
         let mut generator = ChaCha8Rng::seed_from_u64(1);
         let mut white = || generator.sample::<f64, _>(StandardNormal);
         let (mut roughness, mut samples, mut qd) = (Roughness::default(), Vec::new(), 0.0);
         for k in 0..4000 {
             let t = 0.001 * f64::from(k);
             let excitation = push * white();
-            let off = if k % 200 == 37 { 0.3 } else { 0.0 };
+            let off = if k % 200 == 37 { outlier } else { 0.0 };
             let noise = 0.01 * white() + off;
             samples.push(Sample { t, q: t.sin() + noise, qd: qd + t.cos() + noise, excitation });
             qd += 0.5 * excitation;
@@ -143,7 +143,14 @@ mod tests {
     #[test]
     fn neither_outliers_nor_a_rough_excitation_count_as_noise() {
         for push in [0.0, 2.0] {
-            assert!((found(push) / 0.01 - 1.0).abs() < 0.08, "{push}: {}", found(push));
+            assert!((found(push, 0.3) / 0.01 - 1.0).abs() < 0.08, "{push}: {}", found(push, 0.3));
         }
+    }
+
+    /// An outlier of 20 stds is in four differences, in the first and the last of them as one of 4.5.
+    #[test]
+    fn the_ends_of_an_outlier_s_differences_do_not_count_either() {
+        let (with, without) = (found(0.0, 0.2), found(0.0, 0.0));
+        assert!((with / without - 1.0).abs() < 0.01, "{with} against {without}");
     }
 }

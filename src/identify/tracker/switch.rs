@@ -14,7 +14,7 @@ const DOUBT: f64 = 2000.0;
 
 /// Neighbouring samples and starts share their noise, and the evidence is a mean over all sizes of a switch: it rises by chance as if one
 /// sample in so many were a trial of its own.
-const TRIAL: f64 = 100.0;
+const TRIAL: f64 = 85.0;
 
 /// Evidence that chance brings once in some ten thousand samples, nats.
 const UNUSUAL: f64 = 5.0;
