@@ -20,13 +20,14 @@ use serde::{Deserialize, Serialize};
 pub struct Single {
     /// M through the elimination of A: n rows of as many lanes as n needs.
     crossed: Vec<Lane>,
-    evidence: Vec<f64>,
+    /// ½ s²τ²/(1 + iτ²) and 1 + iτ² of each.
+    changes: Vec<[f64; 2]>,
 }
 
 impl Single {
     /// Room for `n` coefficients.
     pub fn new(n: usize) -> Single {
-        Single { crossed: vec![[0.0; WIDTH]; n * n.div_ceil(WIDTH)], evidence: vec![0.0; n] }
+        Single { crossed: vec![[0.0; WIDTH]; n * n.div_ceil(WIDTH)], changes: vec![[0.0; 2]; n] }
     }
 
     /// Log-evidence, nats, of a change of one coefficient, each as likely as the others, against none. `system` is A and g + Λμ,
@@ -34,15 +35,16 @@ impl Single {
     pub fn evidence(&mut self, record: &Information, system: &System, open: &[bool], precision: &[f64]) -> f64 {
         let n = record.n;
         self.cross(record, system, open);
-        for (k, (slot, precision)) in self.evidence.iter_mut().zip(precision).enumerate() {
+        for (k, (slot, precision)) in self.changes.iter_mut().zip(precision).enumerate() {
             let [own, pulled] = system.products(&self.crossed, k);
             let information = (record.matrix[k * n + k] - own).max(0.0);
             let score = record.score[k] - pulled;
             let shrunk = 1.0 + information / precision;
-            *slot = 0.5 * (score * score / (precision * shrunk) - shrunk.ln());
+            *slot = [0.5 * score * score / (precision * shrunk), shrunk];
         }
-        let largest = self.evidence.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        largest + (self.evidence.iter().map(|evidence| (evidence - largest).exp()).sum::<f64>() / n as f64).ln()
+        let largest = self.changes.iter().map(|[gain, _]| *gain).fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = self.changes.iter().map(|[gain, shrunk]| (gain - largest).exp() / shrunk.sqrt()).sum();
+        largest + (sum / n as f64).ln()
     }
 
     /// M, both triangles, through the elimination; what is not open was not in it.
