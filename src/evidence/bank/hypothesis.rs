@@ -12,6 +12,9 @@ const CAUTION: f64 = 0.3;
 /// One that does not, with this: what it leaves comes and goes with the motion.
 const MORE_CAUTION: f64 = 0.03;
 
+/// No law is trusted to be constant more exactly than to this part of what a switch moves: below lies what the integration errs by.
+const FINEST: f64 = 1e-7;
+
 /// Looks at a hypothesis this much older come half as often, samples.
 const AGING: f64 = 20.0;
 
@@ -72,7 +75,8 @@ impl Hypothesis {
         (self.evidence, self.unexplained, self.unexplained_then) = (0.0, 0.0, 0.0);
         self.sensitivity.iter_mut().for_each(|channel| channel.fill([0.0; WIDTH]));
         self.information.clear();
-        let trust = if law.explains { CAUTION } else { MORE_CAUTION };
+        let sharpest = (0..n).map(|k| law.information.matrix[k * n + k] / precision[k]).fold(0.0, f64::max);
+        let trust = if law.explains { CAUTION } else { MORE_CAUTION }.min((FINEST * FINEST * sharpest).recip());
         self.prior.iter_mut().zip(&law.information.matrix).for_each(|(slot, entry)| *slot = trust * entry);
         self.pull.iter_mut().zip(&law.information.score).for_each(|(pull, score)| *pull = trust * score);
         for (index, (slot, open)) in self.full.active.iter_mut().zip(law.open).enumerate() {
