@@ -15,6 +15,9 @@ use super::information::Information;
 use super::symmetric::{Lane, System, WIDTH};
 use serde::{Deserialize, Serialize};
 
+/// What a change has of its own beside the law's uncertainty, relative to all that it has; less is rounding.
+const OWN: f64 = 1e-9;
+
 /// Room for the changes of n coefficients, one at a time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Single {
@@ -37,10 +40,11 @@ impl Single {
         self.cross(record, system, open);
         for (k, (slot, precision)) in self.changes.iter_mut().zip(precision).enumerate() {
             let [own, pulled] = system.products(&self.crossed, k);
-            let information = (record.matrix[k * n + k] - own).max(0.0);
+            let information = record.matrix[k * n + k] - own;
             let score = record.score[k] - pulled;
             let shrunk = 1.0 + information / precision;
-            *slot = [0.5 * score * score / (precision * shrunk), shrunk];
+            let clear = information > OWN * record.matrix[k * n + k];
+            *slot = if clear { [0.5 * score * score / (precision * shrunk), shrunk] } else { [0.0, 1.0] };
         }
         let largest = self.changes.iter().map(|[gain, _]| *gain).fold(f64::NEG_INFINITY, f64::max);
         let sum: f64 = self.changes.iter().map(|[gain, shrunk]| (gain - largest).exp() / shrunk.sqrt()).sum();
