@@ -123,11 +123,11 @@ impl Live {
         self.covariance.copy_from_slice(&stage.solution.covariance);
         let [before, last] = [window.ready() - 2, window.ready() - 1].map(|number| window.sample(number).t);
         self.lasting = stage.scales.natural_time().min(LONGEST_ERROR * (last - before));
-        if !(self.running && self.proven) {
-            self.loudness = Loudness::USUAL;
-        }
         if !self.running {
+            self.loudness = Loudness::USUAL;
             self.restart_prediction(last);
+        } else if !self.proven {
+            self.loudness.forget_lately();
         }
         self.next = window.ready();
         self.running = true;

@@ -37,6 +37,11 @@ impl Loudness {
     /// Nothing but what the record knows.
     pub(super) const USUAL: Loudness = Loudness { last: [0.0; 2], now: [1.0; 2], lately: [1.0; 2] };
 
+    /// What is published is what the record knows.
+    pub(super) fn forget_lately(&mut self) {
+        self.lately = [1.0; 2];
+    }
+
     /// Takes innovations that were weighed with the sensors' variances times [`Loudness::factor`].
     #[inline]
     pub(super) fn add(&mut self, innovations: &[Option<Innovation>; 2], measured: &[Option<f64>; 2]) {
