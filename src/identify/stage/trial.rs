@@ -13,6 +13,9 @@ const DOUBTED: f64 = 1.25;
 /// A law that has stood for less than the longer trial must be this sure with all terms, as e of eq. (8) squared.
 const SURE: f64 = 0.5 * TRUSTED;
 
+/// One with the terms of the law before must be known at least so well with all terms.
+const OPEN: f64 = 1.0;
+
 /// Meanwhile the coefficients have moved by less than this, as e of eq. (8).
 const STOOD: f64 = 0.05 * 0.05;
 
@@ -39,7 +42,8 @@ impl Stage {
         let allowed = if grown < DOUBTED { SURE } else { TRUSTED };
         let sure = self.structure.full_error < allowed;
         let long = grown >= LONG && self.trial.length >= SAMPLES;
-        self.stood && (sure || long || self.explains && self.structure.is_as_before(&self.active))
+        let as_before = self.explains && self.structure.is_as_before(&self.active);
+        self.stood && (sure || long || as_before && self.structure.full_error < OPEN)
     }
 
     /// Whether the law is known.
