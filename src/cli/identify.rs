@@ -14,6 +14,9 @@ use clap::builder::PossibleValuesParser;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+/// Least width of the column of terms.
+const TERM: usize = 12;
+
 const EXAMPLE: &str = r#"Examples:
   switchid identify recording.csv --model model.toml
   switchid identify recording.csv@20:60 --model model.toml --hold linear --json
@@ -225,9 +228,11 @@ fn head(run: &Run) -> String {
 fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -> String {
     let unknown = "cannot be determined from these data";
     let mut text = stage.law(forced).unwrap_or_else(|| unknown.into()) + "\n";
+    let longest = stage.known().map(|(known, _)| known.term.name().chars().count()).max();
+    let width = longest.unwrap_or(0).max(TERM);
     for (known, std) in stage.known() {
         let line = format!(
-            "  {:<12} {:>14.6e} ± {std:.1e} {}{}",
+            "  {:<width$} {:>14.6e} ± {std:.1e} {}{}",
             known.term.name(),
             known.value,
             unit(known.term, units),

@@ -169,6 +169,22 @@ fn text_goes_to_stdout_and_names_what_is_not_known() {
 }
 
 #[test]
+fn std_stand_in_one_column_however_long_the_names() {
+    let bench = Bench::new("names");
+    let [friction, plant] = ["coulomb_friction = \"fit\"", "initial = { q = 0.5, qd = 0.0 }"];
+    bench.write("model.toml", &format!("{MODEL}quadratic_damping = \"fit\"\n{friction}\n"));
+    let terms = "terms = [\"qdd\", \"qd\", \"q\", \"q^3\", \"coulomb_friction\", \"quadratic_damping\"]";
+    let stage = "[[stage]]\nstart = 0.0\ncoefficients = [1.0, 0.3, 4.0, 2.0, 0.1, 0.2]\namplitude = 2.0\nomega = 1.5\n";
+    let noise = "noise = { q = 1e-3, qd = 1e-3 }\nexcitation = { kind = \"sine\" }";
+    bench.write("plant.toml", &format!("{terms}\nduration = 15.0\n{plant}\n{noise}\n{stage}"));
+    assert!(bench.run(&["simulate", "plant.toml", "-o", "data.csv"]).status.success());
+    let text = String::from_utf8(bench.identify(&["data.csv"]).stdout).unwrap();
+    let lines = text.lines().filter(|line| line.starts_with("  ") && line.contains('±'));
+    let columns: Vec<usize> = lines.map(|line| line.chars().take_while(|letter| *letter != '±').count()).collect();
+    assert!(columns.len() == 6 && columns.iter().all(|column| *column == columns[0]), "{text}");
+}
+
+#[test]
 fn other_delimiters_and_byte_order_marks_are_read() {
     let bench = Bench::new("delimiters");
     let text = plain("t,q,qd,F", 50);
