@@ -38,7 +38,7 @@ pub(super) struct Hypothesis {
     /// ∂q/∂δ and ∂q̇/∂δ, each n long and filled up with zeros.
     pub(super) sensitivity: [Vec<Lane>; 2],
     pub(super) information: Information,
-    /// Λ of "no switch", as [`Information::matrix`].
+    /// Λ of "no switch", as [`Information::matrix`]: the record's, and of terms that the law has dropped what they could be.
     prior: Vec<f64>,
     /// Λμ of "no switch": what the stage up to the start says about the coefficients in use.
     pull: Vec<f64>,
@@ -81,6 +81,10 @@ impl Hypothesis {
         self.pull.iter_mut().zip(&law.information.score).for_each(|(pull, score)| *pull = trust * score);
         for (index, (slot, open)) in self.full.active.iter_mut().zip(law.open).enumerate() {
             *slot = *open && law.information.matrix[index * n + index] > 0.0;
+        }
+        // a term that was dropped is 0 within what it could be, whatever the record leaves open
+        for index in (0..n).filter(|index| self.full.active[*index] && !law.own[*index]) {
+            self.prior[index * n + index] += precision[index];
         }
         self.full.settle(&self.prior, &self.pull, system);
         for ((slot, full), own) in self.own.active.iter_mut().zip(&self.full.active).zip(law.own) {
@@ -140,6 +144,32 @@ impl Hypothesis {
         // what it did not have moves: its terms are others now
         if (0..n).any(|row| step[row] != 0.0 && !self.own.active[row]) {
             (self.full.log_weight, self.own.log_weight) = (0.0, f64::NEG_INFINITY);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The probabilities of a law with both of two coefficients and with the first alone, the second told to the std 1/√`told`.
+    fn weights(told: f64) -> [f64; 2] {
+        let mut information = Information::none(2);
+        information.add(&[10.0, 0.0], 0.0, 1.0);
+        information.add(&[0.0, told.sqrt()], 0.0, 1.0);
+        let law = Law { information: &information, open: &[true, true], own: &[true, false], explains: true };
+        let mut hypothesis = Hypothesis::none(2);
+        hypothesis.begin(7, &law, &[4.0, 4.0], &mut System::new(2));
+        [hypothesis.full.log_weight.exp(), hypothesis.own.log_weight.exp()]
+    }
+
+    /// The odds are those of the std after and before the record; what it says counts [`CAUTION`] times.
+    #[test]
+    fn a_dropped_term_of_which_the_record_says_nothing_is_as_likely_there_as_not() {
+        for told in [1e-4, 1.0, 4000.0] {
+            let [full, own] = weights(told);
+            let expected = (1.0 + CAUTION * told / 4.0).sqrt();
+            assert!((own / full / expected - 1.0).abs() < 1e-9, "{told}: {} for {expected}", own / full);
         }
     }
 }

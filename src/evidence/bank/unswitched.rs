@@ -34,7 +34,8 @@ impl Unswitched {
     }
 
     /// Shares the probability with the same law without some of its coefficients: what they gain in likelihood, against how much of what each
-    /// could have been, 1/√`precision`, the record leaves (Dickey, *Ann. Math. Stat.* 42 (1971), 204).
+    /// could have been, 1/√`precision`, the record leaves (Dickey, *Ann. Math. Stat.* 42 (1971), 204). What it could have been is in the
+    /// prior that both were settled with.
     pub(super) fn share(&mut self, fewer: &mut Unswitched, precision: &[f64]) {
         let dropped =
             self.active.iter().zip(&fewer.active).zip(precision).filter(|((own, fewer), _)| **own && !**fewer);
@@ -64,6 +65,7 @@ mod tests {
             let x = 0.1 * f64::from(k) - 2.0;
             record.add(&[x, 1.0], offset + 0.1 * (12.9898 * f64::from(k)).sin(), 0.01);
         }
+        record.matrix[3] += 4.0;
         let (mut system, mut full, mut own) = (System::new(2), Unswitched::none(2), Unswitched::none(2));
         full.active = vec![true, true];
         own.active = vec![true, false];

@@ -6,6 +6,7 @@ use crate::evidence::{Innovation, Noise, Observation, Pass};
 use crate::identify::identifier::Output;
 use crate::identify::known::KnownLaw;
 use crate::identify::problem::Problem;
+use crate::identify::scales::Scales;
 use crate::identify::settings::Settings;
 use crate::identify::trials::Trials;
 use crate::identify::window::Window;
@@ -15,7 +16,7 @@ use serde::{Deserialize, Serialize};
 /// The law's own covariance counts this many times where it leaves the state open, as long as it is that of a linearisation …
 const DISTRUST: f64 = 10.0;
 
-/// … which it is over a record of so many samples; later the excess falls with the square of the length.
+/// … which it is over a record of so many samples. It falls with the fourth power of the length then: the hypotheses know it too.
 const LINEAR: f64 = 4000.0;
 
 /// An error of the law acts one way for this many samples at most.
@@ -121,16 +122,21 @@ impl Live {
         self.distrust = distrust(stage.length(window.ready()));
         self.explains = !stage.process_matters;
         self.covariance.copy_from_slice(&stage.solution.covariance);
-        let [before, last] = [window.ready() - 2, window.ready() - 1].map(|number| window.sample(number).t);
-        self.lasting = stage.scales.natural_time().min(LONGEST_ERROR * (last - before));
+        self.follow_scales(&stage.scales, window);
         if !self.running {
             self.loudness = Loudness::USUAL;
-            self.restart_prediction(last);
+            self.restart_prediction(window.sample(window.ready() - 1).t);
         } else if !self.proven {
             self.loudness.forget_lately();
         }
         self.next = window.ready();
         self.running = true;
+    }
+
+    /// Where the motion has no scale yet, an error acts for the longest time.
+    fn follow_scales(&mut self, scales: &Scales, window: &Window) {
+        let [before, last] = [window.ready() - 2, window.ready() - 1].map(|number| window.sample(number).t);
+        self.lasting = scales.natural_time().min(LONGEST_ERROR * (last - before));
     }
 
     /// Error that has come since the record was half as long may be a switch's: it does not count until it has lasted.
@@ -149,9 +155,13 @@ impl Live {
         law: &KnownLaw,
         trials: &mut Trials,
         place: usize,
+        scales: &Scales,
         window: &Window,
     ) {
         self.noise = trials.noise(place);
+        self.loudness = Loudness::USUAL;
+        self.distrust = distrust(law.samples);
+        self.follow_scales(scales, window);
         (self.overdispersion, self.dispersed_at) = (1.0, window.ready());
         (self.explains, self.proven) = (true, true);
         trials.hand_over(place, problem, window, &mut self.pass);

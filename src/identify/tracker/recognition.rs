@@ -184,7 +184,8 @@ impl Tracker {
         let Some(place) = self.recognised else { return };
         if !self.live.running && self.trials.has_caught_up(place, &self.window) {
             let law = &self.known.laws()[place];
-            self.live.adopt_known(problem, law, &mut self.trials, place, &self.window);
+            let scales = &self.stage.scales;
+            self.live.adopt_known(problem, law, &mut self.trials, place, scales, &self.window);
         }
     }
 
