@@ -71,6 +71,9 @@ fn stage_limit(stage: &Stage, noise: Noise, section: &Recording, settings: &Sett
         .collect();
     let pairs: Vec<(Term, f64)> = kept.iter().map(|(term, value, _)| (*term, *value)).collect();
     let sought: Vec<usize> = (0..kept.len()).filter(|index| kept[*index].2 > 0.0).collect();
+    if sought.is_empty() {
+        return None;
+    }
     let law = Law::new(&pairs, &sought).ok()?;
     let (courses, motion) = motion(&pairs, section, settings, noise)?;
     let measured = [section.channels().q, section.channels().qd];

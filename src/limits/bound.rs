@@ -5,7 +5,7 @@ use super::course::{Course, Sensors};
 use super::law::Law;
 use super::marginal::{Marginal, Start};
 use crate::law::Term;
-use nalgebra::{DMatrix, Dyn, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, Dyn, SymmetricEigen};
 
 /// Limit of e below which a law counts as known: 5 % rms.
 pub const SETTLED_ERROR: f64 = 0.05 * 0.05;
@@ -96,7 +96,7 @@ impl Directions {
         if !scaled.iter().all(|value| value.is_finite()) {
             return None;
         }
-        let eigen = SymmetricEigen::new(scaled);
+        let eigen = eigen(scaled);
         let (open, known) = (0..n).partition(|direction| eigen.eigenvalues[*direction] < TOLERANCE);
         Some(Directions { scale, eigen, open, known })
     }
@@ -118,6 +118,14 @@ impl Directions {
     }
 }
 
+/// Also of the empty matrix, which nalgebra refuses: a law of which nothing is sought.
+fn eigen(matrix: DMatrix<f64>) -> SymmetricEigen<f64, Dyn> {
+    match matrix.is_empty() {
+        true => SymmetricEigen { eigenvalues: DVector::zeros(0), eigenvectors: matrix },
+        false => SymmetricEigen::new(matrix),
+    }
+}
+
 fn relative_error(std: &[Option<f64>], coefficients: &[f64]) -> Option<f64> {
     let trace: f64 = std.iter().map(|std| std.map(|std| std * std)).sum::<Option<f64>>()?;
     let size: f64 = coefficients.iter().map(|value| value * value).sum();
@@ -126,4 +134,16 @@ fn relative_error(std: &[Option<f64>], coefficients: &[f64]) -> Option<f64> {
 
 fn inverse_root(diagonal: f64) -> f64 {
     if diagonal > 0.0 { diagonal.sqrt().recip() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_law_of_which_nothing_is_sought_has_no_limit_to_miss() {
+        let law = Law::new(&[(Term::Inertia, 1.0)], &[]).unwrap();
+        let bound = Bound::of(&law, &DMatrix::zeros(0, 0));
+        assert_eq!((bound.std, bound.open, bound.relative_error), (Vec::new(), Vec::new(), Some(0.0)));
+    }
 }

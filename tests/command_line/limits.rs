@@ -121,3 +121,22 @@ fn identify_states_its_std_in_limits() {
     let text = String::from_utf8(bench.run(&arguments).stdout).unwrap();
     assert_eq!(text.matches(" times the limit)").count(), 4, "{text}");
 }
+
+/// A free decay whose stiffness doubles at 6 s.
+const DECAY: &str = "terms = [\"qdd\", \"qd\", \"q\", \"q^3\"]\nduration = 6.2\ninitial = { q = 2.5, qd = 0.0 }\n\
+                     noise = { q = 0.01, qd = 0.01 }\nexcitation = { kind = \"none\" }\n\
+                     [[stage]]\nstart = 0.0\ncoefficients = [1.0, 0.05, 4.0, 2.0]\n\
+                     [[stage]]\nstart = 6.0\ncoefficients = [1.0, 0.05, 8.0, 2.0]\n";
+
+#[test]
+fn a_stage_of_which_only_the_inertia_is_known_has_no_limit() {
+    let bench = Bench::new("limits-nothing-known");
+    bench.write("decay.toml", DECAY);
+    bench.json(&["simulate", "decay.toml", "-o", "decay.csv", "--json"]);
+    for inertia in ["\"fit\"", "1.0"] {
+        bench.write("model.toml", &MODEL.replacen("\"fit\"", inertia, 1));
+        let arguments = ["identify", "decay.csv@0:6.1", "--model", "model.toml", "--hold", "zero", "--json"];
+        let stages = &bench.json(&arguments)["stages"];
+        assert!(stages[0]["limit"].is_object() && stages[1]["limit"].is_null(), "{stages:#}");
+    }
+}
