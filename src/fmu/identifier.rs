@@ -25,6 +25,7 @@ pub fn identifier_knowing(name: &str, model: &Model, known: &SavedLaws) -> Resul
     model.check()?;
     model.check_inertia()?;
     model.check_streaming()?;
+    model.check_free(true)?;
     let mut resources = vec![("model.toml".into(), model.to_toml().into_bytes())];
     if !known.laws.is_empty() {
         check(model, known)?;

@@ -84,8 +84,12 @@ const HOLD_TRIALS: [usize; 3] = [1500, 3000, 6000];
 const BEATEN: f64 = 500.0;
 
 /// The hold under which the first stretch of the recording has the largest likelihood; a straight line where none gives a law,
-/// which errs least where nothing is known. Always by our method: the publication's states no likelihood.
+/// which errs least where nothing is known. Always by our method: the publication's states no likelihood. Of a model with numbers only,
+/// all are estimated.
 pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) -> Hold {
+    let numbers_only = model.check_free(true).is_err();
+    let freed = numbers_only.then(|| model.freed());
+    let model = freed.as_ref().unwrap_or(model);
     let begin = |hold: Hold| {
         let settings = Settings { hold, method: Method::Default, ..*settings };
         Some((hold, Identifier::new(model, settings).ok()?))

@@ -183,6 +183,7 @@ impl Identifier {
         model.check()?;
         model.check_inertia()?;
         model.check_streaming()?;
+        model.check_free(settings.channels.excitation)?;
         let coefficients = model
             .terms
             .iter()

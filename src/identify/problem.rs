@@ -37,8 +37,7 @@ impl Problem {
         };
         let entries: Vec<(Term, Given)> =
             model.terms.iter().map(|entry| (entry.term, given(entry.term, entry.given))).collect();
-        let is_free = |given: &Given| !matches!(given, Given::Known(_));
-        let free: Vec<usize> = (0..entries.len()).filter(|index| is_free(&entries[*index].1)).collect();
+        let free: Vec<usize> = (0..entries.len()).filter(|index| entries[*index].1.is_free()).collect();
         Problem {
             terms: entries.iter().map(|(term, _)| *term).collect(),
             free_terms: free.iter().map(|index| entries[*index].0).collect(),

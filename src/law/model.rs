@@ -15,6 +15,13 @@ pub enum Given {
     Maybe,
 }
 
+impl Given {
+    /// Whether the coefficient is to be estimated.
+    pub fn is_free(self) -> bool {
+        !matches!(self, Given::Known(_))
+    }
+}
+
 /// One term of a model.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModelTerm {
@@ -109,6 +116,12 @@ impl Model {
         Ok(model)
     }
 
+    /// The model with every coefficient to be fitted.
+    pub fn freed(&self) -> Model {
+        let fit = |entry: &ModelTerm| ModelTerm { given: Given::Fit, ..entry.clone() };
+        Model { terms: self.terms.iter().map(fit).collect(), ..self.clone() }
+    }
+
     /// The term of that name, "fit", its inner parameters open.
     ///
     /// # Errors
@@ -158,6 +171,15 @@ impl Model {
         let terms: Vec<Term> = self.terms.iter().map(|entry| entry.term).collect();
         let refused = Compiled::refused(&terms).and_then(|term| self.position(term));
         refused.map_or(Ok(()), |index| Err(ModelError::Memory { key: self.terms[index].key.clone() }))
+    }
+
+    /// Checks that there is something to identify. In free motion the inertia only sets the scale.
+    ///
+    /// # Errors
+    /// [`ModelError::NothingFree`].
+    pub fn check_free(&self, forced: bool) -> Result<(), ModelError> {
+        let is_free = |entry: &ModelTerm| entry.given.is_free() && (forced || entry.term != Term::Inertia);
+        if self.terms.iter().any(is_free) { Ok(()) } else { Err(ModelError::NothingFree { forced }) }
     }
 
     /// Names of a term's inner parameters, in their order.

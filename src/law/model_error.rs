@@ -137,6 +137,15 @@ pub enum ModelError {
         /// The inner parameter.
         inner: String,
     },
+    /// No coefficient that the streaming identifier could estimate.
+    #[error(
+        "[terms]: nothing to identify: every coefficient is known{}; give at least one term \"fit\" or \"maybe\"",
+        if *.forced { "" } else { " (in free motion the inertia too: it only sets the scale of the others)" }
+    )]
+    NothingFree {
+        /// Whether there is an excitation.
+        forced: bool,
+    },
     /// A term that the streaming identifier cannot have.
     #[error(
         "[terms]: \"{key}\" cannot be identified sample by sample: it is a user's expression, needs the past, or is the fourth effect \

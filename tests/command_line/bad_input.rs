@@ -130,12 +130,19 @@ fn models_are_refused_with_file_and_key() {
         ("[terms]\ninertia = \"fit\"\nq = \"fitted\"\n", vec!["\"q\"", "fitted", "maybe"]),
         ("[terms]\nq = \"fit\"\n", vec!["no inertia"]),
         ("[terms\n", vec!["line 1", "column"]),
+        (
+            "[terms]\ninertia = 1.0\nq = 4\n",
+            vec!["nothing to identify: every coefficient is known;", "\"fit\" or \"maybe\""],
+        ),
         ("[columns]\nx = \"a\"\n[terms]\ninertia = \"fit\"\n", vec!["line 2", "`x`"]),
     ];
     for (text, words) in cases {
         bench.write("model.toml", text);
         bench.identify_refuses("data.csv", &[&["model.toml"], words.as_slice()].concat());
     }
+    bench.write("model.toml", "[terms]\ninertia = \"fit\"\nq = 4\n");
+    bench.write("free.csv", &plain("t,q,qd", 50));
+    bench.identify_refuses("free.csv", &["model.toml: [terms]: nothing to identify", "in free motion the inertia too"]);
     bench.refused(&["identify", "data.csv", "--model", "absent.toml"], &["absent.toml", "cannot be read"]);
 }
 

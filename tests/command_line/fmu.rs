@@ -40,12 +40,14 @@ fn variable<'a>(xml: &'a str, name: &str) -> &'a str {
 #[test]
 fn an_identifier_carries_the_model_and_its_units() {
     let bench = bench("fmu_identifier");
+    let law = LAW.replace("linear_damping = 0.3", "linear_damping = \"fit\"");
+    bench.write("law.toml", &law);
     let found = bench.json(&["fmu", "--model", "law.toml", "-o", "My-Axis.fmu", "--binaries", ".", "--json"]);
     assert_eq!((found["kind"].as_str(), found["name"].as_str()), (Some("identifier"), Some("My_Axis")));
     let files = files(&bench, "My-Axis.fmu");
     assert_eq!(files["binaries/linux64/My_Axis.so"], "identifier's binary");
     let model = Model::from_toml(&files["resources/model.toml"]).unwrap();
-    assert_eq!(model, Model::from_toml(LAW).unwrap());
+    assert_eq!(model, Model::from_toml(&law).unwrap());
     let xml = &files["modelDescription.xml"];
     for (name, unit) in [("q", "m"), ("qd", "m/s"), ("F", "N"), ("coef.q_3", "N/m³"), ("std.qdd", "kg")] {
         assert!(variable(xml, name).contains(&format!("unit=\"{unit}\"")), "{}", variable(xml, name));
@@ -91,6 +93,7 @@ fn what_cannot_be_packed_is_refused() {
     let open = "[terms]\ninertia = 1.0\none_sided_stop = 2.0\n";
     refused(open, &plant, &["gap of \"one_sided_stop\"", "numbers"]);
     refused(open, &here, &["model.toml", "one_sided_stop", "gap"]);
+    refused(LAW, &here, &["model.toml", "nothing to identify", "\"fit\" or \"maybe\""]);
     let own = "[terms]\ninertia = 1.0\ntip = 2.0\n[effects.tip]\nexpression = \"q*t\"\n";
     refused(own, &plant, &["\"tip\"", "effect of your own"]);
     refused(

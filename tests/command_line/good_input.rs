@@ -195,3 +195,11 @@ fn other_delimiters_and_byte_order_marks_are_read() {
         assert_eq!(bench.identify(&[file]).status.code(), Some(0), "{file}");
     }
 }
+
+#[test]
+fn the_hold_is_chosen_for_a_model_of_numbers_too() {
+    let bench = Bench::new("numbers");
+    bench.write("data.csv", &plain("t,q,qd,F", 500));
+    bench.write("model.toml", "[terms]\ninertia = 1.0\nqd = 0.3\nq = 4.0\n");
+    assert!(bench.run(&["compare", "data.csv", "--model", "model.toml"]).status.success());
+}
