@@ -85,7 +85,7 @@ impl Input {
 /// The model as a law of motion: with an inertia where it has none.
 fn moving(model: &Model) -> Model {
     let mut moving = model.clone();
-    if moving.check_inertia().is_err() {
+    if moving.position(Term::Inertia).is_none() {
         moving.terms.push(ModelTerm::new(Term::Inertia, Given::Fit));
     }
     moving

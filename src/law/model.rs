@@ -160,8 +160,9 @@ impl Model {
     ///
     /// # Errors
     /// [`ModelError::Open`] where it has an inner parameter that is to be fitted, [`ModelError::Memory`] where its force is no function of the
-    /// present state and excitation.
+    /// present state and excitation, [`ModelError::ExcitationAlone`] where it is the excitation and nothing gives that a scale.
     pub fn check_streaming(&self) -> Result<(), ModelError> {
+        self.check_scale()?;
         for entry in &self.terms {
             if let Some(inner) = entry.open.iter().position(|open| *open) {
                 let key = entry.key.clone();
@@ -232,9 +233,25 @@ impl Model {
     /// Checks that the law is one of motion.
     ///
     /// # Errors
-    /// [`ModelError::NoInertia`].
+    /// [`ModelError::NoInertia`], [`ModelError::Inertia`].
     pub fn check_inertia(&self) -> Result<(), ModelError> {
-        self.position(Term::Inertia).map(|_| ()).ok_or(ModelError::NoInertia)
+        let entry = &self.terms[self.position(Term::Inertia).ok_or(ModelError::NoInertia)?];
+        match entry.given {
+            Given::Known(value) if value <= 0.0 => Err(ModelError::Inertia { key: entry.key.clone(), value }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Refuses the excitation as a term where no known coefficient gives forces a scale: F = F then solves every equation.
+    fn check_scale(&self) -> Result<(), ModelError> {
+        let scales = |entry: &ModelTerm| matches!(entry.given, Given::Known(value) if value != 0.0);
+        let alone = |entry: &&ModelTerm| entry.term == Term::EXCITATION && entry.given.is_free();
+        match self.terms.iter().find(alone) {
+            Some(entry) if !self.terms.iter().any(scales) => {
+                Err(ModelError::ExcitationAlone { key: entry.key.clone() })
+            }
+            _ => Ok(()),
+        }
     }
 }
 

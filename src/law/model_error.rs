@@ -52,6 +52,14 @@ pub enum ModelError {
     /// Without inertia there is no equation of motion to integrate.
     #[error("[terms] has no inertia: add inertia = \"fit\" (or its known value)")]
     NoInertia,
+    /// An inertia that no body has.
+    #[error("[terms]: \"{key}\" = {value}: the inertia must be positive: write its value, or \"fit\"")]
+    Inertia {
+        /// The key.
+        key: String,
+        /// Its value.
+        value: f64,
+    },
     /// More terms than the estimator is built for.
     #[error("[terms] has {count} terms; at most {max} are supported")]
     TooMany {
@@ -136,6 +144,15 @@ pub enum ModelError {
         key: String,
         /// The inner parameter.
         inner: String,
+    },
+    /// The excitation among the terms of a law that nothing else gives a scale.
+    #[error(
+        "[terms]: \"{key}\" stands on both sides of the equation: with every coefficient 0 but this one it says F = F, which all data \
+         fulfil; leave it out (a sensor's scale goes into the data), or write the inertia as a number"
+    )]
+    ExcitationAlone {
+        /// The key of the term.
+        key: String,
     },
     /// No coefficient that the streaming identifier could estimate.
     #[error(

@@ -362,11 +362,13 @@ mod tests {
     #[test]
     fn a_stream_takes_pointwise_terms_with_held_inner_parameters() {
         assert_eq!(read("stribeck_friction = { speed = 0.1 }").check_streaming(), Ok(()));
+        assert_eq!(read("F = \"fit\"\nq = 4.0").check_streaming(), Ok(()), "a known stiffness gives forces a scale");
         for (terms, named) in [
             ("stribeck_friction = \"fit\"", "speed is not given"),
             ("excitation_delay = { delay = 0.1 }", "needs the past"),
             ("hysteresis = { yield_displacement = 0.1, share = 1, exponent = 1 }", "\"hysteresis\" cannot"),
             ("tip = 1.0\n[effects.tip]\nexpression = \"q*t\"", "\"tip\" cannot"),
+            ("F = \"fit\"\nq = 0.0", "\"F\" stands on both sides"),
         ] {
             let error = read(terms).check_streaming().unwrap_err().to_string();
             assert!(error.contains(named), "{terms}: {error}");

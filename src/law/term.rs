@@ -76,6 +76,9 @@ fn known_effects() -> String {
 }
 
 impl Term {
+    /// The measured excitation itself.
+    pub const EXCITATION: Term = Term::Monomial(Monomial { q: 0, qd: 0, excitation: 1 });
+
     /// The term q^q q̇^qd.
     pub const fn power(q: u8, qd: u8) -> Term {
         Term::Monomial(Monomial { q, qd, excitation: 0 })
