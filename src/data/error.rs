@@ -166,6 +166,24 @@ pub enum DataError {
         /// The headers that fit.
         columns: String,
     },
+    /// One column for two quantities.
+    #[error(
+        "{file}: {}{} \"{column}\" is taken for {first} and for {second}: name another one in the model's [columns], or rename it where \
+         {second} is not measured",
+        kind.heading(), kind.column()
+    )]
+    Shared {
+        /// The file.
+        file: String,
+        /// What kind of file it is.
+        kind: FileKind,
+        /// The column.
+        column: String,
+        /// One quantity.
+        first: &'static str,
+        /// The other.
+        second: &'static str,
+    },
     /// A unit that is not known.
     #[error("{file}: {}{} \"{column}\": unknown unit \"{unit}\" for {channel}; known are {known}", kind.heading(), kind.column())]
     UnknownUnit {

@@ -69,19 +69,18 @@ impl Layout {
             return Err(DataError::NoMotion { file: file.into(), kind, columns: quoted(headers) });
         }
         let layout = Layout { kind, time_base, t, q, qd, excitation };
+        layout.check_apart(file)?;
         layout.check_rate(file)?;
         Ok(layout)
     }
 
     /// One line per column: what was taken for what.
     pub(super) fn describe(&self) -> Vec<String> {
-        let columns = [Some(&self.t), self.q.as_ref(), self.qd.as_ref(), self.excitation.as_ref()];
-        let named = Channel::ALL.into_iter().zip(columns);
-        let line = |(channel, column): (Channel, Option<&Column>)| {
+        let line = |(channel, column): (Channel, &Column)| {
             let base = if channel == Channel::Time { self.time_base } else { TimeBase::Stamps };
-            column.map(|column| column.describe(self.kind, channel, base))
+            column.describe(self.kind, channel, base)
         };
-        named.filter_map(line).collect()
+        self.columns().map(line).collect()
     }
 
     /// What the columns say of the units of coefficients. In free motion these are relative to the inertia, unless the model
@@ -94,6 +93,24 @@ impl Layout {
             None if !inertia_held => Units::free(q, qd),
             excitation => Units::forced(q, qd, quantity(excitation)),
         }
+    }
+
+    /// No column is two quantities.
+    fn check_apart(&self, file: &str) -> Result<(), DataError> {
+        let columns: Vec<(Channel, &Column)> = self.columns().collect();
+        for (place, (second, column)) in columns.iter().enumerate() {
+            if let Some((first, _)) = columns[..place].iter().find(|(_, other)| other.index == column.index) {
+                let (file, kind, column) = (file.into(), self.kind, column.header.clone());
+                return Err(DataError::Shared { file, kind, column, first: first.name(), second: second.name() });
+            }
+        }
+        Ok(())
+    }
+
+    /// The columns that are read.
+    fn columns(&self) -> impl Iterator<Item = (Channel, &Column)> {
+        let columns = [Some(&self.t), self.q.as_ref(), self.qd.as_ref(), self.excitation.as_ref()];
+        Channel::ALL.into_iter().zip(columns).filter_map(|(channel, column)| Some((channel, column?)))
     }
 
     fn check_rate(&self, file: &str) -> Result<(), DataError> {

@@ -87,6 +87,10 @@ fn missing_columns_are_named_with_those_there_are() {
     bench.write("model.toml", &format!("[columns]\nq = \"position\"\n{MODEL}"));
     bench.write("unnamed.csv", &plain("t,q,qd,F", 50));
     bench.identify_refuses("unnamed.csv", &["unnamed.csv: line 1", "\"position\"", "the columns are \"t\""]);
+    bench.write("model.toml", &format!("[columns]\nq = \"qd\"\n{MODEL}"));
+    bench.write("shared.csv", &plain("t,q,qd,F", 50));
+    bench.identify_refuses("shared.csv", &["shared.csv: line 1", "\"qd\" is taken for q and for qd", "[columns]"]);
+    bench.write("model.toml", &format!("[columns]\nq = \"position\"\n{MODEL}"));
     bench.write("twice.csv", &plain("t,position,qd,position", 50));
     bench.identify_refuses("twice.csv", &["several columns", "\"position\", \"position\""]);
     bench.write("model.toml", &format!("{MODEL}\"F*q\" = \"fit\"\n"));
@@ -129,6 +133,9 @@ fn models_are_refused_with_file_and_key() {
         ("[terms]\ninertia = \"fit\"\nq4 = \"fit\"\n", vec!["\"q4\"", "unknown term", "cubic_stiffness"]),
         ("[terms]\ninertia = \"fit\"\nq = \"fitted\"\n", vec!["\"q\"", "fitted", "maybe"]),
         ("[terms]\nq = \"fit\"\n", vec!["no inertia"]),
+        ("[terms]\ninertia = -1.0\nq = \"fit\"\n", vec!["[terms]: \"inertia\" = -1", "positive"]),
+        ("[terms]\nqdd = 0\nq = \"fit\"\n", vec!["[terms]: \"qdd\" = 0", "positive"]),
+        ("[terms]\ninertia = \"fit\"\nF = \"maybe\"\n", vec!["\"F\"", "F = F", "inertia as a number"]),
         ("[terms\n", vec!["line 1", "column"]),
         (
             "[terms]\ninertia = 1.0\nq = 4\n",
