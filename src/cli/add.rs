@@ -57,6 +57,8 @@ struct Report {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    // with --force the new model may take the old one's place, never a recording's
+    output::check_target("-o", &arguments.output, &output::files_of(&arguments.data)?)?;
     let written = Written::check(&arguments.output, arguments.force)?;
     let input = Input::open(&arguments.data, &arguments.model)?;
     let term = effect(&arguments.effect, &input)?;

@@ -23,16 +23,16 @@ the excitation (of the inertia force in free motion); the noise floor is what it
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
 pub(super) struct Arguments {
-    /// The recordings (CSV with a header), or sections of them: DATA@t0:t1 in seconds
+    /// The recordings (CSV with a header, MAT or Parquet), or sections of them: DATA@t0:t1 in seconds
     #[arg(required = true)]
     data: Vec<String>,
     #[command(flatten)]
     model: ModelArguments,
     /// Length of the windows over which the residual force is averaged; else chosen from the motion
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     window: Option<f64>,
     /// Length of the windows of open-loop prediction
-    #[arg(long, value_name = "S", default_value_t = Options::default().horizon)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, default_value_t = Options::default().horizon)]
     horizon: f64,
     /// Print one JSON document instead of text
     #[arg(long)]

@@ -151,6 +151,16 @@ pub(super) enum CommandError {
         /// The file.
         file: String,
     },
+    /// A file that the command reads would be overwritten.
+    #[error("{option} {file} would overwrite {input}, which this command reads: name another file")]
+    Input {
+        /// The option.
+        option: &'static str,
+        /// Its file.
+        file: String,
+        /// The file that is read.
+        input: String,
+    },
     /// A picture that this build cannot draw.
     #[cfg(not(feature = "pictures"))]
     #[error("{file}: this build of switchid draws no pictures: build it with the feature \"pictures\" (on by default)")]

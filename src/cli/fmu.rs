@@ -58,6 +58,8 @@ struct Report {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    let inputs: Vec<PathBuf> = [&arguments.model].into_iter().chain(&arguments.known_laws).cloned().collect();
+    output::check_target("-o", &arguments.output, &inputs)?;
     let model = data::open_model(&arguments.model)?;
     let name = name(&arguments.output);
     let refused = |source: FmuError| match (source, &arguments.known_laws) {

@@ -53,7 +53,7 @@ pub(super) struct Arguments {
     #[arg(long, default_value = Method::Default.id(), value_parser = PossibleValuesParser::new(Method::ALL.map(Method::id)))]
     method: String,
     /// Mean time between two false alarms
-    #[arg(long, value_name = "S", default_value_t = Settings::default().false_alarm_interval)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, default_value_t = Settings::default().false_alarm_interval)]
     false_alarm_interval: f64,
     /// Write every output of the identifier after each sample into this CSV file, as the FMU would show them
     #[arg(long, value_name = "OUT.csv")]
@@ -81,6 +81,7 @@ pub(super) struct Run {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    check_targets(arguments)?;
     let model = data::open_model(&arguments.model)?;
     let opened = data::open_recording(&arguments.data, &model)?;
     let (settings, hold_from) = settings(arguments, &model, &opened.recording)?;
@@ -88,7 +89,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     arguments.save_laws.as_deref().map_or(Ok(()), |path| save(path, &found))?;
     let limits = Waiting::on("looking for the limits", || stage_limits(&found, &opened.recording, &settings));
     let run = Run { opened, settings, hold_from, found, limits };
-    warnings(&run).iter().for_each(|warning| output::complain("warning", warning));
+    warnings(&run)
+        .iter()
+        .chain(&unsaved(arguments, &run.found))
+        .for_each(|warning| output::complain("warning", warning));
     if arguments.json { output::print_json(&Report::of(&run)) } else { output::print(&text(&run)) }
 }
 
@@ -120,6 +124,27 @@ fn refused(arguments: &Arguments, source: BuildError) -> CommandError {
         }
         (source, _) => CommandError::Build { model: arguments.model.display().to_string(), source },
     }
+}
+
+/// What is written must not be what is read.
+fn check_targets(arguments: &Arguments) -> Result<(), CommandError> {
+    let mut inputs = output::files_of(std::slice::from_ref(&arguments.data))?;
+    inputs.push(arguments.model.clone());
+    inputs.extend(arguments.known_laws.clone());
+    for (option, path) in [("--trace", &arguments.trace), ("--save-laws", &arguments.save_laws)] {
+        path.as_deref().map_or(Ok(()), |path| output::check_target(option, path, &inputs))?;
+    }
+    Ok(())
+}
+
+/// A warning where laws were to be saved, and there is none.
+fn unsaved(arguments: &Arguments, found: &Identification) -> Option<String> {
+    let path = arguments.save_laws.as_ref().filter(|_| found.known_laws.laws.is_empty())?;
+    Some(format!(
+        "{}: no law was saved, since none was vouched for: this record is too short or too noisy for the model, or the model's form \
+         does not explain it (`switchid compare` tells)",
+        path.display()
+    ))
 }
 
 fn save(path: &Path, found: &Identification) -> Result<(), CommandError> {

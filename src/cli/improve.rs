@@ -76,7 +76,16 @@ struct Found {
     window: f64,
 }
 
+/// With --force the new model may take the old one's place, never a recording's; the picture takes neither's.
+fn check_targets(arguments: &Arguments) -> Result<(), CommandError> {
+    let mut inputs = output::files_of(&arguments.data)?;
+    output::check_target("-o", &arguments.output, &inputs)?;
+    inputs.push(arguments.model.model.clone());
+    arguments.picture.as_deref().map_or(Ok(()), |path| output::check_target("--picture", path, &inputs))
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    check_targets(arguments)?;
     let written = Written::check(&arguments.output, arguments.force)?;
     let picture = arguments.picture.as_deref().map(|path| Picture::open(path, arguments.force)).transpose()?;
     let input = Input::open(&arguments.data, &arguments.model)?;

@@ -1,11 +1,12 @@
 //! What goes to stdout, to stderr and into files.
 
 use super::error::CommandError;
+use crate::data::Section;
 use crate::diagnose::Fit;
 use serde::{Serialize, Serializer};
 use std::fs::File;
 use std::io::{BufWriter, ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Prints text on stdout. A reader that has gone away is no error.
 pub(super) fn print(text: &str) -> Result<(), CommandError> {
@@ -35,6 +36,31 @@ fn json(file: &str, document: &impl Serialize) -> Result<String, CommandError> {
 /// Prints a line on stderr, `switchid: error: …`; where even that fails there is nobody left to tell.
 pub(super) fn complain(kind: &str, message: &str) {
     let _ = writeln!(std::io::stderr(), "switchid: {kind}: {}", message.trim_end());
+}
+
+/// Refuses a file that cannot be written, or that the command reads, before any work.
+///
+/// # Errors
+/// [`CommandError::Input`]; [`CommandError::Write`] where its folder is not there.
+pub(super) fn check_target(option: &'static str, path: &Path, inputs: &[PathBuf]) -> Result<(), CommandError> {
+    let file = path.display().to_string();
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if !folder.is_dir() {
+        return Err(CommandError::write(&file, format!("there is no folder {}: make it first", folder.display())));
+    }
+    if path.is_dir() {
+        return Err(CommandError::write(&file, "it is a folder: name a file in it"));
+    }
+    let Ok(own) = path.canonicalize() else { return Ok(()) };
+    let input = inputs.iter().find(|input| input.canonicalize().is_ok_and(|input| input == own));
+    let refused = |input: &PathBuf| CommandError::Input { option, file, input: input.display().to_string() };
+    input.map(refused).map_or(Ok(()), Err)
+}
+
+/// The files of recordings, of which each may be a section.
+pub(super) fn files_of(data: &[String]) -> Result<Vec<PathBuf>, CommandError> {
+    let path = |text: &String| Ok(Section::parse(text)?.path);
+    data.iter().map(path).collect()
 }
 
 /// A text file that overwrites nothing unasked.

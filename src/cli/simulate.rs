@@ -58,7 +58,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     seed: Option<u64>,
     /// Std of the sensor noise on q and qd, in place of the scenario's
-    #[arg(long, value_name = "STD")]
+    #[arg(long, value_name = "STD", allow_negative_numbers = true)]
     noise: Option<f64>,
     /// Print one JSON document instead of text
     #[arg(long)]
@@ -95,6 +95,8 @@ struct Report {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    let truth_path = arguments.output.with_extension("truth.json");
+    check_targets(arguments, &truth_path)?;
     let scenario = scenario(arguments)?;
     let readings =
         record(&scenario).map_err(|source| CommandError::Simulate { scenario: arguments.scenario.clone(), source })?;
@@ -103,7 +105,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
         table.push(&[reading.t, reading.q, reading.qd, reading.excitation])?;
     }
     table.finish()?;
-    let truth_path = arguments.output.with_extension("truth.json");
     output::write_json(&truth_path, &truth(&scenario))?;
     let report = Report {
         data: arguments.output.display().to_string(),
@@ -113,6 +114,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
         stages: scenario.stages.len(),
     };
     if arguments.json { output::print_json(&report) } else { output::print(&text(&report)) }
+}
+
+/// What is written must not be the scenario.
+fn check_targets(arguments: &Arguments, truth: &Path) -> Result<(), CommandError> {
+    let inputs = match Builtin::from_id(&arguments.scenario) {
+        Ok(_) => Vec::new(),
+        Err(_) => vec![PathBuf::from(&arguments.scenario)],
+    };
+    [arguments.output.as_path(), truth].iter().try_for_each(|path| output::check_target("-o", path, &inputs))
 }
 
 fn text(report: &Report) -> String {

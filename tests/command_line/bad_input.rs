@@ -165,8 +165,44 @@ fn bad_usage_is_refused() {
     );
     bench.refused(&["simulate", "nothing", "-o", "x.csv"], &["nothing", "duffing-sine"]);
     bench.refused(&["simulate", "duffing-sine", "-o", "no/such/x.csv"], &["no/such/x.csv", "cannot be written"]);
-    bench.refused(&["simulate", "duffing-sine", "--noise=-1", "-o", "x.csv"], &["--noise -1"]);
+    bench.refused(&["simulate", "duffing-sine", "--noise", "-1", "-o", "x.csv"], &["--noise -1", "0 or a positive"]);
+    bench.refused(
+        &["identify", "data.csv", "--model", "model.toml", "--false-alarm-interval", "-1"],
+        &["--false-alarm-interval -1", "positive"],
+    );
     bench.write("plant.toml", "terms = [\"qdd\"]\nduration = 1.0\n[[stage]]\nstart = 0.5\ncoefficients = [1.0]\n");
     bench.refused(&["simulate", "plant.toml", "-o", "x.csv"], &["plant.toml", "stage 1 starts at 0.5"]);
     assert!(!Path::new(&bench.0.join("x.csv")).exists());
+}
+
+#[test]
+fn what_a_command_reads_is_not_overwritten() {
+    let bench = Bench::new("inputs");
+    let data = plain("t,q,qd,F", 500);
+    bench.write("data.csv", &data);
+    bench.write("laws.toml", "");
+    let plant = "terms = [\"qdd\"]\nduration = 1.0\n[[stage]]\nstart = 0.0\ncoefficients = [1.0]\n";
+    bench.write("plant.toml", plant);
+    let identify = ["identify", "data.csv@0:4", "--model", "model.toml", "--known-laws", "laws.toml"];
+    let improve = ["improve", "data.csv", "--model", "model.toml", "-o", "better.toml", "--force", "--picture"];
+    let cases: [(&[&str], &[&str], &str); 7] = [
+        (&identify, &["--save-laws", "./data.csv"], "--save-laws ./data.csv would overwrite data.csv"),
+        (&identify, &["--trace", "model.toml"], "--trace model.toml would overwrite model.toml"),
+        (&identify, &["--save-laws", "laws.toml"], "--save-laws laws.toml would overwrite laws.toml"),
+        (&["simulate", "plant.toml"], &["-o", "plant.toml"], "-o plant.toml would overwrite plant.toml"),
+        (&["fmu", "--model", "model.toml"], &["-o", "model.toml"], "-o model.toml would overwrite model.toml"),
+        (&improve, &["model.toml"], "--picture model.toml would overwrite model.toml"),
+        (
+            &["add", "coulomb_friction", "--model", "model.toml", "--data", "data.csv", "--force"],
+            &["-o", "data.csv"],
+            "-o data.csv would overwrite data.csv",
+        ),
+    ];
+    for (command, target, message) in cases {
+        bench.refused(&[command, target].concat(), &[message, "name another file"]);
+    }
+    for (file, text) in [("data.csv", data.as_str()), ("model.toml", MODEL), ("plant.toml", plant), ("laws.toml", "")] {
+        assert_eq!(std::fs::read_to_string(bench.0.join(file)).unwrap(), text);
+    }
+    bench.refused(&[&identify[..4], &["--save-laws", "no/laws.toml"]].concat(), &["no/laws.toml", "no folder no"]);
 }

@@ -1,6 +1,6 @@
 //! Laws that one run saves and another recognises, in `identify` and in an FMU's resources.
 
-use super::bench::Bench;
+use super::bench::{Bench, plain};
 use switchid::identify::SavedLaws;
 
 const PLANT: &str = "terms = [\"qdd\", \"qd\", \"q\", \"q^3\"]\nduration = 8.0\ninitial = { q = 0.5, qd = 0.0 }\n\
@@ -35,6 +35,16 @@ fn a_saved_law_is_recognised_in_another_record() {
     let identified = |found: &serde_json::Value| found["stages"][0]["identified"].as_f64().unwrap();
     assert!(identified(&knowing) < 0.5 * identified(&alone), "{} {}", identified(&knowing), identified(&alone));
     assert_eq!((&knowing["stages"][0]["law_number"], &knowing["stages"][0]["recognised"]), (&1.into(), &true.into()));
+}
+
+#[test]
+fn laws_that_there_are_none_of_are_missed_aloud() {
+    let bench = Bench::new("known_laws_none");
+    bench.write("short.csv", &plain("t,q,qd,F", 40));
+    let output = bench.identify(&["short.csv", "--save-laws", "laws.toml"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && bench.0.join("laws.toml").exists());
+    assert!(message.contains("warning: laws.toml: no law was saved"), "{message}");
 }
 
 #[test]

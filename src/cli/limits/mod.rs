@@ -38,7 +38,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "TERM=VALUE")]
     change: Vec<String>,
     /// Mean time between two false alarms that a detector is allowed
-    #[arg(long, value_name = "S", default_value_t = Settings::default().false_alarm_interval)]
+    #[arg(long, value_name = "S", allow_negative_numbers = true, default_value_t = Settings::default().false_alarm_interval)]
     false_alarm_interval: f64,
     /// Print one JSON document instead of text
     #[arg(long)]
