@@ -2,6 +2,7 @@
 
 use super::error::CommandError;
 use super::identify_report::Report;
+use super::input::is_noiseless;
 use super::output;
 use super::progress::{Progress, Waiting};
 use super::stage_limit::{StageLimit, stage_limits};
@@ -16,6 +17,9 @@ use std::path::{Path, PathBuf};
 
 /// Least width of the column of terms.
 const TERM: usize = 12;
+
+/// Shortest time that one decimal shows, s.
+const SHOWN: f64 = 0.05;
 
 const EXAMPLE: &str = r#"Examples:
   switchid identify recording.csv --model model.toml
@@ -192,6 +196,11 @@ fn warnings(run: &Run) -> Vec<String> {
         let count = run.found.skipped.len();
         warnings.push(format!("{source}: {count} samples were not used; the first: {first}"));
     }
+    if is_noiseless([run.found.noise_q, run.found.noise_qd], recording).contains(&true) {
+        warnings.push(format!(
+            "{source}: hardly any sensor noise is to be seen: no comparison with what any method could reach"
+        ));
+    }
     warnings
 }
 
@@ -255,9 +264,10 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
     let mut text = stage.law(forced).unwrap_or_else(|| unknown.into()) + "\n";
     let longest = stage.known().map(|(known, _)| known.term.name().chars().count()).max();
     let width = longest.unwrap_or(0).max(TERM);
+    let unit_width = stage.known().map(|(known, _)| unit(known.term, units).chars().count()).max().unwrap_or(0);
     for (known, std) in stage.known() {
         let line = format!(
-            "  {:<width$} {:>14.6e} ± {std:.1e} {}{}",
+            "  {:<width$} {:>14.6e} ± {std:.1e} {:<unit_width$}{}",
             known.term.name(),
             known.value,
             unit(known.term, units),
@@ -286,24 +296,43 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
 
 /// `q^3: not known yet, about 1.4 s more of such motion`, a line for each coefficient that a law to vouch for needs better.
 fn lacking(stage: &Stage) -> String {
+    let last = stage.lacking().map(|(_, seconds)| seconds).fold(0.0, f64::max);
     let line = |(term, seconds): (Term, f64)| {
         let known = stage.known().any(|(known, _)| known.term == term);
         let what = if known { "not known well yet" } else { "not known yet" };
-        format!("  {}: {what}, about {seconds:.1} s more of such motion\n", term.name())
+        format!("  {}: {what}, {} more of such motion\n", term.name(), more(seconds, last))
     };
     stage.lacking().map(line).collect()
 }
 
-/// `(1.1 times the limit)`; empty where the limit is not known or the law is not complete.
+/// `about 1.4 s`, never 0.0 s: a term that lacks next to nothing waits for the last one, with which the law is known.
+fn more(seconds: f64, last: f64) -> String {
+    let shown = |seconds: &f64| *seconds >= SHOWN;
+    let seconds = Some(seconds).filter(shown).or(Some(last).filter(shown));
+    seconds.map_or_else(|| "less than 0.1 s".into(), |seconds| format!("about {seconds:.1} s"))
+}
+
+/// `  (1.1 times the limit)`; empty where the limit is not known or the law is not complete.
 fn times_limit(term: Term, std: f64, limit: Option<&StageLimit>) -> String {
     let least = limit.filter(|limit| limit.explained()).and_then(|limit| limit.std(term));
     least.map_or_else(String::new, |least| format!("  ({:.2} times the limit)", std / least))
 }
 
 fn unit(term: Term, units: &Units) -> String {
-    unit_of(term, units).unwrap_or_default()
+    unit_of(term, units).filter(|unit| unit != "1").unwrap_or_default()
 }
 
 fn time(t: Option<f64>) -> String {
     t.map_or_else(|| "–".into(), |t| format!("{t:.3}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::more;
+
+    #[test]
+    fn what_a_term_lacks_is_never_nothing() {
+        assert_eq!([more(1.44, 3.0), more(0.01, 3.0)], ["about 1.4 s", "about 3.0 s"]);
+        assert_eq!(more(0.01, 0.04), "less than 0.1 s");
+    }
 }

@@ -9,6 +9,9 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
 
+/// Noise std ÷ largest value below which a record counts as free of noise.
+const NOISELESS: f64 = 1e-6;
+
 /// The model, and the hold if the user names one.
 #[derive(Args)]
 pub(super) struct ModelArguments {
@@ -89,6 +92,16 @@ fn moving(model: &Model) -> Model {
         moving.terms.push(ModelTerm::new(Term::Inertia, Given::Fit));
     }
     moving
+}
+
+/// Whether the noise of q and q̇ of that std is hardly more than rounding.
+pub(super) fn is_noiseless(std: [Option<f64>; 2], recording: &Recording) -> [bool; 2] {
+    let samples = || (0..recording.count()).map(|index| recording.sample(index));
+    let largest = [
+        samples().map(|sample| sample.q.abs()).fold(0.0, f64::max),
+        samples().map(|sample| sample.qd.abs()).fold(0.0, f64::max),
+    ];
+    [0, 1].map(|channel| std[channel].is_some_and(|std| std < NOISELESS * largest[channel]))
 }
 
 /// What was taken otherwise than the file says.

@@ -1,5 +1,6 @@
 //! What any method could have reached on each stage that `identify` found: the Cramér–Rao bound of the stage's law on its samples.
 
+use super::input::is_noiseless;
 use crate::diagnose::{Evidence, Fit, Form, is_evident, refit};
 use crate::evidence::Noise;
 use crate::identify::{Identification, Recording, Settings, Stage};
@@ -40,6 +41,9 @@ pub(super) fn stage_limits(
     recording: &Recording,
     settings: &Settings,
 ) -> Vec<Option<StageLimit>> {
+    if is_noiseless([found.noise_q, found.noise_qd], recording).contains(&true) {
+        return found.stages.iter().map(|_| None).collect();
+    }
     let noise = noise(found);
     let last = found.stages.len().saturating_sub(1);
     let of = |(index, stage): (usize, &Stage)| {

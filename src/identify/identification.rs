@@ -42,10 +42,12 @@ impl Stage {
         needed.filter(|(_, seconds)| *seconds > 0.0)
     }
 
-    /// The law on one line; `None` where no coefficient is known. `forced` puts F on its right-hand side.
+    /// The law on one line; `None` where nothing is known but held numbers. `forced` puts F on its right-hand side.
     pub fn law(&self, forced: bool) -> Option<String> {
         let terms: Vec<_> = self.known().map(|(known, std)| (known.term, known.value, Some(std))).collect();
-        if terms.is_empty() { None } else { Some(equation(&terms, forced)) }
+        let is_whole = terms.len() == self.coefficients.len();
+        let is_estimated = self.known().any(|(_, std)| std > 0.0);
+        (is_whole || is_estimated).then(|| equation(&terms, forced))
     }
 }
 

@@ -138,5 +138,30 @@ fn a_stage_of_which_only_the_inertia_is_known_has_no_limit() {
         let arguments = ["identify", "decay.csv@0:6.1", "--model", "model.toml", "--hold", "zero", "--json"];
         let stages = &bench.json(&arguments)["stages"];
         assert!(stages[0]["limit"].is_object() && stages[1]["limit"].is_null(), "{stages:#}");
+        assert!(stages[0]["law"].is_string() && stages[1]["law"].is_null(), "{stages:#}");
     }
+}
+
+#[test]
+fn units_are_a_column_and_the_limit_another() {
+    let bench = Bench::new("limits-columns");
+    bench.write("decay.toml", DECAY);
+    bench.json(&["simulate", "decay.toml", "-o", "decay.csv", "--json"]);
+    let text = bench.run(&["identify", "decay.csv@0:4", "--model", "model.toml", "--hold", "zero"]).stdout;
+    let text = String::from_utf8(text).unwrap();
+    let column = |line: &str| line.find('(').map(|at| line[..at].chars().count());
+    let limits: Vec<_> = text.lines().filter(|line| line.ends_with("times the limit)")).map(column).collect();
+    assert!(limits.len() == 3 && limits.iter().all(|column| *column == limits[0]), "{text}");
+    assert!(text.contains("± 0.0e0\n"), "a number without unit has none: {text}");
+}
+
+#[test]
+fn a_record_without_noise_is_compared_with_no_limit() {
+    let bench = Bench::new("limits-noiseless");
+    bench.write("decay.toml", &DECAY.replace("q = 0.01, qd = 0.01", "q = 0.0, qd = 0.0"));
+    bench.json(&["simulate", "decay.toml", "-o", "decay.csv", "--json"]);
+    let output = bench.run(&["identify", "decay.csv@0:4", "--model", "model.toml", "--hold", "zero"]);
+    let (text, message) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert!(text.contains("q̈") && !text.contains("limit"), "{text}");
+    assert!(message.contains("hardly any sensor noise"), "{message}");
 }

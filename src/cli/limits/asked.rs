@@ -1,14 +1,12 @@
 //! What the user asked for: noise and changes by name.
 
 use super::super::error::CommandError;
+use super::super::input::is_noiseless;
 use super::Arguments;
 use crate::evidence::Noise;
 use crate::identify::Recording;
 use crate::law::{Model, ModelError, Term};
 use crate::limits::Sensors;
-
-/// Noise std ÷ largest value below which a record counts as free of noise.
-const NOISELESS: f64 = 1e-6;
 
 /// Options, read.
 pub(super) struct Asked {
@@ -61,13 +59,8 @@ impl Asked {
 
     /// Whether noise that was not named is estimated as none.
     pub(super) fn noise_is_too_small(&self, sensors: &Sensors, recording: &Recording) -> bool {
-        let samples = || (0..recording.count()).map(|index| recording.sample(index));
-        let largest = [
-            samples().map(|sample| sample.q.abs()).fold(0.0, f64::max),
-            samples().map(|sample| sample.qd.abs()).fold(0.0, f64::max),
-        ];
-        let small = |channel: usize| sensors.0[channel].is_some_and(|std| std < NOISELESS * largest[channel]);
-        (0..2).any(|channel| self.noise[channel].is_none() && small(channel))
+        let small = is_noiseless(sensors.0, recording);
+        (0..2).any(|channel| self.noise[channel].is_none() && small[channel])
     }
 }
 
