@@ -3,6 +3,9 @@
 use crate::diagnose::Form;
 use crate::law::{Catalogue, Term};
 
+/// Most decimals that a value is given.
+const MOST: i32 = 12;
+
 /// `19 %`, `4.5 %`, `0.32 %`, `2.1e-3 %`.
 pub(super) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
@@ -35,7 +38,11 @@ pub(super) fn number(value: f64, std: f64) -> String {
         let decimals = (-last).max(0) as usize;
         return format!("{value:.decimals$} ± {std:.decimals$}");
     }
-    let decimals = (exponent - last).clamp(0, 12) as usize;
+    if exponent - last > MOST {
+        let most = MOST as usize;
+        return format!("{value:.most$e} ± {std:.1e}");
+    }
+    let decimals = (exponent - last).max(0) as usize;
     let scale = 10f64.powi(exponent);
     format!("({:.decimals$} ± {:.decimals$})e{exponent}", value / scale, std / scale)
 }
@@ -63,6 +70,7 @@ mod tests {
             (95.0, 12.0, "95 ± 12"),
             (5.376e-6, 2.1e-9, "(5.3760 ± 0.0021)e-6"),
             (1.5e9, 2e7, "(1.500 ± 0.020)e9"),
+            (0.8477312848794, 3.1e-16, "8.477312848794e-1 ± 3.1e-16"),
         ] {
             assert_eq!(number(value, std), text);
         }

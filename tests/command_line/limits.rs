@@ -73,14 +73,16 @@ fn options_that_cannot_be_read_are_named() {
         (["--change", "q^3"], vec!["no \"=\"", "--change TERM=VALUE"]),
         (["--change", "q^3=much"], vec!["must be a number"]),
         (["--change", "dead_zone_stiffness=2"], vec!["inner parameters", "give the model this term"]),
-        (["--change", "hysteresis=2"], vec!["\"hysteresis\" depends on more", "model.toml"]),
-        (["--change", "inertia=0"], vec!["no positive inertia"]),
+        (["--change", "hysteresis=2"], vec!["--change hysteresis=2: \"hysteresis\" depends on more"]),
+        (["--change", "inertia=0"], vec!["error: --change inertia=0: ", "no positive inertia"]),
         (["--noise", "F=0.1"], vec!["--noise F=0.1", "no sensor \"F\""]),
         (["--noise", "q=0"], vec!["--noise q=0", "positive"]),
         (["--false-alarm-interval", "0"], vec!["--false-alarm-interval", "positive"]),
     ] {
         bench.refused(&limits(&extra), &words);
     }
+    let twice = ["--change", "q=4", "--change", "linear_stiffness=5"];
+    bench.refused(&limits(&twice), &["--change linear_stiffness=5", "q is given twice"]);
 }
 
 #[test]
@@ -164,4 +166,12 @@ fn a_record_without_noise_is_compared_with_no_limit() {
     let (text, message) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
     assert!(text.contains("q̈") && !text.contains("limit"), "{text}");
     assert!(message.contains("hardly any sensor noise"), "{message}");
+}
+
+#[test]
+fn a_change_that_no_record_shows_is_said_in_one_sentence() {
+    let bench = bench("limits-unseen");
+    let text = String::from_utf8(bench.run(&limits(&["--change", "q=5.2300001"])).stdout).unwrap();
+    let switch = text.lines().find(|line| line.starts_with("switch")).unwrap();
+    assert!(switch.ends_with("not seen within this record, wherever in its first half it comes"), "{switch}");
 }

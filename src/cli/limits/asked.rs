@@ -6,7 +6,7 @@ use super::Arguments;
 use crate::evidence::Noise;
 use crate::identify::Recording;
 use crate::law::{Model, ModelError, Term};
-use crate::limits::Sensors;
+use crate::limits::{LimitsError, Sensors};
 
 /// Options, read.
 pub(super) struct Asked {
@@ -14,6 +14,8 @@ pub(super) struct Asked {
     noise: [Option<f64>; 2],
     /// New coefficients.
     pub(super) change: Vec<(Term, f64)>,
+    /// The same as it was written.
+    change_text: String,
     /// Mean time between two false alarms, s.
     pub(super) false_alarm_interval: f64,
 }
@@ -34,8 +36,8 @@ impl Asked {
             let (channel, std) = std_of(text)?;
             noise[channel] = Some(std);
         }
-        let change = arguments.change.iter().map(|text| change(text, model)).collect::<Result<_, _>>()?;
-        Ok(Asked { noise, change, false_alarm_interval: interval })
+        let change_text = arguments.change.join(" --change ");
+        Ok(Asked { noise, change: changes(&arguments.change, model)?, change_text, false_alarm_interval: interval })
     }
 
     /// The sensors of a recording: as named, else as estimated.
@@ -57,6 +59,11 @@ impl Asked {
         Ok(Sensors(std))
     }
 
+    /// Why a law with the changes is none.
+    pub(super) fn change_refused(&self, source: &LimitsError) -> CommandError {
+        named_error("change", &self.change_text, &source.to_string())
+    }
+
     /// Whether noise that was not named is estimated as none.
     pub(super) fn noise_is_too_small(&self, sensors: &Sensors, recording: &Recording) -> bool {
         let small = is_noiseless(sensors.0, recording);
@@ -74,6 +81,20 @@ fn std_of(text: &str) -> Result<(usize, f64), CommandError> {
     Ok((channel, std.ok_or_else(|| refuse("the std must be a positive number"))?))
 }
 
+/// Every change, each of another term.
+fn changes(texts: &[String], model: &Model) -> Result<Vec<(Term, f64)>, CommandError> {
+    let mut changes: Vec<(Term, f64)> = Vec::new();
+    for text in texts {
+        let (term, value) = change(text, model)?;
+        if changes.iter().any(|(other, _)| *other == term) {
+            let reason = format!("{} is given twice: keep one of them", model.name_of(term));
+            return Err(named_error("change", text, &reason));
+        }
+        changes.push((term, value));
+    }
+    Ok(changes)
+}
+
 /// `q^3=4`: the term and its new coefficient.
 fn change(text: &str, model: &Model) -> Result<(Term, f64), CommandError> {
     let refuse = |reason: &str| named_error("change", text, reason);
@@ -88,12 +109,20 @@ fn change(text: &str, model: &Model) -> Result<(Term, f64), CommandError> {
     let own = model.terms.iter().find(|entry| entry.key == name.trim() || entry.term.name() == term.name());
     match own {
         Some(entry) => Ok((entry.term, value)),
-        None if model.inner_names(term).is_empty() || !term.is_pointwise() => Ok((term, value)),
+        None if !term.is_pointwise() => Err(refuse(&format!(
+            "{} depends on more than q, q̇ and F of one instant: it has no limits",
+            quoted(model, term)
+        ))),
+        None if model.inner_names(term).is_empty() => Ok((term, value)),
         None => {
             let inner = model.inner_names(term).join(", ");
             Err(refuse(&format!("{term} has inner parameters ({inner}): give the model this term with the number 0")))
         }
     }
+}
+
+fn quoted(model: &Model, term: Term) -> String {
+    format!("\"{}\"", model.name_of(term))
 }
 
 fn named_error(option: &'static str, text: &str, reason: &str) -> CommandError {

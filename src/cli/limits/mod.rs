@@ -88,15 +88,16 @@ fn limits<'a>(input: &'a Input, asked: &'a Asked) -> Result<Limits<'a>, CommandE
     let pairs = evidence.pieces.iter().zip(&fit.states);
     let courses: Vec<Course> = pairs.map(|(piece, states)| piece.course(states)).collect();
     let bound_of = |start| bound(&law, &courses, sensors, start).map_err(refused);
+    let (bound, after_switch) = (bound_of(Start::Unknown)?, bound_of(Start::Known)?.shortest_record);
     let level = level(asked.false_alarm_interval, recording.sample_time());
+    // law and sensors have limits, so that what is refused now is the change
     let detection = match asked.change.as_slice() {
         [] => None,
         change => {
             let seen = law.changed(change).and_then(|changed| detection(&law, &changed, &courses, sensors, level));
-            Some(seen.map_err(refused)?)
+            Some(seen.map_err(|source| asked.change_refused(&source))?)
         }
     };
-    let (bound, after_switch) = (bound_of(Start::Unknown)?, bound_of(Start::Known)?.shortest_record);
     Ok(Limits { input, asked, recording, hold, fit, law, sensors, numbers_only, bound, after_switch, level, detection })
 }
 

@@ -129,17 +129,26 @@ fn switch(found: &Limits, detection: &Detection) -> String {
     };
     let change = |(term, new): &(Term, f64)| format!("{} {:.4} → {new}", term.name(), old(*term));
     let changes: Vec<String> = found.asked.change.iter().map(change).collect();
-    let time = |time: Option<f64>| time.map_or_else(|| "not within this record".into(), |time| format!("{time:.4} s"));
-    format!(
-        "switch ({}): seen after {} where it comes at the record's start; over {} instants of its first half the median is {}, \
-         from {} to {}",
-        changes.join(", "),
-        time(detection.at_start),
-        detection.tried,
-        time(detection.median),
-        time(detection.smallest),
-        time(detection.largest)
-    )
+    format!("switch ({}): {}", changes.join(", "), seen(detection))
+}
+
+/// When the switch is seen, from its instants over the record's first half.
+fn seen(detection: &Detection) -> String {
+    let Detection { at_start, median, smallest: Some(smallest), largest, tried, seen } = detection else {
+        return "not seen within this record, wherever in its first half it comes".into();
+    };
+    let start = match at_start {
+        Some(delay) => format!("seen after {delay:.4} s where it comes at the record's start"),
+        None => "not seen within this record where it comes at its start".into(),
+    };
+    match (median, largest) {
+        (Some(median), Some(largest)) => format!(
+            "{start}; over {tried} instants of its first half the median is {median:.4} s, from {smallest:.4} s to {largest:.4} s"
+        ),
+        _ => format!(
+            "{start}; seen before the record ends at {seen} of {tried} instants of its first half, after {smallest:.4} s at the soonest"
+        ),
+    }
 }
 
 fn table(found: &Limits) -> String {
