@@ -30,9 +30,6 @@ const LINGER: u64 = 3;
 /// Evidence of any other law at which a recognised one is left, in alarm levels.
 const CONTRADICTED: f64 = 0.15;
 
-/// One law recognised wrongly is likelier beforehand than one more switch so soon, nats.
-const ONE_MISTAKE: f64 = 10.0;
-
 /// The time after an alarm in which the bank still speaks for known laws.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Lingering {
@@ -232,11 +229,11 @@ impl Tracker {
     }
 
     /// Whether the law in use was recognised and never was the record's: it has held for a shorter time than it has been left by now, or
-    /// all of its record speaks for another law as much as its end does for a switch, of this evidence.
-    pub(super) fn was_never_right(&mut self, instant: u64, now: u64, evidence: f64) -> bool {
+    /// against another law all the while there is no such evidence of a switch as an alarm asks. `beyond` is by how much it passes the level.
+    pub(super) fn was_never_right(&mut self, instant: u64, now: u64, beyond: f64) -> bool {
         let Some(place) = self.recognised else { return false };
         let against = self.trials.evidence_against(place, &mut self.known, &self.window);
-        self.stage.length(instant) < now - instant || against.is_some_and(|against| against > evidence - ONE_MISTAKE)
+        self.stage.length(instant) < now - instant || against.is_some_and(|against| against > beyond)
     }
 
     /// Coefficients of a law that was taken back are not known any more.

@@ -71,6 +71,16 @@ impl Tracker {
         }
     }
 
+    /// The law in use never was the record's: another one explains all of it by now, and is in use from its next pass on. What spoke against
+    /// the one before says nothing of a switch.
+    fn supersede(&mut self, output: &mut Output) {
+        (self.live.running, self.unusual_since) = (false, None);
+        self.bank.clear();
+        self.deviation.clear();
+        self.usual.clear();
+        self.doubt_law(output);
+    }
+
     /// Ends the stage; only data from after the switch enters the new law.
     fn switch(&mut self, problem: &Problem, suspect: &Suspect, level: f64, output: &mut Output) {
         self.bank.look_at_all();
@@ -80,8 +90,11 @@ impl Tracker {
         let start = (self.bank.after(&suspect, level) + 1).min(last);
         let time = |number: u64| self.window.sample(number).t;
         let distance = self.bank.distance_of_switch(time(instant), self.now(), time);
-        if self.is_unconfirmed() || self.was_never_right(instant, last, suspect.evidence) {
+        if self.is_unconfirmed() || self.was_never_right(instant, last, suspect.evidence - level) {
             return self.take_back(problem, output);
+        }
+        if self.stage.contradicts(&self.live.all) {
+            return self.supersede(output);
         }
         self.keep_law(problem, output);
         self.set_spread(problem);
