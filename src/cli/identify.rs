@@ -15,6 +15,9 @@ use clap::builder::PossibleValuesParser;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+/// More gaps than these are told together.
+const GAPS_TOLD: usize = 4;
+
 /// Least width of the column of terms.
 const TERM: usize = 12;
 
@@ -178,17 +181,29 @@ fn settings(
     Ok((Settings { hold, ..settings }, from))
 }
 
+/// One by one where there are few.
+fn gap_warnings(source: &str, gaps: &[Gap]) -> Vec<String> {
+    let hole = |gap: &Gap| format!("no samples from {} s to {} s", gap.start, gap.end);
+    match gaps {
+        [first, .., last] if gaps.len() > GAPS_TOLD => vec![format!(
+            "{source}: {} gaps, the first with {}, the last with {}: identified anew after each, nothing is carried over \
+             them; where samples are missing throughout, resample the recording",
+            gaps.len(),
+            hole(first),
+            hole(last)
+        )],
+        _ => gaps
+            .iter()
+            .map(|gap| format!("{source}: {}: identified anew after this gap, nothing is carried over it", hole(gap)))
+            .collect(),
+    }
+}
+
 /// Everything that was left out or taken otherwise than the file says.
 fn warnings(run: &Run) -> Vec<String> {
     let recording = &run.opened.recording;
     let source = recording.source();
-    let gap = |gap: Gap| {
-        let Gap { start, end } = gap;
-        format!(
-            "{source}: no samples from {start} s to {end} s: identified anew after this gap, nothing is carried over it"
-        )
-    };
-    let mut warnings: Vec<String> = recording.gaps().into_iter().map(gap).collect();
+    let mut warnings = gap_warnings(source, &recording.gaps());
     if !recording.channels().excitation {
         warnings.push(format!("{source}: there is no excitation: taken as free motion, the inertia is fixed to 1"));
     }

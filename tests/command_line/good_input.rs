@@ -70,6 +70,18 @@ fn a_gap_is_said_and_nothing_crosses_it() {
 }
 
 #[test]
+fn many_gaps_are_one_warning() {
+    let bench = Bench::new("gaps");
+    let late = |line: usize, cells: &mut Vec<String>| {
+        cells[0] = (cells[0].parse::<f64>().unwrap() + (line / 60) as f64).to_string();
+    };
+    bench.write("gaps.csv", &csv("t,q,qd,F", 500, late));
+    let message = String::from_utf8(bench.identify(&["gaps.csv"]).stderr).unwrap();
+    assert_eq!(message.matches("no samples from").count(), 2, "{message}");
+    assert!(message.contains("gaps.csv: 8 gaps") && message.contains("anew after each"), "{message}");
+}
+
+#[test]
 fn sections_are_read_and_bad_ones_refused() {
     let bench = Bench::new("sections");
     let bad_outside = |line: usize, cells: &mut Vec<String>| {
