@@ -131,6 +131,8 @@ pub struct Tracker {
     doubted_from: u64,
     /// Passes in a row after which the stage seemed to hold several laws.
     unexplained_passes: u32,
+    /// Since which sample the stage's record has been explained by another law than the one in use, pass by pass.
+    contradicted_since: Option<u64>,
 }
 
 /// Where the identification stands.
@@ -192,6 +194,7 @@ impl Tracker {
             acquaintance: 0,
             doubted_from: 0,
             unexplained_passes: 0,
+            contradicted_since: None,
         }
     }
 
@@ -314,6 +317,8 @@ impl Tracker {
             return;
         }
         output.missing = self.stage.missing;
+        let contradicted = self.live.running && self.stage.contradicts(&self.live.all);
+        self.contradicted_since = contradicted.then(|| self.contradicted_since.unwrap_or(self.stage.closed_at()));
         let mixed = self.is_mixed();
         let trusted = self.stage.settled() && self.stage.stated_error() < TRUSTED && !mixed;
         let worth_monitoring = trusted && self.stage.stands();

@@ -56,9 +56,9 @@ impl Stage {
         self.start == other.start && differ_by(&self.all, &other.all) < STOOD
     }
 
-    /// Whether the law is known, explains its record, and is another one than these coefficients make.
+    /// Whether the fit has come to rest, explains its record, and is another law than these coefficients make.
     pub fn contradicts(&self, all: &[f64]) -> bool {
-        self.explains && self.is_vouched() && differ_by(&self.all, all) > STOOD
+        self.settled() && self.explains && differ_by(&self.all, all) > STOOD
     }
 
     fn trial_growth(&self) -> f64 {

@@ -71,8 +71,13 @@ impl Tracker {
         }
     }
 
-    /// The law in use never was the record's: another one explains all of it by now, and is in use from its next pass on. What spoke against
-    /// the one before says nothing of a switch.
+    /// Whether another law, known by now, explains all of the record, and did so when the law in use had not been left yet.
+    fn is_superseded(&self, instant: u64) -> bool {
+        self.stage.is_vouched() && self.contradicted_since.is_some_and(|since| since < instant)
+    }
+
+    /// The law in use never was the record's: the one that is comes into use with its next pass. What spoke against the one before says
+    /// nothing of a switch.
     fn supersede(&mut self, output: &mut Output) {
         (self.live.running, self.unusual_since) = (false, None);
         self.bank.clear();
@@ -93,7 +98,7 @@ impl Tracker {
         if self.is_unconfirmed() || self.was_never_right(instant, last, suspect.evidence - level) {
             return self.take_back(problem, output);
         }
-        if self.stage.contradicts(&self.live.all) {
+        if self.is_superseded(instant) {
             return self.supersede(output);
         }
         self.keep_law(problem, output);
