@@ -1,11 +1,12 @@
 //! `switchid add`: an effect joins the model.
 
+use super::diagnose::WindowReport;
 use super::error::CommandError;
 use super::input::{Input, ModelArguments};
 use super::output::{self, Pairs, Written};
 use super::progress::Waiting;
 use super::words::{number, percent};
-use crate::diagnose::{Addition, Evidence, Fit, add, improved_model, same_effect};
+use crate::diagnose::{Addition, Law, Posed, improved_model, same_effect};
 use crate::law::{Catalogue, Model, Term};
 use clap::Args;
 use serde::Serialize;
@@ -52,7 +53,8 @@ struct Report {
     coefficients: Pairs,
     std: Pairs,
     inner: Pairs,
-    gain: f64,
+    errors: Vec<WindowReport>,
+    hold: &'static str,
     model: String,
 }
 
@@ -62,9 +64,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let written = Written::check(&arguments.output, arguments.force)?;
     let input = Input::open(&arguments.data, &arguments.model)?;
     let term = effect(&arguments.effect, &input)?;
-    let recordings = input.recordings();
-    let evidence = Evidence::new(&recordings);
-    let found = Waiting::on("fitting", || add(&input.model, term, &evidence));
+    let found = Waiting::on("fitting", || find(&input, term));
     let effect = arguments.effect.clone();
     let found = found.ok_or_else(|| CommandError::NotDetermined { data: input.named(), effect })?;
     written.write(&improved_model(&input.model, &found.after).to_toml())?;
@@ -73,6 +73,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     } else {
         output::print(&text(arguments, &found, &input))
     }
+}
+
+/// The law with the effect, sharpened by the likelihood where that holds.
+fn find(input: &Input, term: Term) -> Option<Addition> {
+    let recordings = input.recordings();
+    let posed = Posed::new(&input.model, &recordings, input.hold)?;
+    let found = posed.add(term)?;
+    Some(Addition { after: posed.sharpened(&found.after, &recordings), ..found })
 }
 
 /// The term of that name, which the model must not have yet.
@@ -98,46 +106,47 @@ fn unknown(name: &str, model: &Model) -> CommandError {
 }
 
 fn report(arguments: &Arguments, found: &Addition) -> Report {
-    let fit = &found.after;
+    let law = &found.after;
+    let error = found.errors[1];
     Report {
         effect: arguments.effect.clone(),
-        error_before: found.error_before,
-        error_after: found.error_after,
-        coefficients: Pairs::coefficients(fit),
-        std: Pairs::std(fit),
-        inner: Pairs(inner(fit)),
-        gain: fit.log_likelihood - found.before.log_likelihood,
+        error_before: error.before,
+        error_after: error.after,
+        coefficients: Pairs::coefficients(law),
+        std: Pairs::std(law),
+        inner: Pairs(inner(law)),
+        errors: WindowReport::all(&found.errors, law.target),
+        hold: law.timing.hold.id(),
         model: arguments.output.display().to_string(),
     }
 }
 
 /// The inner parameters of the term that was added.
-fn inner(fit: &Fit) -> Vec<(String, f64)> {
-    let effect = fit.form.terms.last().and_then(|term| term.effect());
+fn inner(law: &Law) -> Vec<(String, f64)> {
+    let effect = law.terms.last().and_then(|term| term.effect());
     effect.map_or_else(Vec::new, |effect| {
         effect.inner().iter().map(|parameter| parameter.name.to_string()).zip(effect.inner_values()).collect()
     })
 }
 
 fn text(arguments: &Arguments, found: &Addition, input: &Input) -> String {
-    let fit = &found.after;
+    let law = &found.after;
+    let error = found.errors[1];
     let mut text = format!(
-        "{}: error on held-out data {} → {}, {:.1} nats gained\n",
+        "{}: error on held-out data {} → {} (windows of {:.3} s)\n",
         arguments.effect,
-        percent(found.error_before),
-        percent(found.error_after),
-        fit.log_likelihood - found.before.log_likelihood
+        percent(error.before),
+        percent(error.after),
+        error.window
     );
-    for (index, (term, value)) in fit.form.terms.iter().zip(&fit.coefficients).enumerate() {
-        let _ = writeln!(
-            text,
-            "  {:<28} {:>26}{}",
-            fit.form.effect_name(*term),
-            number(*value, fit.std(index)),
-            input.unit(*term)
-        );
+    if error.after > error.before {
+        text += "it makes the error worse: this record does not speak for it\n";
     }
-    for (name, value) in inner(fit) {
+    for ((term, value), std) in law.terms.iter().zip(&law.coefficients).zip(&law.std) {
+        let name = law.effect_name(*term);
+        let _ = writeln!(text, "  {name:<28} {:>26}{}", number(*value, *std), input.unit(*term));
+    }
+    for (name, value) in inner(law) {
         let _ = writeln!(text, "    {name:<26} {value:>26.6}");
     }
     text + &format!("written: {}\n", arguments.output.display())

@@ -42,7 +42,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let options = options(arguments)?;
     let input = Input::open(&arguments.data, &arguments.model)?;
-    let recordings = input.recordings();
+    let recordings = input.judged();
     let found = compare(&input.model, &recordings, &Options { units: input.units, ..options });
     let holds: Vec<Hold> = recordings.iter().map(|(_, hold)| *hold).collect();
     if arguments.json {

@@ -1,5 +1,6 @@
 //! The JSON document of `switchid compare`.
 
+use super::diagnose::WindowReport;
 use super::output::Pairs;
 use crate::diagnose::{Bounds, Comparison, Error, Fail, Over, Side, Verdict};
 use crate::law::Hold;
@@ -10,6 +11,7 @@ use serde::Serialize;
 pub(super) struct Report {
     verdict: &'static str,
     error: ErrorReport,
+    errors: Option<Vec<WindowReport>>,
     coefficients: Pairs,
     std: Pairs,
     fails: Vec<FailReport>,
@@ -20,6 +22,7 @@ pub(super) struct Report {
 #[derive(Serialize)]
 struct SideReport {
     error: ErrorReport,
+    errors: Option<Vec<WindowReport>>,
     coefficients: Pairs,
     std: Pairs,
     undetermined: Vec<String>,
@@ -81,11 +84,13 @@ impl Report {
         Report {
             verdict: id(found.verdict()),
             error: error(&found.given.error),
+            errors: errors(&found.given),
             coefficients: coefficients(&found.given),
             std: std(&found.given),
             fails: found.given.fails.iter().map(|fail| FailReport::of(fail, found)).collect(),
             best: SideReport {
                 error: error(&found.best.error),
+                errors: errors(&found.best),
                 coefficients: coefficients(&found.best),
                 std: std(&found.best),
                 undetermined: found.best.law.undetermined.iter().map(|term| term.name()).collect(),
@@ -144,6 +149,10 @@ impl ErrorReport {
             horizon: found.horizon,
         }
     }
+}
+
+fn errors(side: &Side) -> Option<Vec<WindowReport>> {
+    side.judged.as_ref().map(|judged| WindowReport::all(&judged.errors, judged.target))
 }
 
 fn id(verdict: Verdict) -> &'static str {

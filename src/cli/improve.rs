@@ -1,15 +1,13 @@
 //! `switchid improve`: effects join the model until nothing is missing that the catalogue has.
 
-use super::diagnose::{self, Answer, CandidateReport};
+use super::diagnose::{self, CandidateReport, TimingReport, WindowReport};
 use super::error::CommandError;
 use super::input::{Input, ModelArguments};
 use super::output::{self, Pairs, Written};
 use super::picture::Picture;
 use super::progress::Waiting;
 use super::words::{number, percent};
-use crate::diagnose::{Evidence, Improvement, Options, Step, compare, improve, improved_model};
-use crate::identify::Recording;
-use crate::law::Hold;
+use crate::diagnose::{Clock, Improvement, Law, Posed, Step, WindowError, improved_model};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;
@@ -20,8 +18,9 @@ const EXAMPLE: &str = r#"Examples:
   switchid improve first.csv second.csv --model model.toml -o better.toml --picture staircase.svg --json
 
 Diagnoses and adds until the law is adequate, or what is left is not in the catalogue. An effect that a later one
-makes superfluous is taken out again. The noise floor is the error that a right law would leave. The model itself is
-left alone: undoing is going back to its file."#;
+makes superfluous is taken out again; nothing is added that makes an error worse. The noise floor is the error that a
+right law would leave. --validate shows the same errors on a recording that no coefficient has seen. The model itself
+is left alone: undoing is going back to its file."#;
 
 /// Diagnose and add effects until the model is adequate, and write it
 #[derive(Args)]
@@ -38,6 +37,9 @@ pub(super) struct Arguments {
     /// Draw the error after each step into this file (SVG)
     #[arg(long, value_name = "OUT.svg")]
     picture: Option<PathBuf>,
+    /// Recordings that no coefficient has seen, on which every step's law is judged as it is
+    #[arg(long, value_name = "DATA2", num_args = 1..)]
+    validate: Vec<String>,
     /// Overwrite output files where they exist
     #[arg(long)]
     force: bool,
@@ -52,8 +54,13 @@ struct Report {
     verdict: &'static str,
     noise_floor: f64,
     window: f64,
+    period: f64,
+    explained: f64,
+    left: String,
+    timing: TimingReport,
+    hold: &'static str,
     candidates: Vec<CandidateReport>,
-    answer: [String; 3],
+    answer: Vec<String>,
     model: String,
 }
 
@@ -63,17 +70,33 @@ struct StepReport {
     removed: Vec<String>,
     ties: Vec<Vec<String>>,
     error: f64,
+    errors: Vec<WindowReport>,
+    /// Errors of the step's law, its numbers held, on recordings that no coefficient has seen.
+    validation: Option<Vec<WindowReport>>,
     coefficients: Pairs,
     std: Pairs,
 }
 
 /// What the command found.
 struct Found {
-    steps: Vec<Step>,
-    answer: Answer,
-    /// Error that a right law would leave, and the length of the windows it is taken over, s.
-    floor: f64,
-    window: f64,
+    improvement: Improvement,
+    /// The last law, sharpened by the likelihood where that holds.
+    law: Law,
+    /// Errors of every step's law on other recordings.
+    validation: Vec<Option<[WindowError; 3]>>,
+    clock: Clock,
+}
+
+impl Found {
+    fn steps(&self) -> &[Step] {
+        &self.improvement.steps
+    }
+
+    /// What a right law would leave at the principal window length, and that length, s.
+    fn floor(&self) -> [f64; 2] {
+        let error = self.steps().last().map(|step| step.errors[1]);
+        error.map_or([f64::NAN; 2], |error| [error.floor, error.window])
+    }
 }
 
 /// With --force the new model may take the old one's place, never a recording's; the picture takes neither's.
@@ -89,12 +112,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let written = Written::check(&arguments.output, arguments.force)?;
     let picture = arguments.picture.as_deref().map(|path| Picture::open(path, arguments.force)).transpose()?;
     let input = Input::open(&arguments.data, &arguments.model)?;
-    let recordings = input.recordings();
-    let found = Waiting::on("improving", || find(&input, &recordings)).ok_or_else(|| input.undetermined())?;
-    let last = found.steps.last().ok_or_else(|| input.undetermined())?;
-    written.write(&improved_model(&input.model, &last.fit).to_toml())?;
+    let others = match arguments.validate.is_empty() {
+        true => None,
+        false => Some(Input::open(&arguments.validate, &arguments.model)?),
+    };
+    let found = Waiting::on("improving", || find(&input, others.as_ref())).ok_or_else(|| input.undetermined())?;
+    written.write(&improved_model(&input.model, &found.law).to_toml())?;
     if let Some(picture) = picture {
-        picture.staircase(&stairs(&found), found.floor)?;
+        picture.staircase(&stairs(&found), found.floor()[0])?;
     }
     if arguments.json {
         output::print_json(&report(arguments, &found, &input))
@@ -103,55 +128,78 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     }
 }
 
-fn find(input: &Input, recordings: &[(&Recording, Hold)]) -> Option<Found> {
-    let Improvement { steps, last } = improve(&input.model, &Evidence::new(recordings))?;
-    let best = improved_model(&input.model, &steps.last()?.fit);
-    let window = last.window;
-    let floor = compare(&best, recordings, &Options { window: Some(window), ..Options::default() });
-    let answer = Answer::of(last, recordings);
-    Some(Found { steps, answer, floor: floor.given.error.noise_floor, window })
+fn find(input: &Input, others: Option<&Input>) -> Option<Found> {
+    let recordings = input.recordings();
+    let posed = Posed::new(&input.model, &recordings, input.hold)?;
+    let improvement = posed.improve()?;
+    let last = &improvement.steps.last()?.law;
+    let validation = improvement.steps.iter().map(|step| validated(&step.law, input, others));
+    Some(Found {
+        validation: validation.collect(),
+        law: posed.sharpened(last, &recordings),
+        clock: posed.clock(last),
+        improvement,
+    })
+}
+
+/// Errors of a law, its numbers held, on other recordings.
+fn validated(law: &Law, input: &Input, others: Option<&Input>) -> Option<[WindowError; 3]> {
+    let others = others?;
+    let posed = Posed::new(&improved_model(&input.model, law), &others.recordings(), Some(law.timing.hold))?;
+    Some(posed.errors_of(law)?.0)
 }
 
 fn report(arguments: &Arguments, found: &Found, input: &Input) -> Report {
-    let step = |step: &Step| StepReport {
+    let step = |(step, validation): (&Step, &Option<[WindowError; 3]>)| StepReport {
         effect: step.effect.clone(),
         removed: step.removed.clone(),
         ties: step.ties.clone(),
-        error: step.error,
-        coefficients: Pairs::coefficients(&step.fit),
-        std: Pairs::std(&step.fit),
+        error: step.error(),
+        errors: WindowReport::all(&step.errors, step.law.target),
+        validation: validation.map(|errors| WindowReport::all(&errors, step.law.target)),
+        coefficients: Pairs::coefficients(&step.law),
+        std: Pairs::std(&step.law),
     };
-    let diagnosis = &found.answer.diagnosis;
+    let diagnosis = &found.improvement.last;
+    let [noise_floor, window] = found.floor();
     Report {
-        steps: found.steps.iter().map(step).collect(),
+        steps: found.steps().iter().zip(&found.validation).map(step).collect(),
         verdict: diagnose::verdict(diagnosis.finding),
-        noise_floor: found.floor,
-        window: found.window,
-        candidates: diagnosis.candidates.iter().map(|candidate| CandidateReport::of(candidate, input)).collect(),
-        answer: diagnose::answer(&found.answer, input),
+        noise_floor,
+        window,
+        period: diagnosis.period,
+        explained: diagnosis.explained,
+        left: diagnosis.left.clone(),
+        timing: TimingReport::of(&found.clock),
+        hold: found.law.timing.hold.id(),
+        candidates: CandidateReport::all(diagnosis, input),
+        answer: diagnose::answer(diagnosis, Some(&found.clock), input),
         model: arguments.output.display().to_string(),
     }
 }
 
 fn text(arguments: &Arguments, found: &Found, input: &Input) -> String {
-    let mut text = diagnose::answer(&found.answer, input).join("\n");
-    text += &format!("\n\nerror on held-out data, windows of {:.3} s\n", found.window);
-    for (index, step) in found.steps.iter().enumerate() {
-        let _ = writeln!(text, "{index:>3}  {:<40} {:>10}", title(step), percent(step.error));
+    let diagnosis = &found.improvement.last;
+    let mut text = diagnose::answer(diagnosis, Some(&found.clock), input).join("\n");
+    let [floor, window] = found.floor();
+    let validated = if found.validation.iter().any(Option::is_some) { "validation" } else { "" };
+    text += &format!("\n\nerror on held-out data, windows of {window:.3} s{validated:>32}\n");
+    for (index, (step, validation)) in found.steps().iter().zip(&found.validation).enumerate() {
+        let other = validation.map_or_else(String::new, |errors| percent(errors[1].after));
+        let _ = writeln!(text, "{index:>3}  {:<40} {:>10} {other:>12}", title(step), percent(step.error()));
         for group in &step.ties {
             let _ = writeln!(text, "     this record cannot tell {} from {}", group[0], group[1..].join(", "));
         }
     }
-    let _ = writeln!(text, "     {:<40} {:>10}", "noise floor", percent(found.floor));
-    if let Some(last) = found.steps.last() {
-        text += "\nthe law now:\n";
-        for (index, (term, value)) in last.fit.form.terms.iter().zip(&last.fit.coefficients).enumerate() {
-            let name = last.fit.form.effect_name(*term);
-            let _ = writeln!(text, "  {name:<28} {:>26}{}", number(*value, last.fit.std(index)), input.unit(*term));
-        }
+    let _ = writeln!(text, "     {:<40} {:>10}", "noise floor", percent(floor));
+    text += "\nthe law now:\n";
+    let law = &found.law;
+    for ((term, value), std) in law.terms.iter().zip(&law.coefficients).zip(&law.std) {
+        let name = law.effect_name(*term);
+        let _ = writeln!(text, "  {name:<28} {:>26}{}", number(*value, *std), input.unit(*term));
     }
     text += "\n";
-    text += &diagnose::candidates(&found.answer.diagnosis, input);
+    text += &diagnose::candidates(diagnosis, input);
     text + &format!("\nwritten: {}\n", arguments.output.display())
 }
 
@@ -165,5 +213,5 @@ fn title(step: &Step) -> String {
 }
 
 fn stairs(found: &Found) -> Vec<(String, f64)> {
-    found.steps.iter().map(|step| (title(step), step.error)).collect()
+    found.steps().iter().map(|step| (title(step), step.error())).collect()
 }

@@ -3,6 +3,7 @@
 use super::error::CommandError;
 use super::output;
 use crate::data::{self, Opened};
+use crate::diagnose::Posed;
 use crate::identify::{self, Gap, Recording, Settings};
 use crate::law::{Given, Hold, Model, ModelTerm, Term, Units};
 use clap::Args;
@@ -31,8 +32,9 @@ pub(super) struct Input {
     pub(super) file: String,
     /// What is known of the units of coefficients.
     pub(super) units: Units,
+    /// What the excitation did between samples, where the user or the model says so.
+    pub(super) hold: Option<Hold>,
     recordings: Vec<Recording>,
-    holds: Vec<Hold>,
 }
 
 impl Input {
@@ -53,19 +55,39 @@ impl Input {
         {
             return Err(CommandError::NoScale { data: free.source().into(), model: file });
         }
-        let asked = arguments.hold.as_deref().and_then(Hold::from_id);
-        let hold = |recording: &Recording| {
-            let settings = || identify::settings_for(recording, Settings::default());
-            asked.or(model.hold).unwrap_or_else(|| identify::choose_hold(&moving, recording, &settings()))
-        };
-        let holds = recordings.iter().map(hold).collect();
+        let hold = arguments.hold.as_deref().and_then(Hold::from_id).or(model.hold);
         recordings.iter().flat_map(warnings).for_each(|text| output::complain("warning", &text));
-        Ok(Input { file, model, units, recordings, holds })
+        Ok(Input { file, model, units, hold, recordings })
     }
 
-    /// The recordings with their holds.
-    pub(super) fn recordings(&self) -> Vec<(&Recording, Hold)> {
-        self.recordings.iter().zip(self.holds.iter().copied()).collect()
+    /// The recordings.
+    pub(super) fn recordings(&self) -> Vec<&Recording> {
+        self.recordings.iter().collect()
+    }
+
+    /// The recordings, each with the hold that is known, or under which the model's law leaves least.
+    pub(super) fn judged(&self) -> Vec<(&Recording, Hold)> {
+        let hold = || {
+            let posed = Posed::new(&self.model.freed(), &self.recordings(), None)?;
+            Some(posed.law()?.0.timing.hold)
+        };
+        let hold = self.hold.or_else(hold).unwrap_or(Hold::Linear);
+        self.recordings.iter().map(|recording| (recording, hold)).collect()
+    }
+
+    /// The recordings, each with the hold that is known, or under which it is likeliest.
+    pub(super) fn held(&self) -> Vec<(&Recording, Hold)> {
+        let moving = moving(&self.model);
+        let hold = |recording: &Recording| {
+            let settings = identify::settings_for(recording, Settings::default());
+            self.hold.unwrap_or_else(|| identify::choose_hold(&moving, recording, &settings))
+        };
+        self.recordings.iter().map(|recording| (recording, hold(recording))).collect()
+    }
+
+    /// Whether any recording has an excitation.
+    pub(super) fn forced(&self) -> bool {
+        self.recordings.iter().any(|recording| recording.channels().excitation)
     }
 
     /// The arguments by which the recordings were named, as for another command.

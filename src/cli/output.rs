@@ -2,7 +2,7 @@
 
 use super::error::CommandError;
 use crate::data::Section;
-use crate::diagnose::Fit;
+use crate::diagnose::Law;
 use serde::{Serialize, Serializer};
 use std::fs::File;
 use std::io::{BufWriter, ErrorKind, Write};
@@ -132,16 +132,16 @@ impl Pairs {
         Pairs(Vec::new())
     }
 
-    /// The coefficients of a fitted law, by term.
-    pub(super) fn coefficients(fit: &Fit) -> Pairs {
-        let pairs = fit.form.terms.iter().zip(&fit.coefficients);
-        Pairs(pairs.map(|(term, value)| (fit.form.term_name(*term), *value)).collect())
+    /// The coefficients of a law, by term.
+    pub(super) fn coefficients(law: &Law) -> Pairs {
+        let pairs = law.terms.iter().zip(&law.coefficients);
+        Pairs(pairs.map(|(term, value)| (law.term_name(*term), *value)).collect())
     }
 
     /// The std of those that were sought.
-    pub(super) fn std(fit: &Fit) -> Pairs {
-        let terms = fit.form.terms.iter().enumerate().filter(|(index, _)| fit.form.held[*index].is_none());
-        Pairs(terms.map(|(index, term)| (fit.form.term_name(*term), fit.std(index))).collect())
+    pub(super) fn std(law: &Law) -> Pairs {
+        let sought = law.terms.iter().zip(&law.std).filter(|(_, std)| **std > 0.0);
+        Pairs(sought.map(|(term, std)| (law.term_name(*term), *std)).collect())
     }
 }
 

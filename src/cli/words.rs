@@ -1,6 +1,6 @@
 //! Numbers as text is given them: shares, chances, values with their std.
 
-use crate::diagnose::Form;
+use crate::diagnose::Law;
 use crate::law::{Catalogue, Term};
 
 /// Most decimals that a value is given.
@@ -48,10 +48,10 @@ pub(super) fn number(value: f64, std: f64) -> String {
 }
 
 /// What stands behind an effect's coefficient: the catalogue's equation, the user's formula.
-pub(super) fn effect_of(term: Term, form: &Form) -> String {
+pub(super) fn effect_of(term: Term, law: &Law) -> String {
     match (term, Catalogue::of(term)) {
         (Term::Expression(index), _) => {
-            form.expressions.get(usize::from(index)).map_or_else(|| term.name(), |own| own.text().into())
+            law.expressions.get(usize::from(index)).map_or_else(|| term.name(), |own| own.text().into())
         }
         (_, Some(entry)) => entry.equation.into(),
         _ => term.symbol(),

@@ -1,65 +1,27 @@
 //! Which physical effect a model lacks, and where it fails.
+//!
+//! Data takes one way: the motion that recordings show ([`motion`]) → a law as weak equations and its held-out errors ([`judge`]) → every
+//! effect beside it ([`candidates`]) → the [`verdict`]. The likelihood ([`fit`]) sharpens coefficients; [`compare`] shows where a law fails.
 
-mod beside;
-mod coefficients;
+mod candidates;
 mod compare;
-mod conclude;
-mod cooling;
-mod decide;
-mod depends;
-mod descent;
-mod diagnosis;
-mod errors;
 mod fit;
-mod force;
-mod free_run;
-mod improve;
-mod inner_slopes;
 mod judge;
-mod levels;
-mod locate;
-mod loop_run;
-mod massless;
-mod means;
-mod memory_run;
-mod noise;
+mod motion;
 mod piece;
-mod place;
-mod proposal;
-mod record;
-mod rows;
-mod run;
-mod scan;
-mod screen;
-mod search;
-mod sentence;
-mod series;
-mod smooth;
-mod sound;
-mod spectrum;
-mod start;
-mod switched;
-mod tableau;
-mod trajectory;
-mod variants;
-mod window;
+mod scale;
+mod verdict;
 
-pub use coefficients::{Estimate, Held};
-pub use compare::{Comparison, Error, NOISE_RATIO, Options, Side, Verdict, compare};
-pub use decide::{Decision, Reach, Visible, decide, visible};
-pub use depends::{Dependence, Source, depends_on};
-pub use diagnosis::{
-    Candidate, Diagnosis, Evidence, Finding, LEVEL, best_as_given, best_of_form, candidates, diagnose, diagnose_model,
-    effect_name, excess, is_evident,
+pub use candidates::{Variant, candidates, same_effect, variants};
+pub use compare::{
+    Bounds, Comparison, Error, Estimate, Fail, Held, Judged, NOISE_RATIO, Options, Over, Side, Verdict, compare,
 };
-pub use fit::{Fit, Form, fit, refit};
-pub use improve::{Addition, Improvement, Step, add, error, improve, improved_model};
-pub use judge::Trial;
-pub use locate::{Bounds, Fail, Over};
+pub use fit::{Evidence, Fit, Form, best_as_given, fit, is_evident, refit};
+pub use judge::{Target, Timing};
+pub use motion::{Kinematics, Sensors};
 pub use piece::Piece;
-pub use place::Removal;
-pub use proposal::{Proposal, Proposals};
-pub use screen::{Gain, screen};
-pub use search::{Search, search};
-pub use switched::{StageDiagnosis, Switched, diagnose_stages};
-pub use variants::{Scale, Variant, same_effect, variants};
+pub use scale::Scale;
+pub use verdict::{
+    ADEQUATE, Addition, Candidate, Clock, Diagnosis, Doubt, Finding, Improvement, LEVEL, Law, Posed, StageDiagnosis,
+    Step, Switched, WindowError, are_adequate, diagnose_stages, improved_model,
+};

@@ -83,6 +83,11 @@ impl Piece {
         [self.q.as_deref(), self.qd.as_deref()]
     }
 
+    /// Forms the observations anew, after the signals have changed.
+    pub(super) fn observe_again(&mut self) {
+        self.observations = self.observe();
+    }
+
     fn observe(&self) -> Vec<Observation> {
         let band_limited = BandLimited::new();
         let drive = |k: usize| match self.hold {

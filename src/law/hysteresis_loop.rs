@@ -70,7 +70,7 @@ impl Branch {
     fn at(&self, way: f64) -> f64 {
         let place = way / SPACING;
         let node = place as usize;
-        if node + 1 >= NODES {
+        if node >= NODES - 1 {
             return self.values[NODES - 1];
         }
         let (share, bend) = (place - node as f64, 1.0 - (place - node as f64));

@@ -3,17 +3,14 @@
 mod report;
 mod text;
 
-pub(super) use report::CandidateReport;
+pub(super) use report::{CandidateReport, TimingReport, WindowReport};
 pub(super) use text::{answer, candidates, verdict};
 
 use super::error::CommandError;
 use super::input::{Input, ModelArguments};
 use super::output;
 use super::progress::Waiting;
-use crate::diagnose::{Decision, Dependence, Diagnosis, Evidence, Finding, StageDiagnosis, Visible};
-use crate::diagnose::{decide, depends_on, diagnose_stages, visible};
-use crate::identify::Recording;
-use crate::law::Hold;
+use crate::diagnose::{Clock, Diagnosis, Finding, StageDiagnosis, diagnose_stages};
 use clap::Args;
 
 const EXAMPLE: &str = r#"Examples:
@@ -21,10 +18,12 @@ const EXAMPLE: &str = r#"Examples:
   switchid diagnose first.csv second.csv@20:60 --model model.toml --hold linear --json
 
 The model's form gets its best coefficients; what it lacks is sought among the effects of the catalogue and the
-model's own [effects] that no term names. A record that switches is diagnosed stage by stage.
-"missing": an effect whose gain is significant among all that were tried, with a sign that physics allows.
-"adequate": the law explains its record. "unexplained": something is missing that the catalogue does not have.
-Errors are the RMS weak residual ÷ RMS weak excitation on stretches of the record that the coefficients have not seen."#;
+model's own [effects] that no term names. A record that switches is diagnosed stage by stage. A model without inertia
+is a law F = law(q, qd): F is the output.
+"missing": an effect that lowers the error on stretches of the record that no coefficient has seen, beyond chance,
+with a sign that physics allows. "adequate": what is left is what the sensors alone would leave. "unexplained": more
+is left, and no effect of the catalogue passes.
+Errors are the RMS weak residual ÷ std of the weak target over windows of 0.1, 0.3 and 1 T0; all three decide."#;
 
 /// Find the physical effect that a model lacks
 #[derive(Args)]
@@ -40,43 +39,13 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// A diagnosis with what would decide it further.
-pub(super) struct Answer {
-    pub(super) diagnosis: Diagnosis,
-    pub(super) decision: Option<Decision>,
-    pub(super) visible: Option<Visible>,
-    pub(super) dependence: Option<Dependence>,
-}
-
-impl Answer {
-    /// Completes a diagnosis of these recordings.
-    pub(super) fn of(diagnosis: Diagnosis, recordings: &[(&Recording, Hold)]) -> Answer {
-        let evidence = Evidence::new(recordings);
-        let finding = diagnosis.finding;
-        let unexplained = (finding == Finding::Unexplained).then(|| depends_on(&diagnosis, &evidence));
-        Answer {
-            decision: decide(&diagnosis, &evidence),
-            visible: (finding == Finding::Adequate).then(|| visible(&diagnosis, &evidence)).flatten(),
-            dependence: unexplained.flatten(),
-            diagnosis,
-        }
-    }
-}
-
-/// One stage of a recording, and what it lacks; no answer where it is too short for a law.
-struct StageAnswer {
-    data: String,
-    start: f64,
-    end: f64,
-    answer: Option<Answer>,
-}
-
 /// What the command found.
 struct Found {
-    /// The answer that says most: of all recordings together, or of one stage.
-    principal: Answer,
+    /// The diagnosis that says most: of all recordings together, or of one stage.
+    principal: Diagnosis,
     finding: Finding,
-    stages: Vec<StageAnswer>,
+    stages: Vec<StageDiagnosis>,
+    clock: Option<Clock>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
@@ -90,24 +59,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
 }
 
 fn find(input: &Input) -> Result<Found, CommandError> {
-    let recordings = input.recordings();
-    let found = diagnose_stages(&input.model, &recordings);
-    let (Some(finding), Some(principal)) = (found.finding(), found.principal()) else {
+    let found = diagnose_stages(&input.model, &input.recordings(), input.hold);
+    let (Some(finding), Some(principal)) = (found.finding(), found.principal().cloned()) else {
         return Err(input.undetermined());
     };
-    let is_principal =
-        |stage: &StageDiagnosis| stage.diagnosis.as_ref().is_some_and(|own| std::ptr::eq(own, principal));
-    let stage = found.stages.iter().position(is_principal);
-    let principal = principal.clone();
-    let principal = match stage.map(|index| &found.stages[index]) {
-        Some(stage) => Answer::of(principal, &[(&stage.samples, recordings[stage.recording].1)]),
-        None => Answer::of(principal, &recordings),
-    };
-    let stages = found.stages.into_iter().map(|stage| StageAnswer {
-        data: stage.samples.source().into(),
-        start: stage.start,
-        end: stage.end,
-        answer: stage.diagnosis.map(|own| Answer::of(own, &[(&stage.samples, recordings[stage.recording].1)])),
-    });
-    Ok(Found { principal, finding, stages: stages.collect() })
+    Ok(Found { principal, finding, clock: found.clock, stages: found.stages })
 }

@@ -1,14 +1,14 @@
-//! A diagnosis in words: three lines that answer, then what they rest on.
+//! A diagnosis in words: what it comes to, how sure, what would decide, then what it rests on.
 
 use super::super::input::Input;
-use super::{Answer, Found, StageAnswer};
+use super::Found;
 use crate::cli::words::{chance, effect_of, number, percent};
-use crate::diagnose::{Candidate, Decision, Dependence, Diagnosis, Finding, Source};
+use crate::diagnose::{Candidate, Clock, Diagnosis, Doubt, Finding, Law, StageDiagnosis};
 use crate::law::{Catalogue, SiUnit, Units, equation};
 use std::fmt::Write;
 
-/// Chances beyond which another significant candidate is not worth a line.
-const LISTED: f64 = 0.01;
+/// Candidates that are listed, at most.
+const LISTED: usize = 6;
 
 pub(in crate::cli) fn verdict(finding: Finding) -> &'static str {
     match finding {
@@ -26,51 +26,61 @@ pub(super) fn text(found: &Found, input: &Input) -> String {
     for (index, stage) in found.stages.iter().enumerate() {
         text += &stage_text(index, stage, input);
     }
-    if let (Finding::Missing, Some(effect)) = (found.finding, &found.principal.diagnosis.effect) {
-        let _ = writeln!(
-            text,
-            "\nnext: `switchid add {effect} --model {} --data {} -o BETTER.toml`",
-            input.file,
-            input.named()
-        );
+    if let (Finding::Missing, Some(effect)) = (found.finding, &found.principal.effect) {
+        let (model, data) = (&input.file, input.named());
+        let _ = writeln!(text, "\nnext: `switchid add {effect} --model {model} --data {data} -o BETTER.toml`");
     }
     text
 }
 
-/// What is missing, how sure, and which further recording would decide.
-pub(super) fn lines(found: &Found, input: &Input) -> [String; 3] {
-    let mut lines = answer(&found.principal, input);
+/// What is missing, how sure, which further recording would decide, and how the sensors keep time.
+pub(super) fn lines(found: &Found, input: &Input) -> Vec<String> {
+    let mut lines = answer(&found.principal, found.clock.as_ref(), input);
     if !found.stages.is_empty() {
         lines[0] = over_stages(found);
     }
     lines
 }
 
-/// The three lines of one diagnosis.
-pub(in crate::cli) fn answer(answer: &Answer, input: &Input) -> [String; 3] {
-    [what(answer, input), sure(answer), decides(answer, &input.units)]
+/// The lines of one diagnosis.
+pub(in crate::cli) fn answer(diagnosis: &Diagnosis, clock: Option<&Clock>, input: &Input) -> Vec<String> {
+    let mut lines = vec![what(diagnosis, input), sure(diagnosis), format!("decides: {}", decides(diagnosis))];
+    let way = if diagnosis.base.terms.contains(&crate::law::Term::Inertia) { None } else { Some(OUTPUT) };
+    lines.extend(way.map(String::from));
+    lines.extend(clock.into_iter().flat_map(Clock::sentences).map(|sentence| format!("sensors: {sentence}")));
+    lines
 }
 
-fn what(answer: &Answer, input: &Input) -> String {
-    let diagnosis = &answer.diagnosis;
+const OUTPUT: &str = "the model has no inertia: F = law(q, qd), F is the output";
+
+fn what(diagnosis: &Diagnosis, input: &Input) -> String {
     match (diagnosis.finding, diagnosis.candidates.first()) {
         (Finding::Missing, Some(best)) => {
-            let mut line = format!("missing: {}, {}", best.effect, force(best, diagnosis, input));
-            for other in &diagnosis.beside {
-                let _ = write!(line, "; and beside it {other}");
-            }
+            let mut line = format!("missing: {}, {}", best.effect, force(best, &diagnosis.base, input));
             for group in &diagnosis.indistinguishable {
-                let one = if group[0] == best.effect { "it" } else { &group[0] };
-                let _ = write!(line, "; this record cannot tell {one} from {}", group[1..].join(", "));
+                let _ = write!(line, "; this record cannot tell it from {}", group[1..].join(", "));
             }
-            line
+            let explained = percent(diagnosis.explained);
+            line + &format!(". It explains {explained} of the error at the motion's scale; {}", diagnosis.left)
         }
-        (Finding::Unexplained, _) => {
-            let on = answer.dependence.as_ref().map(|found| format!("; it depends on {}", dependence(found)));
-            format!("unexplained: something is missing that is not in the catalogue{}", on.unwrap_or_default())
-        }
-        _ => "nothing is missing: the law explains this record".into(),
+        (Finding::Adequate, _) => "nothing is missing: what is left is what the sensors alone would leave".into(),
+        _ => match trapped(diagnosis) {
+            Some(trap) => {
+                let share = percent(trap.resemblance);
+                format!(
+                    "cannot tell whether {} is missing: the model's own terms are {share} of it here; {}",
+                    trap.effect, diagnosis.left
+                )
+            }
+            None => format!("unexplained: no effect of the catalogue passes; {}", diagnosis.left),
+        },
     }
+}
+
+/// The best candidate that the law's own terms nearly are, where it would lower the error.
+fn trapped(diagnosis: &Diagnosis) -> Option<&Candidate> {
+    let would = |candidate: &&Candidate| candidate.doubt == Some(Doubt::Trap) && candidate.error().ratio() < 0.95;
+    diagnosis.candidates.iter().find(would)
 }
 
 /// `20.35 ± 0.05 N`, in brackets where a unit follows both.
@@ -83,136 +93,54 @@ fn with_unit(candidate: &Candidate, input: &Input) -> String {
 }
 
 /// `(20.35 ± 0.05) N · sign(q̇) e^(−|q̇|/v), speed 0.02 m/s`.
-fn force(candidate: &Candidate, diagnosis: &Diagnosis, input: &Input) -> String {
-    let symbol = effect_of(candidate.term, &diagnosis.base.form);
+fn force(candidate: &Candidate, law: &Law, input: &Input) -> String {
+    let symbol = effect_of(candidate.term, law);
     let force = format!("{} · {symbol}", with_unit(candidate, input));
     let inner = inner(candidate, &input.units).into_iter().map(|one| format!(", {}", one.replace('_', " ")));
     std::iter::once(force).chain(inner).collect()
 }
 
-fn sure(answer: &Answer) -> String {
-    let diagnosis = &answer.diagnosis;
-    let Some(best) = diagnosis.candidates.first() else {
-        return "how sure: no candidate could be put into the law".into();
+fn sure(diagnosis: &Diagnosis) -> String {
+    let [first, .., last] = diagnosis.errors;
+    let errors = |pick: fn(&crate::diagnose::WindowError) -> f64| {
+        let told = diagnosis.errors.iter().map(pick);
+        told.map(|error| if error.is_finite() { percent(error) } else { "–".into() }).collect::<Vec<_>>().join(", ")
     };
-    let tried = format!("{} among {} tried", chance(best.p_value), diagnosis.tried);
+    let windows = format!("windows of {:.3} to {:.3} s", first.window, last.window);
+    match (diagnosis.finding, diagnosis.candidates.first()) {
+        (Finding::Missing, Some(best)) => {
+            let chance = match best.p_value {
+                Some(p) => format!("by chance {} among {} tried", chance(p), diagnosis.tried),
+                None => "too short to be sure: named on its error alone".into(),
+            };
+            let (before, after) = (errors(|error| error.before), errors(|error| error.after));
+            format!("how sure: {chance}; held-out error {before} → {after} ({windows})")
+        }
+        _ => {
+            let floor = errors(|error| error.floor);
+            format!("how sure: held-out error {}, the sensors' floor {floor} ({windows})", errors(|error| error.before))
+        }
+    }
+}
+
+/// Which further recording would tell more.
+fn decides(diagnosis: &Diagnosis) -> String {
+    if let Some(group) = diagnosis.indistinguishable.first() {
+        return format!("a longer or larger motion, between {} and {}", group[0], group[1]);
+    }
+    if let Some(trap) = trapped(diagnosis) {
+        return format!(
+            "a recording in which {} goes its own way: several speeds and amplitudes, reversals, an excitation that does not \
+             follow the motion",
+            trap.effect
+        );
+    }
     match diagnosis.finding {
-        Finding::Missing => {
-            let (before, after) = (percent(best.error_before), percent(best.error_after));
-            format!("how sure: by chance {tried}; error on held-out data {before} → {after}{}", behind(diagnosis))
-        }
-        Finding::Adequate => {
-            let error = percent(best.error_before);
-            format!("how sure: the best candidate, {}, has a chance of {tried}; error {error}", best.effect)
-        }
-        Finding::Unexplained => {
-            let explained = percent(diagnosis.explained);
-            let beyond = "the error is beyond the sensors' noise";
-            let by =
-                answer.dependence.as_ref().map(|found| format!(", the dependence by chance {}", chance(found.p_value)));
-            format!("how sure: {beyond}; the catalogue explains {explained} of it at best{}", by.unwrap_or_default())
-        }
-    }
-}
-
-/// By how much the next candidate that is no tie is worse.
-fn behind(diagnosis: &Diagnosis) -> String {
-    let tied = diagnosis.indistinguishable.first();
-    let is_tied = |candidate: &&Candidate| tied.is_some_and(|group| group.contains(&candidate.effect));
-    let Some(best) = diagnosis.candidates.first() else { return String::new() };
-    let gain = best.gain;
-    // one that contains the best is a rival only where it gains more
-    let rival = |candidate: &&Candidate| {
-        !diagnosis.beside.contains(&candidate.effect) && !Catalogue::is_contained(&best.effect, &candidate.effect)
-    };
-    match diagnosis.candidates.iter().skip(1).filter(rival).find(|candidate| !is_tied(candidate)) {
-        Some(next) if gain > next.gain => {
-            format!("; {}, the next best, is {:.0} nats behind", next.effect, gain - next.gain)
-        }
-        _ => String::new(),
-    }
-}
-
-fn decides(answer: &Answer, units: &Units) -> String {
-    let line = match (answer.diagnosis.finding, &answer.decision, &answer.visible) {
-        (Finding::Missing, Some(decision), _) => decision_words(decision, units),
-        (Finding::Missing, None, _) => match answer.diagnosis.indistinguishable.first() {
-            Some(group) => format!("a longer or larger motion, between {} and {}", group[0], group[1]),
-            None => "no further recording is needed".into(),
-        },
-        (Finding::Adequate, _, Some(seen)) => format!(
-            "a weaker effect needs a longer or larger motion: this record shows {} from {} of the force on",
-            seen.effect,
-            percent(seen.share)
-        ),
-        (Finding::Adequate, ..) => "no further recording is needed for what this one shows".into(),
-        (Finding::Unexplained, ..) => further(answer.dependence.as_ref()).into(),
-    };
-    format!("decides: {line}")
-}
-
-fn decision_words(decision: &Decision, units: &Units) -> String {
-    let Decision { one, other, apart, needed, longer, motion } = decision;
-    let asked = match motion {
-        Some(reach) => format!(
-            "a recording with |q| up to {:.3}{} and |q̇| up to {:.3}{} ({} times this one)",
-            reach.displacement,
-            spaced(units.displacement()),
-            reach.velocity,
-            spaced(units.velocity()),
-            reach.scale
-        ),
-        None if *longer < 1e4 => format!("a recording {longer:.0} times as long as this one"),
-        None => "none of this kind of motion; excite it at other frequencies".into(),
-    };
-    format!("{asked}, between {one} and {other} ({apart:.1} nats apart here, {needed:.0} decide)")
-}
-
-fn further(dependence: Option<&Dependence>) -> &'static str {
-    match dependence.map(|found| found.source) {
-        Some(Source::Drift | Source::StiffnessDrift | Source::DampingDrift) => {
-            "the same motion again, an hour later: what drifts has drifted on"
-        }
-        Some(Source::Line(_)) => "the system at rest, without excitation: the line stays if it comes from elsewhere",
-        Some(Source::Parametric(_)) => "a free decay: the coefficient still oscillates if it does so by itself",
-        Some(Source::PastDisplacement(_) | Source::PastVelocity(_)) => {
-            "slow triangles of several amplitudes, then a free decay: memory shows as loops that depend on the turning points"
-        }
-        Some(Source::PastExcitation(_) | Source::SquaredExcitation | Source::ExcitationMagnitude) => {
-            "the same excitation at half its amplitude: what comes from the input does not fall in proportion"
-        }
-        None => "one with q and q̇ measured and an excitation that covers more frequencies and amplitudes",
-    }
-}
-
-/// What the error of a law depends on, in words.
-pub(super) fn dependence(found: &Dependence) -> String {
-    let relative = |what: &str, verb: &str| match found.relative {
-        Some(relative) => {
-            let direction = if relative < 0.0 { "falls" } else { "grows" };
-            format!("time: the {what} {direction} by {} over the record", percent(relative.abs()))
-        }
-        None => format!("time: a {what} {verb} by {:.4} over the record", found.amplitude),
-    };
-    let hertz = |omega: f64| format!("{omega:.4} rad/s, {:.4} Hz", omega / std::f64::consts::TAU);
-    match found.source {
-        Source::Drift => format!("time: a force that changes by {:.4} over the record", found.amplitude),
-        Source::StiffnessDrift => relative("stiffness", "changes"),
-        Source::DampingDrift => relative("damping", "changes"),
-        Source::Line(omega) => format!(
-            "a frequency: {}, a force of amplitude {:.4} that is not in the excitation",
-            hertz(omega),
-            found.amplitude
-        ),
-        Source::Parametric(omega) => {
-            let by = found.relative.map_or_else(|| format!("{:.4}", found.amplitude), |share| percent(share.abs()));
-            format!("a frequency: {}, with which the stiffness oscillates by {by}", hertz(omega))
-        }
-        Source::PastDisplacement(delay) => format!("memory: the displacement {delay:.4} s ago"),
-        Source::PastVelocity(delay) => format!("memory: the velocity {delay:.4} s ago"),
-        Source::PastExcitation(delay) => format!("the input: the excitation {delay:.4} s ago"),
-        Source::SquaredExcitation => "the input: the square of the excitation".into(),
-        Source::ExcitationMagnitude => "the input: the magnitude of the excitation".into(),
+        Finding::Missing if diagnosis.is_down_to_sensors() => "no further recording is needed".into(),
+        Finding::Missing => "add it and diagnose again: what is left is more than the sensors'".into(),
+        Finding::Adequate => "no further recording is needed for what this one shows".into(),
+        Finding::Unexplained if !diagnosis.is_testable => "a longer recording: this one is too short to be sure".into(),
+        Finding::Unexplained => "a recording at other speeds, amplitudes and frequencies, with q and q̇ measured".into(),
     }
 }
 
@@ -225,12 +153,7 @@ fn over_stages(found: &Found) -> String {
     let stage = |(index, effect): &(usize, &str)| format!("{effect} in stage {}", index + 1);
     match missing.as_slice() {
         [] if found.finding == Finding::Unexplained => {
-            let unexplained = |(_, stage): &(usize, &StageAnswer)| {
-                stage.answer.as_ref().is_some_and(|answer| answer.diagnosis.finding == Finding::Unexplained)
-            };
-            let stages: Vec<String> =
-                found.stages.iter().enumerate().filter(unexplained).map(|(index, _)| (index + 1).to_string()).collect();
-            format!("unexplained in stage {} of {count}: something that is not in the catalogue", stages.join(", "))
+            format!("unexplained: no effect of the catalogue passes in any of {count} stages")
         }
         [] => format!("nothing is missing in any of {count} stages: the law switches, its form stays"),
         [one] => format!("missing in stage {} of {count} only: {}", one.0 + 1, one.1),
@@ -239,21 +162,21 @@ fn over_stages(found: &Found) -> String {
     }
 }
 
-fn lacking((index, stage): (usize, &StageAnswer)) -> Option<(usize, &str)> {
-    Some((index, stage.answer.as_ref()?.diagnosis.effect.as_deref()?))
+fn lacking((index, stage): (usize, &StageDiagnosis)) -> Option<(usize, &str)> {
+    Some((index, stage.diagnosis.as_ref()?.effect.as_deref()?))
 }
 
-fn stage_text(index: usize, stage: &StageAnswer, input: &Input) -> String {
-    let head = format!("stage {}, {:.3} s to {:.3} s of {}: ", index + 1, stage.start, stage.end, stage.data);
-    match &stage.answer {
+fn stage_text(index: usize, stage: &StageDiagnosis, input: &Input) -> String {
+    let source = stage.samples.source();
+    let head = format!("stage {}, {:.3} s to {:.3} s of {source}: ", index + 1, stage.start, stage.end);
+    match &stage.diagnosis {
         None => head + "too short to determine a law\n",
-        Some(answer) => head + &what(answer, input) + "\n" + &body(answer, input),
+        Some(diagnosis) => head + &what(diagnosis, input) + "\n" + &body(diagnosis, input),
     }
 }
 
-fn body(answer: &Answer, input: &Input) -> String {
-    let diagnosis = &answer.diagnosis;
-    let mut text = law(diagnosis, input);
+fn body(diagnosis: &Diagnosis, input: &Input) -> String {
+    let mut text = format!("law diagnosed: {}\n", law(&diagnosis.base, input));
     text += &candidates(diagnosis, input);
     if diagnosis.finding == Finding::Missing {
         text += &reasons(diagnosis);
@@ -261,54 +184,52 @@ fn body(answer: &Answer, input: &Input) -> String {
     text
 }
 
-fn law(diagnosis: &Diagnosis, input: &Input) -> String {
-    let fit = &diagnosis.base;
-    let std = |index: usize| Some(fit.std(index)).filter(|std| *std > 0.0);
-    let terms = fit.form.terms.iter().zip(&fit.coefficients).enumerate();
-    let terms: Vec<_> = terms.map(|(index, (term, value))| (*term, *value, std(index))).collect();
-    let forced = input.recordings().iter().any(|(recording, _)| recording.channels().excitation);
-    format!("law diagnosed: {}\n", equation(&terms, forced))
+/// A law on one line.
+fn law(law: &Law, input: &Input) -> String {
+    let terms = law.terms.iter().zip(&law.coefficients).zip(&law.std);
+    let terms: Vec<_> =
+        terms.map(|((term, value), std)| (*term, *value, Some(*std).filter(|std| *std > 0.0))).collect();
+    equation(&terms, input.forced())
 }
 
-/// The candidates that were tried in the law, as a table; errors are those of windows of one length.
+/// The candidates as a table; errors are those of windows of 0.3 T₀.
 pub(in crate::cli) fn candidates(diagnosis: &Diagnosis, input: &Input) -> String {
+    let window = diagnosis.errors[1].window;
     let mut text = format!(
-        "{:<30} {:>28} {:>18} {:>10} {:>9}  {}\n",
+        "{:<30} {:>28} {:>20} {:>10}  {}\n",
         "candidate",
         "coefficient",
-        format!("error ({:.3} s)", diagnosis.window),
+        format!("error ({window:.3} s)"),
         "chance",
-        "explains",
-        "sign, others"
+        "not named because"
     );
-    let worth = |index: &usize| *index < 2 || diagnosis.candidates[*index].p_value < LISTED;
-    for index in (0..diagnosis.candidates.len()).filter(worth) {
-        let candidate = &diagnosis.candidates[index];
-        let share = match diagnosis.finding {
-            Finding::Adequate => "–".into(),
-            _ => percent(candidate.share),
-        };
-        let errors = format!("{} → {}", percent(candidate.error_before), percent(candidate.error_after));
-        let sign = if candidate.physical { "physical" } else { "unphysical" };
-        let others = if candidate.plausible { "plausible" } else { "implausible" };
+    for candidate in diagnosis.candidates.iter().take(LISTED) {
+        let error = candidate.error();
+        let errors = format!("{} → {}", percent(error.before), percent(error.after));
+        let chance = candidate.p_value.map_or_else(|| "–".into(), chance);
+        let why = candidate.doubt.map_or("", why);
         let _ = writeln!(
             text,
-            "{:<30} {:>28} {:>18} {:>10} {:>9}  {sign}, {others}",
+            "{:<30} {:>28} {errors:>20} {chance:>10}  {why}",
             candidate.effect,
-            with_unit(candidate, input),
-            errors,
-            chance(candidate.p_value),
-            share
+            with_unit(candidate, input)
         );
         let inner = inner(candidate, &input.units);
         if !inner.is_empty() {
             let _ = writeln!(text, "  with {}", inner.join(", "));
         }
-        if let Some(place) = &candidate.place {
-            let _ = writeln!(text, "  {}", place.sentence(&input.units));
-        }
     }
     text
+}
+
+fn why(doubt: Doubt) -> &'static str {
+    match doubt {
+        Doubt::Sign => "physics forbids its sign",
+        Doubt::Trap => "the model's own terms nearly are it",
+        Doubt::Uncertain => "its coefficient is within its uncertainty",
+        Doubt::Worse => "it makes the error worse, or leaves all",
+        Doubt::Chance => "its gain may be chance, or is too small",
+    }
 }
 
 /// Inner parameters with their units.

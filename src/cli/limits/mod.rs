@@ -78,7 +78,7 @@ fn limits<'a>(input: &'a Input, asked: &'a Asked) -> Result<Limits<'a>, CommandE
     let massless = |source: ModelError| CommandError::Build { model: input.file.clone(), source: source.into() };
     input.model.check_inertia().map_err(massless)?;
     pointwise(input).map_err(refused)?;
-    let recordings = input.recordings();
+    let recordings = input.held();
     let (recording, hold) = recordings[0];
     let evidence = Evidence::new(&recordings);
     let fit = best_as_given(&input.model, &evidence).ok_or_else(|| input.undetermined())?;

@@ -1,0 +1,110 @@
+//! Every candidate of the catalogue, its inner parameters on a grid in the record's own units.
+//!
+//! The grid is coarse: a screen of it finds the neighbourhood, then [`Variant::neighbours`] narrows it, a third of the spacing at a time.
+
+use crate::diagnose::scale::Scale;
+use crate::law::{Catalogue, Effect, Expression, Term};
+
+/// A candidate with numbers for its inner parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variant {
+    /// The candidate.
+    pub term: Term,
+    /// Ratio between neighbouring values of its inner parameters on the grid it comes from.
+    pub spacing: f64,
+}
+
+impl Scale {
+    /// Grids of the effect's inner parameters, one list per parameter, and the ratio between neighbours.
+    fn grids(&self, effect: Effect) -> (Vec<Vec<f64>>, f64) {
+        let lengths =
+            |from: f64, to: f64, ratio: f64| geometric(from * self.displacement, to * self.displacement, ratio);
+        let [slow, fast] = self.frequency;
+        let highest = 0.5 / self.sample_time;
+        match effect {
+            Effect::StribeckFriction { .. } => (vec![geometric(0.02 * self.velocity, 0.7 * self.velocity, 2.0)], 2.0),
+            Effect::DeadZoneStiffness { .. } => (vec![lengths(0.04, 0.9, 1.5)], 1.5),
+            Effect::OneSidedStop { .. } => (vec![lengths(0.04, 0.95, 1.5)], 1.5),
+            Effect::ExcitationGainNonlinearity { .. } => (vec![vec![2.0, 3.0]], 1.0),
+            Effect::ExcitationDelay { .. } => (vec![geometric(0.3 * self.sample_time, 1.0 / slow, 1.8)], 1.8),
+            Effect::Hysteresis { .. } => (
+                vec![geometric(0.004 * self.excursion, 1.5 * self.excursion, 2.0), vec![0.5, 1.0], vec![1.0, 2.0]],
+                2.0,
+            ),
+            Effect::HiddenResonator { .. } => {
+                (vec![geometric(0.3 * slow, (3.0 * fast).min(highest), 1.15), vec![0.02, 0.12]], 1.15)
+            }
+            _ => (Vec::new(), 1.0),
+        }
+    }
+}
+
+/// Every candidate: the catalogue, and the user's own effects.
+pub fn candidates(expressions: &[Expression]) -> Vec<Term> {
+    let own = (0..expressions.len()).map(|index| Term::Expression(index as u8));
+    Catalogue::ENTRIES.iter().map(|entry| entry.term).chain(own).collect()
+}
+
+/// The candidates that the form does not have already.
+pub fn variants(candidates: &[Term], present: &[Term], scale: &Scale) -> Vec<Variant> {
+    let absent = candidates.iter().filter(|term| !present.iter().any(|other| same_effect(**term, *other)));
+    absent.flat_map(|term| with_grid(*term, scale)).collect()
+}
+
+fn with_grid(term: Term, scale: &Scale) -> Vec<Variant> {
+    let Term::Effect(effect) = term else { return vec![Variant { term, spacing: 1.0 }] };
+    let (grids, spacing) = scale.grids(effect);
+    let mut points = vec![Vec::new()];
+    for grid in &grids {
+        points = points.iter().flat_map(|point| grid.iter().map(move |value| extended(point, *value))).collect();
+    }
+    let variant = |point: &Vec<f64>| Some(Variant { term: Term::Effect(effect.with_inner(point).ok()?), spacing });
+    points.iter().filter_map(variant).collect()
+}
+
+/// Whether both are the same effect, whatever its inner parameters.
+pub fn same_effect(one: Term, other: Term) -> bool {
+    match (one, other) {
+        (Term::Effect(one), Term::Effect(other)) => one.id() == other.id(),
+        _ => one == other,
+    }
+}
+
+impl Variant {
+    /// The variant and its neighbours at a third of its spacing, each inner parameter in turn.
+    pub fn neighbours(&self) -> Vec<Variant> {
+        let spacing = self.spacing.cbrt();
+        let mut all = vec![Variant { term: self.term, spacing }];
+        let Term::Effect(effect) = self.term else { return all };
+        let values = effect.inner_values();
+        for index in (0..values.len()).filter(|index| is_continuous(effect, *index)) {
+            for power in [-2, -1, 1, 2] {
+                let mut moved = values.clone();
+                moved[index] *= spacing.powi(power);
+                let term = effect.with_inner(&moved).map(Term::Effect);
+                all.extend(term.ok().map(|term| Variant { term, spacing }));
+            }
+        }
+        all
+    }
+}
+
+/// Whether the inner parameter of that position has neighbours on a grid that is narrowed; the others are left to the fit.
+fn is_continuous(effect: Effect, index: usize) -> bool {
+    match effect {
+        Effect::ExcitationGainNonlinearity { .. } => false,
+        Effect::Hysteresis { .. } => index == 0,
+        _ => true,
+    }
+}
+
+fn extended(point: &[f64], value: f64) -> Vec<f64> {
+    point.iter().copied().chain([value]).collect()
+}
+
+fn geometric(from: f64, to: f64, ratio: f64) -> Vec<f64> {
+    if !(from > 0.0 && to > from && to.is_finite()) {
+        return Vec::new();
+    }
+    std::iter::successors(Some(from), |value| Some(value * ratio)).take_while(|value| *value <= to).collect()
+}

@@ -1,0 +1,7 @@
+//! The effects that a law may lack, and how each of them does beside it.
+
+mod contest;
+mod grid;
+
+pub(super) use contest::{Contender, contender, contest};
+pub use grid::{Variant, candidates, same_effect, variants};

@@ -1,0 +1,193 @@
+//! A law as a regression: which column is the target, which ones explain it.
+//!
+//! `m q̈ + Σ θ_j f_j = F` is solved for the column that carries the most propagated noise, so that it stands alone on one side: as a rule
+//! q̈ = F/m − Σ (θ_j/m) f_j; F = m q̈ + Σ θ_j f_j where F is the output, or is the noisier. A column ∫ φ' F dt beside them takes what a
+//! little delay of the excitation would explain.
+
+use super::record::{Column, Record, Timing};
+use super::regression::{self, Normal};
+use super::windows::COUNT;
+use crate::law::{Effect, Term};
+
+/// Which column stands alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// The inertia term.
+    Inertia,
+    /// The force.
+    Force,
+}
+
+/// A law's form on a record.
+#[derive(Clone, Debug)]
+pub(in crate::diagnose) struct Equation {
+    /// Its terms.
+    pub(in crate::diagnose) terms: Vec<Term>,
+    pub(in crate::diagnose) target: Target,
+    pub(in crate::diagnose) timing: Timing,
+    /// The target's rows.
+    pub(in crate::diagnose) right: Column,
+    /// Std of the target by window length.
+    pub(in crate::diagnose) spread: [f64; COUNT],
+    /// Test functions of a window, by its length.
+    functions: [usize; COUNT],
+    /// By window length, whether a window holds readings at all.
+    pub(in crate::diagnose) tells: [bool; COUNT],
+    /// Whether the force's slope is among the columns.
+    takes_delay: bool,
+    /// What explains it: the force where it is not the target, the terms but the inertia where that is, the force's slope last.
+    pub(in crate::diagnose) left: Vec<Column>,
+}
+
+impl Equation {
+    /// Of a law of these terms; `nuisance`: with the column that takes a little delay.
+    pub(in crate::diagnose) fn new(
+        record: &Record,
+        terms: &[Term],
+        target: Target,
+        timing: Timing,
+        nuisance: bool,
+    ) -> Equation {
+        let right = match target {
+            Target::Inertia => record.measured_inertia(),
+            Target::Force => record.force(timing),
+        };
+        let mut left = Vec::new();
+        if target == Target::Inertia && record.forced {
+            left.push(record.force(timing));
+        }
+        let own = terms.iter().filter(|term| has_column(**term, target));
+        left.extend(own.map(|term| record.term(*term, timing)));
+        let takes_delay = nuisance && record.forced;
+        if takes_delay {
+            left.push(record.force_slope(timing));
+        }
+        let functions = [0, 1, 2].map(|which| record.windows[which].functions);
+        let spread = [0, 1, 2].map(|which| spread(&right[which], functions[which]));
+        let tells = [0, 1, 2].map(|which| record.windows[which].length >= record.sample_time);
+        Equation { terms: terms.to_vec(), target, timing, right, spread, functions, tells, takes_delay, left }
+    }
+
+    /// The columns of one window length.
+    pub(in crate::diagnose) fn columns(&self, which: usize) -> Vec<&[f64]> {
+        self.left.iter().map(|column| column[which].as_slice()).collect()
+    }
+
+    /// The same with one more term, whose column stands before the force's slope.
+    pub(in crate::diagnose) fn with(&self, record: &Record, term: Term) -> Equation {
+        let mut equation = self.clone();
+        let place = equation.left.len() - usize::from(equation.takes_delay);
+        if has_column(term, self.target) {
+            equation.left.insert(place, record.term(term, self.timing));
+        }
+        equation.terms.push(term);
+        equation
+    }
+
+    /// The same without the term of that position.
+    pub(in crate::diagnose) fn without(&self, index: usize) -> Equation {
+        let mut equation = self.clone();
+        let own = |term: &&Term| has_column(**term, self.target);
+        let place = self.terms[..index].iter().filter(own).count();
+        let first = self.left.len() - usize::from(self.takes_delay) - self.terms.iter().filter(own).count();
+        if own(&&self.terms[index]) {
+            equation.left.remove(first + place);
+        }
+        equation.terms.remove(index);
+        equation
+    }
+
+    /// Share of a column's variance that the law's columns are, over windows of one length.
+    pub(in crate::diagnose) fn resemblance(&self, which: usize, column: &[f64]) -> f64 {
+        let columns = self.columns(which);
+        let weights = vec![1.0; column.len()];
+        let Some(solution) = Normal::of(&columns, column, &weights).solve() else { return 0.0 };
+        let left = regression::residuals(&columns, column, &solution);
+        let variance = spread(column, self.functions[which]).powi(2);
+        let mean = left.iter().map(|value| value * value).sum::<f64>() / column.len().max(1) as f64;
+        if variance > 0.0 { 1.0 - mean / variance } else { 1.0 }
+    }
+
+    /// How much later than the timing the excitation acted, s, and what a change of the last entry of the solution changes in it; none
+    /// without the column that takes it.
+    pub(in crate::diagnose) fn delay(&self, solution: &[f64]) -> Option<(f64, f64)> {
+        let last = solution.last().filter(|_| self.takes_delay)?;
+        match self.target {
+            Target::Force => Some((-last, 1.0)),
+            Target::Inertia => Some((last / solution[0], solution[0].abs().recip())),
+        }
+    }
+
+    /// Coefficients of the law's terms, the last entries those of candidates, from a solution of the regression, with the matrix that takes
+    /// the solution's small changes to theirs. `inertia` is the inertia of a free motion.
+    pub(in crate::diagnose) fn coefficients(
+        &self,
+        solution: &[f64],
+        forced: bool,
+        inertia: f64,
+    ) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let (mass, mut next) = match self.target {
+            Target::Inertia if forced => (solution[0].recip(), 1),
+            Target::Inertia => (inertia, 0),
+            Target::Force => (1.0, 0),
+        };
+        let divides = self.target == Target::Inertia && forced;
+        let (mut values, mut slopes) = (Vec::new(), Vec::new());
+        for term in &self.terms {
+            let mut slope = vec![0.0; solution.len()];
+            let mut value = if delay_of(*term).is_some() { 1.0 } else { mass };
+            if has_column(*term, self.target) {
+                let sign = if self.target == Target::Force { 1.0 } else { -mass };
+                slope[next] = sign;
+                value = sign * solution[next];
+                next += 1;
+            }
+            if divides && delay_of(*term).is_none() {
+                slope[0] = -mass * value;
+            }
+            values.push(value);
+            slopes.push(slope);
+        }
+        (values, slopes)
+    }
+}
+
+impl Equation {
+    /// The regression's solution that these coefficients of the terms are; none where a free inertia is 0.
+    pub(in crate::diagnose) fn solution(&self, coefficients: &[f64], forced: bool) -> Option<Vec<f64>> {
+        let place = self.terms.iter().position(|term| *term == Term::Inertia);
+        let mass = place.map_or(1.0, |index| coefficients[index]);
+        let (first, by) = match self.target {
+            Target::Force => (None, 1.0),
+            Target::Inertia if mass == 0.0 => return None,
+            Target::Inertia => (forced.then_some(mass.recip()), -mass.recip()),
+        };
+        let own = self.terms.iter().zip(coefficients).filter(|(term, _)| has_column(**term, self.target));
+        Some(first.into_iter().chain(own.map(|(_, value)| by * value)).collect())
+    }
+}
+
+/// Whether a term has a column among those that explain: the inertia has none where it is the target, a delay none as it is in the
+/// excitation's own.
+fn has_column(term: Term, target: Target) -> bool {
+    delay_of(term).is_none() && (target == Target::Force || term != Term::Inertia)
+}
+
+/// The delay that a term is, s.
+pub(in crate::diagnose) fn delay_of(term: Term) -> Option<f64> {
+    match term {
+        Term::Effect(Effect::ExcitationDelay { delay }) => Some(delay.value()),
+        _ => None,
+    }
+}
+
+/// Std of a column's rows, each test function about its own mean: a constant force is no motion to be explained.
+fn spread(rows: &[f64], functions: usize) -> f64 {
+    let count = rows.len() / functions.max(1);
+    let variance = |function: usize| {
+        let own = || rows.iter().skip(function).step_by(functions);
+        let mean = own().sum::<f64>() / count as f64;
+        own().map(|value| (value - mean).powi(2)).sum::<f64>() / count as f64
+    };
+    ((0..functions).map(variance).sum::<f64>() / functions as f64).sqrt()
+}

@@ -1,0 +1,69 @@
+//! What the sensors alone would leave of a right law, by trial: noise added to the readings, through the smoother and every term.
+
+use super::equation::Equation;
+use super::record::Record;
+use super::windows::{COUNT, PRINCIPAL};
+use crate::diagnose::motion::{Motion, Track, readings};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+/// Times that noise is drawn.
+const DRAWS: u64 = 2;
+
+/// The record as other draws of the sensors' noise would have shown it, twice as noisy; `force` is the std of the excitation's readings.
+pub(in crate::diagnose) fn disturbed(record: &Record, force: f64) -> Vec<Record> {
+    (0..DRAWS).filter_map(|seed| record.moved(noisy(record, force, seed))).collect()
+}
+
+fn noisy(record: &Record, force: f64, seed: u64) -> Vec<Motion> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut add = |values: &mut [f64], std: f64| {
+        values.iter_mut().for_each(|value| {
+            let draw: f64 = StandardNormal.sample(&mut random);
+            *value += std * draw;
+        });
+    };
+    let mut motions = record.motions.clone();
+    for motion in &mut motions {
+        let [q, qd] = motion.sensors.noise;
+        for (piece, track) in motion.pieces.iter_mut().zip(&mut motion.tracks) {
+            piece.q.iter_mut().for_each(|values| add(values, q));
+            piece.qd.iter_mut().for_each(|values| add(values, qd));
+            add(&mut piece.excitation, force);
+            let states = track.spline.smooth(readings(piece, track.read));
+            *track = Track { states, ..track.clone() };
+        }
+    }
+    motions
+}
+
+/// RMS of what the noise adds to a law's residual ÷ std of its target, by window length.
+pub(in crate::diagnose) fn floor(
+    equation: &Equation,
+    solutions: &[Vec<f64>; COUNT],
+    others: &[Equation],
+) -> [f64; COUNT] {
+    [0, 1, 2].map(|which| {
+        let residual = |equation: &Equation| {
+            let columns = equation.columns(which);
+            super::regression::residuals(&columns, &equation.right[which], &solutions[which])
+        };
+        let own = residual(equation);
+        let added = others.iter().map(|other| mean_square_difference(&residual(other), &own));
+        (added.sum::<f64>() / others.len().max(1) as f64).sqrt() / equation.spread[which]
+    })
+}
+
+fn mean_square_difference(a: &[f64], b: &[f64]) -> f64 {
+    let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
+    squares.sum::<f64>() / a.len().max(1) as f64
+}
+
+/// Propagated noise ÷ signal of the measured inertia term over windows of the principal length.
+pub(in crate::diagnose) fn noise_share(record: &Record, others: &[Record]) -> f64 {
+    let own = &record.measured_inertia()[PRINCIPAL];
+    let added = others.iter().map(|other| mean_square_difference(&other.measured_inertia()[PRINCIPAL], own));
+    let noise = added.sum::<f64>() / others.len().max(1) as f64;
+    (noise / mean_square_difference(own, &vec![0.0; own.len()])).sqrt()
+}

@@ -1,0 +1,220 @@
+//! Errors on what a law has not been fitted to.
+//!
+//! The record is cut into five contiguous parts; the law is fitted to the windows of four, those nearer than half a window to the fifth left
+//! out, and judged by the windows of the fifth. Inner parameters are chosen by the training windows alone.
+
+use super::equation::Equation;
+use super::record::{Column, Record};
+use super::regression::{self, Normal};
+use super::windows::COUNT;
+use nalgebra::{DMatrix, DVector};
+
+/// Parts of a record that are held out in turn.
+const FOLDS: usize = 5;
+
+/// Fewest equations of which an error is told.
+const FEWEST: usize = 8;
+
+/// Which equations train and which are held out, by window length and part.
+#[derive(Clone, Debug)]
+pub(in crate::diagnose) struct Folds {
+    /// 1 for an equation that trains, else 0.
+    training: [Vec<Vec<f64>>; COUNT],
+    /// Equations held out.
+    held_out: [Vec<Vec<usize>>; COUNT],
+}
+
+/// What is held out, and how well it is predicted.
+#[derive(Clone, Debug)]
+pub(in crate::diagnose) struct HeldOut {
+    /// Residual of every equation; NaN where no part could be fitted.
+    pub(in crate::diagnose) residuals: Column,
+    /// RMS residual ÷ std of the target, by window length; NaN where nothing could be told.
+    pub(in crate::diagnose) errors: [f64; COUNT],
+}
+
+impl Folds {
+    pub(in crate::diagnose) fn new(record: &Record) -> Folds {
+        let part = record.duration / FOLDS as f64;
+        let bounds = |fold: usize| [part * fold as f64, part * (fold + 1) as f64];
+        let training = [0, 1, 2].map(|which| {
+            let windows = &record.windows[which];
+            let trains = |row: usize, [from, to]: [f64; 2]| {
+                let centre = windows.centre(row);
+                f64::from(u8::from(centre < from - 0.5 * windows.length || centre >= to + 0.5 * windows.length))
+            };
+            (0..FOLDS).map(|fold| (0..windows.rows()).map(|row| trains(row, bounds(fold))).collect()).collect()
+        });
+        let held_out = [0, 1, 2].map(|which| {
+            let windows = &record.windows[which];
+            let inside = |row: &usize, [from, to]: [f64; 2]| (from..to).contains(&windows.centre(*row));
+            (0..FOLDS).map(|fold| (0..windows.rows()).filter(|row| inside(row, bounds(fold))).collect()).collect()
+        });
+        Folds { training, held_out }
+    }
+
+    /// A law's errors.
+    pub(in crate::diagnose) fn judge(&self, equation: &Equation) -> HeldOut {
+        self.judge_with(equation, &|_| None)
+    }
+
+    /// The same with one more column in each part, and whether it holds the target itself.
+    pub(in crate::diagnose) fn judge_with<'a>(
+        &self,
+        equation: &Equation,
+        joining: &dyn Fn(usize) -> Option<(&'a Column, bool)>,
+    ) -> HeldOut {
+        let residuals = [0, 1, 2].map(|which| {
+            let mut left = vec![f64::NAN; equation.right[which].len()];
+            for fold in 0..FOLDS {
+                let joined = joining(fold);
+                let mut columns = equation.columns(which);
+                columns.extend(joined.map(|(column, _)| column[which].as_slice()));
+                let right = &equation.right[which];
+                let Some((solution, _)) = regression::fit(&columns, right, &self.training[which][fold]) else {
+                    continue;
+                };
+                let scale = joined
+                    .filter(|(_, holds_target)| *holds_target)
+                    .map_or(1.0, |(column, _)| unscaled(equation, which, &column[which], solution[solution.len() - 1]));
+                for row in &self.held_out[which][fold] {
+                    let predicted: f64 =
+                        columns.iter().zip(&solution).map(|(column, value)| column[*row] * value).sum();
+                    left[*row] = scale * (right[*row] - predicted);
+                }
+            }
+            left
+        });
+        HeldOut::new(residuals, equation)
+    }
+}
+
+/// A candidate that holds the target itself could cancel it: its residual is relative to the two together.
+fn unscaled(equation: &Equation, which: usize, column: &[f64], coefficient: f64) -> f64 {
+    let right = &equation.right[which];
+    let [own, all] = right.iter().zip(column).fold([0.0; 2], |[own, all], (right, value)| {
+        [own + right * right, all + (right - coefficient * value).powi(2)]
+    });
+    (own / all).sqrt()
+}
+
+impl HeldOut {
+    fn new(residuals: Column, equation: &Equation) -> HeldOut {
+        let errors = [0, 1, 2].map(|which| {
+            let told = || residuals[which].iter().filter(|value| value.is_finite());
+            let count = told().count();
+            let mean = told().map(|value| value * value).sum::<f64>() / count as f64;
+            if count < FEWEST || !equation.tells[which] { f64::NAN } else { mean.sqrt() / equation.spread[which] }
+        });
+        HeldOut { residuals, errors }
+    }
+
+    /// Errors of a law whose numbers are held, over all windows.
+    pub(in crate::diagnose) fn as_given(equation: &Equation, solutions: &[Vec<f64>; COUNT]) -> HeldOut {
+        let residuals = [0, 1, 2]
+            .map(|which| regression::residuals(&equation.columns(which), &equation.right[which], &solutions[which]));
+        HeldOut::new(residuals, equation)
+    }
+
+    /// S = Σ ln(own error ÷ another's) over the window lengths that tell both; 0 where none does.
+    pub(in crate::diagnose) fn score(&self, before: &HeldOut) -> f64 {
+        let ratios = self.errors.iter().zip(before.errors).map(|(after, before)| (after / before).ln());
+        ratios.filter(|ratio| !ratio.is_nan()).sum()
+    }
+
+    /// Ratios own ÷ another's error, of the window lengths that tell both.
+    pub(in crate::diagnose) fn ratios(&self, before: &HeldOut) -> Vec<f64> {
+        let ratios = self.errors.iter().zip(before.errors).map(|(after, before)| after / before);
+        ratios.filter(|ratio| !ratio.is_nan()).collect()
+    }
+}
+
+/// Sums that every candidate beside a law shares, so that one more column costs little: the weights are those of the law without it.
+pub(in crate::diagnose) struct Screen<'a> {
+    folds: &'a Folds,
+    equation: &'a Equation,
+    /// By window length and part: weights, sums of the law's columns, Σ weight target².
+    parts: [Vec<Option<Part>>; COUNT],
+}
+
+struct Part {
+    weights: Vec<f64>,
+    normal: Normal,
+    energy: f64,
+}
+
+impl<'a> Screen<'a> {
+    pub(in crate::diagnose) fn new(folds: &'a Folds, equation: &'a Equation) -> Screen<'a> {
+        let parts = [0, 1, 2].map(|which| {
+            let (columns, right) = (equation.columns(which), &equation.right[which]);
+            let part = |fold: usize| {
+                let (_, weights) = regression::fit(&columns, right, &folds.training[which][fold])?;
+                let energy = weights.iter().zip(right).map(|(weight, value)| weight * value * value).sum();
+                Some(Part { normal: Normal::of(&columns, right, &weights), weights, energy })
+            };
+            (0..FOLDS).map(part).collect()
+        });
+        Screen { folds, equation, parts }
+    }
+
+    /// Of several variants of one candidate: which one each part's training prefers, and the errors of that choice.
+    pub(in crate::diagnose) fn choose(&self, variants: &[(Column, bool)]) -> (Vec<usize>, HeldOut) {
+        let fits: Vec<Vec<[Option<Fitted>; COUNT]>> = variants.iter().map(|(column, _)| self.fit(column)).collect();
+        let loss = |variant: usize, fold: usize| -> f64 {
+            fits[variant][fold].iter().flatten().map(|fitted| fitted.loss.max(f64::MIN_POSITIVE).ln()).sum()
+        };
+        let best =
+            |fold: usize| (0..variants.len()).min_by(|a, b| loss(*a, fold).total_cmp(&loss(*b, fold))).unwrap_or(0);
+        let chosen: Vec<usize> = (0..FOLDS).map(best).collect();
+        let residuals = [0, 1, 2].map(|which| {
+            let right = &self.equation.right[which];
+            let mut left = vec![f64::NAN; right.len()];
+            for (fold, variant) in chosen.iter().enumerate() {
+                let Some(Fitted { solution, .. }) = &fits[*variant][fold][which] else { continue };
+                let (column, holds_target) = &variants[*variant];
+                let mut columns = self.equation.columns(which);
+                columns.push(&column[which]);
+                let coefficient = solution[solution.len() - 1];
+                let scale =
+                    if *holds_target { unscaled(self.equation, which, &column[which], coefficient) } else { 1.0 };
+                for row in &self.folds.held_out[which][fold] {
+                    let predicted: f64 = columns.iter().zip(solution).map(|(column, value)| column[*row] * value).sum();
+                    left[*row] = scale * (right[*row] - predicted);
+                }
+            }
+            left
+        });
+        (chosen, HeldOut::new(residuals, self.equation))
+    }
+
+    /// The law with one more column, in every part.
+    fn fit(&self, column: &Column) -> Vec<[Option<Fitted>; COUNT]> {
+        (0..FOLDS).map(|fold| [0, 1, 2].map(|which| self.fit_part(which, fold, &column[which]))).collect()
+    }
+
+    fn fit_part(&self, which: usize, fold: usize, column: &[f64]) -> Option<Fitted> {
+        let part = self.parts[which][fold].as_ref()?;
+        let weighted: Vec<f64> = column.iter().zip(&part.weights).map(|(value, weight)| value * weight).collect();
+        let dot = |other: &[f64]| weighted.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
+        let columns = self.equation.columns(which);
+        let p = columns.len();
+        let mut cross: Vec<f64> = columns.iter().map(|column| dot(column)).collect();
+        cross.push(dot(column));
+        let own = &part.normal;
+        let gram =
+            DMatrix::from_fn(p + 1, p + 1, |a, b| if a < p && b < p { own.gram[(a, b)] } else { cross[a.min(b)] });
+        let gram = DMatrix::from_fn(p + 1, p + 1, |a, b| if a == p { cross[b] } else { gram[(a, b)] });
+        let right = dot(&self.equation.right[which]);
+        let moment = DVector::from_fn(p + 1, |a, _| if a < p { own.moment[a] } else { right });
+        let normal = Normal { gram, moment };
+        let solution = normal.solve()?;
+        let explained: f64 = solution.iter().zip(normal.moment.iter()).map(|(value, moment)| value * moment).sum();
+        Some(Fitted { loss: (part.energy - explained) / part.energy, solution })
+    }
+}
+
+struct Fitted {
+    solution: Vec<f64>,
+    /// Weighted Σ residual² ÷ Σ target² of training.
+    loss: f64,
+}

@@ -1,0 +1,24 @@
+//! The one judge: how well a law predicts what it has not seen, in weak form, whatever the error is like.
+//!
+//! A law is a set of weak equations over windows of three lengths ([`windows`], [`record`]), solved for its noisiest column
+//! ([`equation`]) by a robust regression ([`regression`]). Its error is that of equations it was not fitted to ([`held_out`]); beside it
+//! stand what the sensors alone would leave ([`floor`]) and how likely a gain is by chance ([`significance`]).
+
+mod equation;
+mod estimate;
+mod floor;
+mod held_out;
+mod record;
+mod regression;
+mod significance;
+mod windows;
+
+pub use equation::Target;
+pub(super) use equation::{Equation, delay_of};
+pub(super) use estimate::{Estimate, estimate};
+pub(super) use floor::{disturbed, floor, noise_share};
+pub(super) use held_out::{Folds, HeldOut, Screen};
+pub use record::Timing;
+pub(super) use record::{Column, Record};
+pub(super) use significance::Blocks;
+pub(super) use windows::{COUNT, PRINCIPAL};

@@ -1,0 +1,168 @@
+//! Recordings as weak equations: a column for every term, with three lengths of windows.
+
+use super::windows::{self, COUNT, Cells, Windows};
+use crate::diagnose::motion::{self, Motion, Nodes, rounding, sensor_noise};
+use crate::identify::Recording;
+use crate::law::{Effect, Expression, Hold, Term, term_series};
+
+/// What a term is in every equation, by window length.
+pub(in crate::diagnose) type Column = [Vec<f64>; COUNT];
+
+/// When the recorded excitation acted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Timing {
+    /// What it did between samples.
+    pub hold: Hold,
+    /// How much later than recorded it acted, s; negative where the record comes late.
+    pub delay: f64,
+}
+
+/// Recordings of one system, ready to be judged.
+#[derive(Clone, Debug)]
+pub(in crate::diagnose) struct Record {
+    pub(in crate::diagnose) motions: Vec<Motion>,
+    /// (motion, piece) and grid of every piece.
+    nodes: Vec<(usize, usize, Nodes)>,
+    pub(in crate::diagnose) windows: [Windows; COUNT],
+    /// T₀, s.
+    pub(in crate::diagnose) period: f64,
+    /// Usual distance of two readings, s.
+    pub(in crate::diagnose) sample_time: f64,
+    /// Length of all pieces, s.
+    pub(in crate::diagnose) duration: f64,
+    /// Whether there is an excitation.
+    pub(in crate::diagnose) forced: bool,
+    /// The user's effects.
+    pub(in crate::diagnose) expressions: Vec<Expression>,
+}
+
+impl Record {
+    /// Of recordings. None where nothing moves, or no piece is as long as a window.
+    pub(in crate::diagnose) fn new(recordings: &[&Recording], expressions: &[Expression]) -> Option<Record> {
+        let motions: Vec<Motion> =
+            recordings.iter().filter_map(|recording| Motion::of(recording, Hold::Linear)).collect();
+        let period = motion::period(&motions);
+        if !(period.is_finite() && period > 0.0) {
+            return None;
+        }
+        let sample_time = recordings.iter().map(|recording| recording.sample_time()).fold(f64::INFINITY, f64::min);
+        let forced = recordings.iter().any(|recording| recording.channels().excitation);
+        Record::cut(motions, period, sample_time, forced, expressions.to_vec())
+    }
+
+    fn cut(
+        motions: Vec<Motion>,
+        period: f64,
+        sample_time: f64,
+        forced: bool,
+        expressions: Vec<Expression>,
+    ) -> Option<Record> {
+        let cell = windows::cell(period);
+        let numbers =
+            motions.iter().enumerate().flat_map(|(index, own)| (0..own.pieces.len()).map(move |n| (index, n)));
+        let nodes: Vec<(usize, usize, Nodes)> =
+            numbers.map(|(index, number)| (index, number, Nodes::new(&motions[index], number, cell))).collect();
+        let cells: Vec<usize> = nodes.iter().map(|(.., nodes)| nodes.cells()).collect();
+        let windows = [0, 1, 2].map(|which| Windows::new(which, &cells, cell, sample_time));
+        let duration = cells.iter().sum::<usize>() as f64 * cell;
+        let record = Record { motions, nodes, windows, period, sample_time, duration, forced, expressions };
+        record.windows.iter().any(|windows| windows.rows() > 0).then_some(record)
+    }
+
+    /// The same record under other motions at the same instants.
+    pub(super) fn moved(&self, motions: Vec<Motion>) -> Option<Record> {
+        Record::cut(motions, self.period, self.sample_time, self.forced, self.expressions.clone())
+    }
+
+    fn column(&self, order: usize, values: impl FnMut(&(usize, usize, Nodes)) -> Vec<f64>, factor: f64) -> Column {
+        let mut column = [0, 1, 2].map(|which| vec![0.0; self.windows[which].rows()]);
+        self.add(order, &self.nodes.iter().map(values).collect(), factor, &mut column);
+        column
+    }
+
+    fn add(&self, order: usize, cells: &Cells, factor: f64, column: &mut Column) {
+        self.windows.iter().zip(column).for_each(|(windows, rows)| windows.add(order, cells, factor, rows));
+    }
+
+    /// ∫ φ q̈ dt = −∫ φ' q̇ dt of the smoothed motion.
+    pub(in crate::diagnose) fn inertia(&self) -> Column {
+        self.column(1, |(.., nodes)| nodes.integrals(&nodes.qd), -1.0)
+    }
+
+    /// The same of the readings: of q̇ where it is measured, else of q.
+    pub(in crate::diagnose) fn measured_inertia(&self) -> Column {
+        let mut column = self.inertia();
+        for (channel, order, factor) in [(0, 2, 1.0), (1, 1, -1.0)] {
+            let own = |(index, number, nodes): &(usize, usize, Nodes)| {
+                let motion = &self.motions[*index];
+                let taken = if motion.tracks[*number].read[1] { 1 } else { 0 };
+                if taken == channel { nodes.remainder(motion, *number, channel) } else { vec![0.0; nodes.cells()] }
+            };
+            self.add(order, &self.nodes.iter().map(own).collect(), factor, &mut column);
+        }
+        column
+    }
+
+    fn excitation(&self, (index, number, nodes): &(usize, usize, Nodes), timing: Timing) -> Vec<f64> {
+        nodes.excitation(&self.motions[*index].pieces[*number], timing.hold, timing.delay)
+    }
+
+    /// ∫ φ F dt.
+    pub(in crate::diagnose) fn force(&self, timing: Timing) -> Column {
+        self.column(0, |piece| piece.2.integrals(&self.excitation(piece, timing)), 1.0)
+    }
+
+    /// ∫ φ' F dt: what a little more delay adds to the force.
+    pub(in crate::diagnose) fn force_slope(&self, timing: Timing) -> Column {
+        self.column(1, |piece| piece.2.integrals(&self.excitation(piece, timing)), 1.0)
+    }
+
+    /// ∫ φ f dt of a term; of the inertia, that of the smoothed motion.
+    pub(in crate::diagnose) fn term(&self, term: Term, timing: Timing) -> Column {
+        match term {
+            Term::Inertia => self.inertia(),
+            _ => self.column(0, |piece| piece.2.integrals(&self.series(term, piece, timing)), 1.0),
+        }
+    }
+
+    /// Whether a term holds q̈ itself.
+    pub(in crate::diagnose) fn accelerates(&self, term: Term) -> bool {
+        matches!(term, Term::Effect(Effect::HiddenResonator { .. })) || term.mass(1.0) != 0.0
+    }
+
+    /// Whether a term depends on the excitation.
+    pub(in crate::diagnose) fn uses_excitation(&self, term: Term) -> bool {
+        match term {
+            Term::Expression(index) => self.expressions.get(usize::from(index)).is_some_and(|own| own.uses("F")),
+            _ => term.uses_excitation(),
+        }
+    }
+
+    fn series(&self, term: Term, piece: &(usize, usize, Nodes), timing: Timing) -> Vec<f64> {
+        let nodes = &piece.2;
+        let excitation = self.excitation(piece, timing);
+        let mut series = term_series(term, &self.expressions, &nodes.trajectory(&excitation));
+        if term.mass(1.0) != 0.0 {
+            let motion = nodes.q.iter().zip(&nodes.qdd);
+            series.iter_mut().zip(motion).for_each(|(value, (q, qdd))| *value += term.mass(*q) * qdd);
+        }
+        series
+    }
+
+    /// Std of the noise of the excitation's readings: what it is rounded to where it drives the motion, for a drive may be as rough as it
+    /// likes; where it is the motion's answer, also what its differences show.
+    pub(in crate::diagnose) fn force_noise(&self, is_output: bool) -> f64 {
+        let as_position = |motion: &Motion| {
+            let pieces = motion.pieces.iter().map(|piece| {
+                let mut force = piece.part(0..piece.len());
+                (force.q, force.qd) = (Some(piece.excitation.clone()), None);
+                force.excitation.fill(0.0);
+                force.observe_again();
+                force
+            });
+            let pieces: Vec<_> = pieces.collect();
+            if is_output { sensor_noise(&pieces)[0] } else { rounding(&pieces, 0).sqrt() }
+        };
+        self.motions.iter().map(as_position).fold(0.0, f64::max)
+    }
+}

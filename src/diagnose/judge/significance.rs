@@ -1,0 +1,108 @@
+//! Whether an improvement could be chance, whatever the error is like.
+//!
+//! The record is cut into blocks of at least one correlation length of the residual. Were an effect not there, its gain in each block would
+//! as likely have the other sign: random signs over the blocks, the same for all candidates, tell how large the largest total gain of any
+//! candidate would be by chance (a randomisation test: Fisher, The Design of Experiments, 1935, sect. 21; the maximum over candidates:
+//! Westfall and Young, Resampling-Based Multiple Testing, Wiley 1993).
+
+use super::held_out::HeldOut;
+use super::record::Record;
+use super::windows::{COUNT, PRINCIPAL};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Numbers of blocks, the largest that fits is taken.
+const BLOCKS: [usize; 3] = [32, 16, 8];
+
+/// Random signs that are drawn.
+const DRAWS: usize = 2000;
+
+/// Autocorrelation down to which residuals belong together.
+const CORRELATED: f64 = 0.37;
+
+/// How a record is cut for the test.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::diagnose) struct Blocks {
+    /// How many; none where the record is too short for eight.
+    pub(in crate::diagnose) count: Option<usize>,
+    /// Length of the record, s.
+    duration: f64,
+}
+
+impl Blocks {
+    /// Blocks of at least the residual's correlation length and three tenths of T₀.
+    pub(in crate::diagnose) fn new(record: &Record, residual: &HeldOut) -> Blocks {
+        let least = correlation_length(record, residual).max(0.3 * record.period);
+        let fits = |count: &&usize| record.duration / **count as f64 >= least;
+        Blocks { count: BLOCKS.iter().find(fits).copied(), duration: record.duration }
+    }
+
+    /// The block of an instant; as many as there are, eight where there are too few for a test.
+    pub(in crate::diagnose) fn of(&self, centre: f64) -> usize {
+        let count = self.len();
+        ((centre / self.duration * count as f64) as usize).min(count - 1)
+    }
+
+    /// Number of blocks over which a covariance is summed.
+    pub(in crate::diagnose) fn len(&self) -> usize {
+        self.count.unwrap_or(BLOCKS[BLOCKS.len() - 1])
+    }
+
+    /// ½ ln(loss before ÷ loss after) in every block, the mean over the window lengths.
+    pub(in crate::diagnose) fn gains(&self, record: &Record, before: &HeldOut, after: &HeldOut) -> Vec<f64> {
+        let mut gains = vec![0.0; self.len()];
+        for which in 0..COUNT {
+            let [before, after] = [before, after].map(|held| self.losses(record, which, held));
+            let pairs = before.iter().zip(&after).zip(&mut gains);
+            let told = pairs.filter(|((before, after), _)| **before > 0.0 && **after > 0.0);
+            told.for_each(|((before, after), gain)| *gain += 0.5 * (before / after).ln() / COUNT as f64);
+        }
+        gains
+    }
+
+    fn losses(&self, record: &Record, which: usize, held: &HeldOut) -> Vec<f64> {
+        let mut losses = vec![0.0; self.len()];
+        for (row, value) in held.residuals[which].iter().enumerate().filter(|(_, value)| value.is_finite()) {
+            losses[self.of(record.windows[which].centre(row))] += value * value;
+        }
+        losses
+    }
+
+    /// Probability of each candidate's total gain by chance, all of them having been tried. None where there are too few blocks.
+    pub(in crate::diagnose) fn p_values(&self, gains: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let count = self.count?;
+        let mut random = ChaCha8Rng::seed_from_u64(count as u64);
+        let totals: Vec<f64> = gains.iter().map(|own| own.iter().sum()).collect();
+        let mut reached = vec![1.0; gains.len()];
+        for _ in 0..DRAWS {
+            let bits = random.next_u64();
+            let sign = |block: usize| if bits >> block & 1 == 1 { 1.0 } else { -1.0 };
+            let total = |own: &Vec<f64>| own.iter().enumerate().map(|(block, gain)| sign(block) * gain).sum::<f64>();
+            let largest = gains.iter().map(total).fold(f64::NEG_INFINITY, f64::max);
+            totals
+                .iter()
+                .zip(&mut reached)
+                .filter(|(own, _)| largest >= **own)
+                .for_each(|(_, reached)| *reached += 1.0);
+        }
+        Some(reached.into_iter().map(|reached| reached / (DRAWS + 1) as f64).collect())
+    }
+}
+
+/// How long residuals of the principal windows belong together, s.
+fn correlation_length(record: &Record, residual: &HeldOut) -> f64 {
+    let windows = &record.windows[PRINCIPAL];
+    let own: Vec<f64> = residual.residuals[PRINCIPAL].iter().step_by(windows.functions).copied().collect();
+    let own: Vec<f64> = own.into_iter().filter(|value| value.is_finite()).collect();
+    if own.len() < 3 {
+        return record.duration;
+    }
+    let mean = own.iter().sum::<f64>() / own.len() as f64;
+    let product = |lag: usize| {
+        let pairs = own.iter().zip(&own[lag..]);
+        pairs.map(|(a, b)| (a - mean) * (b - mean)).sum::<f64>() / (own.len() - lag) as f64
+    };
+    let whole = product(0);
+    let lag = (1..own.len() / 2).find(|lag| product(*lag) < CORRELATED * whole).unwrap_or(own.len() / 2);
+    lag as f64 * (windows.centres[1] - windows.centres[0])
+}

@@ -1,0 +1,152 @@
+//! Test functions over windows of 0.1, 0.3 and 1 T₀.
+//!
+//! A window carries (1 − s²)⁴ · {1, cos kπs, sin kπs}, −1 < s < 1, with up to four cycles per T₀, and advances by an eighth of its length.
+//! φ and its first three derivatives vanish at both ends, so that derivatives of q may move to it.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// How many window lengths there are.
+pub(in crate::diagnose) const COUNT: usize = 3;
+
+/// The lengths, in T₀.
+pub(in crate::diagnose) const LENGTHS: [f64; COUNT] = [0.1, 0.3, 1.0];
+
+/// The length by which errors are told.
+pub(in crate::diagnose) const PRINCIPAL: usize = 1;
+
+/// Cells in a window of each length.
+const CELLS: [usize; COUNT] = [16, 48, 160];
+
+/// Cycles in a window, at most.
+const CYCLES: [usize; COUNT] = [0, 1, 4];
+
+/// By which part of its length a window advances.
+const ADVANCE: usize = 8;
+
+/// Windows of one length, at most: beyond them they advance further. Their equations hardly differ from those between them.
+const MOST: usize = 1500;
+
+/// Length of a cell, s.
+pub(super) fn cell(period: f64) -> f64 {
+    LENGTHS[0] * period / CELLS[0] as f64
+}
+
+/// Integrals over cells of all pieces.
+pub(super) type Cells = Vec<Vec<f64>>;
+
+/// Windows of one length over all pieces, end to end.
+#[derive(Clone, Debug)]
+pub(in crate::diagnose) struct Windows {
+    /// Length, s.
+    pub(in crate::diagnose) length: f64,
+    /// Test functions of a window.
+    pub(in crate::diagnose) functions: usize,
+    /// (piece, first cell) of every window.
+    places: Vec<(usize, usize)>,
+    /// Middle of every window on the axis of all pieces end to end, s.
+    pub(in crate::diagnose) centres: Vec<f64>,
+    /// By test function, φ, φ' and φ'' at the cells.
+    weights: Vec<[Vec<f64>; 3]>,
+}
+
+impl Windows {
+    /// Of the length of that number, over pieces of so many cells; `distance` is the usual one of two readings, s.
+    pub(super) fn new(which: usize, cells: &[usize], cell: f64, distance: f64) -> Windows {
+        let size = CELLS[which];
+        let total: usize = cells.iter().sum();
+        let stride = (size / ADVANCE).max((distance / cell) as usize).max(total.div_ceil(MOST)).max(1);
+        let (mut places, mut centres, mut begin) = (Vec::new(), Vec::new(), 0);
+        for (piece, count) in cells.iter().enumerate() {
+            let firsts = (0..(count + 1).saturating_sub(size)).step_by(stride);
+            places.extend(firsts.clone().map(|first| (piece, first)));
+            centres.extend(firsts.map(|first| ((begin + first) as f64 + 0.5 * size as f64) * cell));
+            begin += count;
+        }
+        let length = size as f64 * cell;
+        let phases = |cycles: usize| if cycles == 0 { &[0.0][..] } else { &[0.0, FRAC_PI_2][..] };
+        let shapes = (0..=CYCLES[which]).flat_map(|cycles| phases(cycles).iter().map(move |phase| (cycles, *phase)));
+        let weights: Vec<_> = shapes.map(|(cycles, phase)| tabulated(size, length, cycles as f64, phase)).collect();
+        Windows { length, functions: weights.len(), places, centres, weights }
+    }
+
+    /// Number of equations.
+    pub(super) fn rows(&self) -> usize {
+        self.places.len() * self.functions
+    }
+
+    /// Where an equation's window has its middle, s.
+    pub(super) fn centre(&self, row: usize) -> f64 {
+        self.centres[row / self.functions]
+    }
+
+    /// Adds ∫ φ⁽ⁿ⁾ f dt, n the order, times a factor, to every equation.
+    pub(super) fn add(&self, order: usize, cells: &Cells, factor: f64, rows: &mut [f64]) {
+        for ((piece, first), rows) in self.places.iter().zip(rows.chunks_exact_mut(self.functions)) {
+            for (weights, row) in self.weights.iter().zip(rows) {
+                let weights = &weights[order];
+                let values = &cells[*piece][*first..*first + weights.len()];
+                *row += factor * weights.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>();
+            }
+        }
+    }
+}
+
+/// φ, φ' and φ'' at the middles of `size` cells.
+fn tabulated(size: usize, length: f64, cycles: f64, phase: f64) -> [Vec<f64>; 3] {
+    let at = |cell: usize| test_function((2 * cell + 1) as f64 / size as f64 - 1.0, cycles, phase);
+    let by = [1.0, 2.0 / length, 4.0 / (length * length)];
+    [0, 1, 2].map(|order| (0..size).map(|cell| by[order] * at(cell)[order]).collect())
+}
+
+/// (1 − s²)⁴ cos(kπs − phase) and its first two derivatives by s.
+fn test_function(s: f64, cycles: f64, phase: f64) -> [f64; 3] {
+    let u = 1.0 - s * s;
+    let bump = [u.powi(4), -8.0 * s * u.powi(3), 48.0 * s * s * u * u - 8.0 * u.powi(3)];
+    let rate = PI * cycles;
+    let (sin, cos) = (rate * s - phase).sin_cos();
+    let wave = [cos, -rate * sin, -rate * rate * cos];
+    [
+        bump[0] * wave[0],
+        bump[1] * wave[0] + bump[0] * wave[1],
+        bump[2] * wave[0] + 2.0 * bump[1] * wave[1] + bump[0] * wave[2],
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_are_those_of_the_test_functions() {
+        let h = 1e-5;
+        for (cycles, phase) in [(0.0, 0.0), (1.0, 0.0), (4.0, FRAC_PI_2)] {
+            for s in [-0.83, 0.13, 0.6] {
+                let [below, at, above] = [s - h, s, s + h].map(|s| test_function(s, cycles, phase));
+                assert!(((above[0] - below[0]) / (2.0 * h) - at[1]).abs() < 1e-6, "{cycles} cycles at {s}");
+                assert!(((above[1] - below[1]) / (2.0 * h) - at[2]).abs() < 1e-4, "{cycles} cycles at {s}");
+            }
+        }
+    }
+
+    /// ∫ φ'' q dt = ∫ φ q̈ dt for a motion that is known.
+    #[test]
+    fn derivatives_move_to_the_test_function() {
+        let (period, omega) = (1.0, 7.0);
+        let cell = cell(period);
+        let count = 600;
+        let at = |k: usize| (k as f64 + 0.5) * cell;
+        for which in 0..COUNT {
+            let windows = Windows::new(which, &[count], cell, 0.0);
+            let rows = |order: usize, value: &dyn Fn(f64) -> f64| {
+                let mut rows = vec![0.0; windows.rows()];
+                windows.add(order, &vec![(0..count).map(|k| cell * value(at(k))).collect()], 1.0, &mut rows);
+                rows
+            };
+            let moved = rows(2, &|t| (omega * t + 0.3).sin());
+            let direct = rows(0, &|t| -omega * omega * (omega * t + 0.3).sin());
+            let size = direct.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+            assert!(moved.len() > 10 * windows.functions);
+            assert!(moved.iter().zip(&direct).all(|(a, b)| (a - b).abs() < 1e-3 * size), "length {which}");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! What the readings of q̇ are of the motion that q shows: how late, how large, and whether a measurement of their own.
+//!
+//! q̇ read at t is s ẋ(t − τ) + b: its regression on the smoothed ẋ, ẍ, x⃛ gives s, τ and b. A q̇ that is computed from q, by differences
+//! and whatever filter, has the noise of q in it: what is left of q̇ is then a linear function of what is left of q.
+
+use super::Track;
+use crate::diagnose::Piece;
+use nalgebra::{DMatrix, DVector};
+
+/// Samples before and after an instant whose noise of q a derivative may hold.
+const BEFORE: usize = 8;
+const AFTER: usize = 2;
+
+/// Share of what is left of q̇ that q's own noise must explain where q̇ is computed from q.
+const SHARED: f64 = 0.5;
+
+/// Share of q̇'s variance that the derivative of q must explain where it is a velocity at all.
+const EXPLAINED: f64 = 0.5;
+
+/// What q̇ is of q.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kinematics {
+    /// How late q̇ is, s.
+    pub lag: f64,
+    /// Std of it, s.
+    pub lag_std: f64,
+    /// q̇ ÷ derivative of q.
+    pub scale: f64,
+    /// Std of it.
+    pub scale_std: f64,
+    /// What q̇ reads where nothing moves.
+    pub offset: f64,
+    /// Share of q̇'s variance that the derivative of q explains.
+    pub explained: f64,
+    /// Whether q̇ is computed from q, so that it is no second measurement.
+    pub is_derivative: bool,
+}
+
+impl Kinematics {
+    /// Of pieces that have both, and the motion that q alone shows. None where nothing moves.
+    pub(super) fn of(pieces: &[Piece], tracks: &[Track]) -> Option<Kinematics> {
+        let (mut rows, mut right) = (Vec::new(), Vec::new());
+        for (piece, track) in pieces.iter().zip(tracks) {
+            right.extend(piece.measured()[1]?);
+            rows.extend(track.states.iter().map(|state| [state[1], -state[2], 0.5 * state[3], 1.0]));
+        }
+        let found = Regression::of(&rows, &right)?;
+        let count = right.len() as f64;
+        let mean = right.iter().sum::<f64>() / count;
+        let spread: f64 = right.iter().map(|value| (value - mean).powi(2)).sum();
+        let std = |index: usize| (found.inverse[(index, index)] * found.left / count).sqrt();
+        let scale = found.solution[0];
+        Some(Kinematics {
+            lag: found.solution[1] / scale,
+            lag_std: std(1) / scale.abs(),
+            scale,
+            scale_std: std(0),
+            offset: found.solution[3],
+            explained: 1.0 - found.left / spread,
+            is_derivative: shared(pieces, tracks, &found.residuals(&rows, &right))? > SHARED,
+        })
+        .filter(|found| found.lag.is_finite() && found.scale.is_finite())
+    }
+
+    /// Whether q̇ is the derivative of q, up to a factor and a delay.
+    pub fn is_velocity(&self) -> bool {
+        self.explained > EXPLAINED
+    }
+}
+
+/// Share of what is left of q̇ that what is left of q explains.
+fn shared(pieces: &[Piece], tracks: &[Track], left: &[f64]) -> Option<f64> {
+    let (mut rows, mut right, mut first) = (Vec::new(), Vec::new(), 0);
+    for (piece, track) in pieces.iter().zip(tracks) {
+        let q = piece.measured()[0]?;
+        let noise: Vec<f64> = q.iter().zip(&track.states).map(|(q, state)| q - state[0]).collect();
+        let windows = noise.windows(BEFORE + AFTER + 1).enumerate();
+        for (k, window) in windows {
+            rows.push(<[f64; BEFORE + AFTER + 1]>::try_from(window).ok()?);
+            right.push(left[first + k + BEFORE]);
+        }
+        first += noise.len();
+    }
+    let total: f64 = right.iter().map(|value| value * value).sum();
+    let found = Regression::of(&rows, &right)?;
+    Some(1.0 - found.left / total.max(f64::MIN_POSITIVE))
+}
+
+/// Least squares, columns scaled.
+struct Regression {
+    solution: DVector<f64>,
+    inverse: DMatrix<f64>,
+    /// Σ residual².
+    left: f64,
+}
+
+impl Regression {
+    fn of<const P: usize>(rows: &[[f64; P]], right: &[f64]) -> Option<Regression> {
+        let mut gram = DMatrix::<f64>::zeros(P, P);
+        let mut moment = DVector::<f64>::zeros(P);
+        for (row, value) in rows.iter().zip(right) {
+            for a in 0..P {
+                moment[a] += row[a] * value;
+                (0..P).for_each(|b| gram[(a, b)] += row[a] * row[b]);
+            }
+        }
+        let scale = |index: usize| if gram[(index, index)] > 0.0 { gram[(index, index)].sqrt().recip() } else { 0.0 };
+        let scaled = DMatrix::from_fn(P, P, |a, b| gram[(a, b)] * scale(a) * scale(b));
+        if !scaled.iter().all(|value| value.is_finite()) {
+            return None;
+        }
+        let inverse = scaled.pseudo_inverse(1e-12).ok()?;
+        let inverse = DMatrix::from_fn(P, P, |a, b| inverse[(a, b)] * scale(a) * scale(b));
+        let solution = &inverse * &moment;
+        let total: f64 = right.iter().map(|value| value * value).sum();
+        Some(Regression { left: (total - solution.dot(&moment)).max(0.0), solution, inverse })
+    }
+
+    fn residuals<const P: usize>(&self, rows: &[[f64; P]], right: &[f64]) -> Vec<f64> {
+        let expected = |row: &[f64; P]| row.iter().zip(self.solution.iter()).map(|(a, b)| a * b).sum::<f64>();
+        rows.iter().zip(right).map(|(row, value)| value - expected(row)).collect()
+    }
+}

@@ -1,0 +1,196 @@
+//! The motion that recordings show, their sensors, and how these keep time.
+//!
+//! Everything is estimated from the recording alone, before any law: the sensors' noise ([`noise`]), how late and how large q̇ is
+//! ([`kinematics`]), and the motion itself ([`spline`]), put on a uniform grid ([`nodes`]).
+
+mod kinematics;
+mod nodes;
+mod noise;
+mod spline;
+
+pub use kinematics::Kinematics;
+pub(super) use nodes::Nodes;
+pub(super) use noise::{rounding, sensor_noise};
+pub use spline::Sensors;
+pub(super) use spline::{Spline, States};
+
+use super::piece::{Piece, thinned};
+use crate::identify::Recording;
+use crate::law::{Hold, State};
+use std::f64::consts::{PI, TAU};
+
+/// Ratio between the cutoffs that are tried.
+const RATIO: f64 = 1.5;
+
+/// Factor by which the likeliest cutoff is raised: one that is too low biases coefficients, one that is too high lets a little more noise in.
+const MARGIN: f64 = 1.5;
+
+/// Samples from which the cutoff is chosen, at most.
+const LOOKED_AT: usize = 4000;
+
+/// Highest cutoff relative to half the sampling frequency.
+const NYQUIST: f64 = 0.9;
+
+/// Angular frequency up to which the motion counts for its period, in its own: what the shortest window of the judge resolves.
+const RESOLVED: f64 = 10.0;
+
+/// Smallest noise std ÷ range of a channel: rounding of the numbers in a file.
+const ROUNDED: f64 = 1e-7;
+
+/// Distance from the smoothed motion, in robust std, beyond which a single reading is a wild one (one in 10⁹ were the noise Gaussian).
+const WILD: f64 = 6.0;
+
+/// The motion of one piece.
+#[derive(Clone, Debug)]
+pub(super) struct Track {
+    /// The gains that smooth its readings.
+    pub(super) spline: Spline,
+    /// Which of q and q̇ are read.
+    pub(super) read: [bool; 2],
+    /// Factor on the variance of every reading by channel; empty where none is wild.
+    pub(super) doubt: [Vec<f64>; 2],
+    /// Position, velocity, acceleration and jerk at every sample.
+    pub(super) states: States,
+}
+
+/// The motion of one recording.
+#[derive(Clone, Debug)]
+pub(super) struct Motion {
+    /// What q̇ is of q; none where one of them is absent.
+    pub(super) kinematics: Option<Kinematics>,
+    /// How its readings are taken.
+    pub(super) sensors: Sensors,
+    /// Its pieces.
+    pub(super) pieces: Vec<Piece>,
+    /// Their motions.
+    pub(super) tracks: Vec<Track>,
+}
+
+/// The readings of a piece that are taken.
+pub(super) fn readings(piece: &Piece, read: [bool; 2]) -> [Option<&[f64]>; 2] {
+    let measured = piece.measured();
+    [measured[0].filter(|_| read[0]), measured[1].filter(|_| read[1])]
+}
+
+impl Motion {
+    /// Of a recording whose excitation did this between samples. None where no piece has samples enough.
+    pub(super) fn of(recording: &Recording, hold: Hold) -> Option<Motion> {
+        let pieces = Piece::all(recording, hold);
+        let pieces: Vec<Piece> = pieces.into_iter().filter(|piece| piece.len() >= Recording::MINIMUM).collect();
+        let first = pieces.first()?;
+        let has = first.measured().map(|channel| channel.is_some());
+        let noise = noise_levels(&pieces);
+        let blank = Sensors { noise, lag: 0.0, scale: 1.0, cutoff: 1.0 };
+        let single = [has[0], has[1] && !has[0]];
+        let sensors = Sensors { cutoff: likeliest_cutoff(&pieces, blank, single), ..blank };
+        let tracks = follow(&pieces, sensors, single);
+        let motion = Motion { kinematics: None, sensors, pieces, tracks };
+        Some(if has == [true, true] { motion.with_velocity() } else { motion })
+    }
+
+    /// With the readings of q̇, where they are a measurement of their own.
+    fn with_velocity(self) -> Motion {
+        let Some(kinematics) = Kinematics::of(&self.pieces, &self.tracks) else { return self };
+        if kinematics.is_derivative || !kinematics.is_velocity() {
+            return Motion { kinematics: Some(kinematics), ..self };
+        }
+        let both = [true, true];
+        let sensors = Sensors { lag: kinematics.lag, scale: kinematics.scale, ..self.sensors };
+        let sensors = Sensors { cutoff: likeliest_cutoff(&self.pieces, sensors, both), ..sensors };
+        let tracks = follow(&self.pieces, sensors, both);
+        Motion { kinematics: Some(kinematics), sensors, tracks, ..self }
+    }
+
+    /// (q, q̇) at every sample, piece by piece.
+    pub(super) fn states(&self) -> impl Iterator<Item = Vec<State>> {
+        let state = |own: &[f64; 4]| State { q: own[0], qd: own[1] };
+        self.tracks.iter().map(move |track| track.states.iter().map(state).collect())
+    }
+
+    /// Σ ẋ² and Σ ẍ² of the motion followed up to an angular frequency, rad/s.
+    fn powers(&self, cutoff: f64) -> [f64; 2] {
+        let read = self.tracks.first().map_or([true; 2], |track| track.read);
+        let cutoff = cutoff.min(self.sensors.cutoff);
+        let tracks = follow(&self.pieces, Sensors { cutoff, ..self.sensors }, read);
+        let states = || tracks.iter().flat_map(|track| &track.states);
+        [1, 2].map(|order| states().map(|state| state[order] * state[order]).sum())
+    }
+}
+
+/// T₀ = 2π rms q̇ ÷ rms q̈, s, of the motion followed up to ten times its own frequency: what lies beyond is no motion that a window of
+/// the judge could see. Not finite where nothing moves.
+pub(super) fn period(motions: &[Motion]) -> f64 {
+    let highest = motions.iter().map(|motion| motion.sensors.cutoff).fold(0.0, f64::max);
+    let (mut cutoff, mut period) = (highest, f64::NAN);
+    for _ in 0..20 {
+        let sums = motions.iter().map(|motion| motion.powers(cutoff)).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+        period = TAU * (sums[0] / sums[1]).sqrt();
+        let next = RESOLVED * TAU / period;
+        if !(next < 0.97 * cutoff) {
+            break;
+        }
+        cutoff = next;
+    }
+    period
+}
+
+/// Noise std of both channels, at least what the numbers of a file are rounded to.
+fn noise_levels(pieces: &[Piece]) -> [f64; 2] {
+    let noise = sensor_noise(pieces);
+    [0, 1].map(|channel| {
+        let values = || pieces.iter().filter_map(|piece| piece.measured()[channel]).flatten();
+        let [low, high] =
+            [values().fold(f64::INFINITY, |a, b| a.min(*b)), values().fold(f64::NEG_INFINITY, |a, b| a.max(*b))];
+        noise[channel].max(ROUNDED * (high - low)).max(f64::MIN_POSITIVE.sqrt())
+    })
+}
+
+/// The motions of all pieces; a reading that is wild is doubted in a second run.
+fn follow(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> Vec<Track> {
+    let track = |piece: &Piece| {
+        let first = track(piece, sensors, read, [Vec::new(), Vec::new()]);
+        let doubt = [0, 1].map(|channel| doubt(piece, &first, sensors, channel));
+        if doubt.iter().all(Vec::is_empty) { first } else { self::track(piece, sensors, read, doubt) }
+    };
+    pieces.iter().map(track).collect()
+}
+
+fn track(piece: &Piece, sensors: Sensors, read: [bool; 2], doubt: [Vec<f64>; 2]) -> Track {
+    let spline = Spline::new(&piece.t, sensors, read, [&doubt[0], &doubt[1]]);
+    let states = spline.smooth(readings(piece, read));
+    Track { spline, read, doubt, states }
+}
+
+/// By what factor the variance of each reading is larger than usual; empty where no reading is wild.
+fn doubt(piece: &Piece, track: &Track, sensors: Sensors, channel: usize) -> Vec<f64> {
+    let Some(values) = readings(piece, track.read)[channel] else { return Vec::new() };
+    let distance =
+        |(value, state): (&f64, &[f64; 4])| (value / sensors.unit(channel) - sensors.reading(channel, state)).abs();
+    let distances: Vec<f64> = values.iter().zip(&track.states).map(distance).collect();
+    let mut sorted = distances.clone();
+    let middle = sorted.len() / 2;
+    let usual = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745;
+    let usual = usual.max(sensors.noise[channel] / sensors.unit(channel).abs());
+    if distances.iter().all(|distance| *distance <= WILD * usual) {
+        return Vec::new();
+    }
+    let factor = |distance: &f64| if *distance > WILD * usual { (distance / usual).powi(2) } else { 1.0 };
+    distances.iter().map(factor).collect()
+}
+
+/// The cutoff under which the readings are likeliest, with a margin.
+fn likeliest_cutoff(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> f64 {
+    let parts = thinned(pieces, LOOKED_AT);
+    let duration = |piece: &Piece| piece.t[piece.len() - 1] - piece.t[0];
+    let distance = pieces.iter().map(|piece| duration(piece) / (piece.len() - 1) as f64).fold(f64::INFINITY, f64::min);
+    let top = NYQUIST * PI / distance;
+    let least = 2.0 * TAU / pieces.iter().map(duration).fold(0.0, f64::max);
+    let deviance = |cutoff: &f64| -> f64 {
+        let sensors = Sensors { cutoff: *cutoff, ..sensors };
+        let of = |piece: &Piece| Spline::new(&piece.t, sensors, read, [&[], &[]]).deviance(readings(piece, read));
+        parts.iter().map(of).sum()
+    };
+    let cutoffs = std::iter::successors(Some(top), |cutoff| Some(cutoff / RATIO)).take_while(|cutoff| *cutoff > least);
+    let best = cutoffs.map(|cutoff| (deviance(&cutoff), cutoff)).min_by(|a, b| a.0.total_cmp(&b.0));
+    best.map_or(top, |(_, cutoff)| (MARGIN * cutoff).min(top))
+}

@@ -1,0 +1,176 @@
+//! The motion and the excitation of a piece on a uniform grid, whatever the instants of its readings.
+//!
+//! Nodes are as close as the readings or closer; several make a cell, over which everything is summed before it meets a test function.
+
+use super::{Motion, readings};
+use crate::diagnose::Piece;
+use crate::law::{Hold, Trajectory};
+
+/// A piece on a uniform grid; a value stands for the middle of its node.
+#[derive(Clone, Debug)]
+pub(in crate::diagnose) struct Nodes {
+    /// Where the first node begins, s.
+    start: f64,
+    /// How long a node is, s.
+    width: f64,
+    /// Nodes in a cell.
+    per_cell: usize,
+    /// Middles of the nodes, s.
+    t: Vec<f64>,
+    /// Displacement, m.
+    pub(in crate::diagnose) q: Vec<f64>,
+    /// Velocity, m/s.
+    pub(in crate::diagnose) qd: Vec<f64>,
+    /// Acceleration, m/s².
+    pub(in crate::diagnose) qdd: Vec<f64>,
+}
+
+impl Nodes {
+    /// A piece of a motion, in cells of that length, s.
+    pub(in crate::diagnose) fn new(motion: &Motion, number: usize, cell: f64) -> Nodes {
+        let (piece, states) = (&motion.pieces[number], &motion.tracks[number].states);
+        let last = piece.len() - 1;
+        let duration = piece.t[last] - piece.t[0];
+        let per_cell = (cell * last as f64 / duration).ceil().max(1.0) as usize;
+        let width = cell / per_cell as f64;
+        let count = (duration / cell).floor() as usize * per_cell;
+        let mut nodes = Nodes { start: piece.t[0], width, per_cell, t: vec![], q: vec![], qd: vec![], qdd: vec![] };
+        let mut k = 0;
+        for index in 0..count {
+            let t = nodes.start + (index as f64 + 0.5) * width;
+            while k + 1 < last && piece.t[k + 1] <= t {
+                k += 1;
+            }
+            let [q, qd, qdd] = between([&states[k], &states[k + 1]], piece.t[k + 1] - piece.t[k], t - piece.t[k]);
+            nodes.t.push(t);
+            nodes.q.push(q);
+            nodes.qd.push(qd);
+            nodes.qdd.push(qdd);
+        }
+        nodes
+    }
+
+    /// Number of cells.
+    pub(in crate::diagnose) fn cells(&self) -> usize {
+        self.t.len() / self.per_cell
+    }
+
+    /// Length of a cell, s.
+    pub(in crate::diagnose) fn cell(&self) -> f64 {
+        self.width * self.per_cell as f64
+    }
+
+    /// The motion under an excitation at the nodes.
+    pub(in crate::diagnose) fn trajectory<'a>(&'a self, excitation: &'a [f64]) -> Trajectory<'a> {
+        Trajectory { t: &self.t, q: &self.q, qd: &self.qd, excitation, hold: Hold::Linear }
+    }
+
+    /// The mean over each node of the excitation `delay` s ago.
+    pub(in crate::diagnose) fn excitation(&self, piece: &Piece, hold: Hold, delay: f64) -> Vec<f64> {
+        let mut force = Impulse::new(piece, hold);
+        let mut edges = (0..=self.t.len()).map(|index| force.until(self.start + index as f64 * self.width - delay));
+        let mut before = edges.next().unwrap_or_default();
+        let mean = |after: f64| (after - std::mem::replace(&mut before, after)) / self.width;
+        edges.map(mean).collect()
+    }
+
+    /// Integrals over the cells.
+    pub(in crate::diagnose) fn integrals(&self, values: &[f64]) -> Vec<f64> {
+        values.chunks_exact(self.per_cell).map(|values| values.iter().sum::<f64>() * self.width).collect()
+    }
+
+    /// What the readings of a channel have beyond the smoothed motion, integrated over the cells: with it the smoothed motion is the
+    /// measured one again, without what smoothing may take from it.
+    pub(in crate::diagnose) fn remainder(&self, motion: &Motion, number: usize, channel: usize) -> Vec<f64> {
+        let (piece, track, sensors) = (&motion.pieces[number], &motion.tracks[number], &motion.sensors);
+        let mut sums = vec![0.0; self.cells()];
+        let Some(values) = readings(piece, track.read)[channel] else { return sums };
+        let last = piece.len() - 1;
+        for (k, (value, state)) in values.iter().zip(&track.states).enumerate() {
+            let weight = 0.5 * (piece.t[(k + 1).min(last)] - piece.t[k.saturating_sub(1)]);
+            let sure = weight / track.doubt[channel].get(k).copied().unwrap_or(1.0);
+            let place = (piece.t[k] - sensors.lag(channel) - self.start) / self.cell();
+            let Some(sum) = sums.get_mut(place as usize).filter(|_| place >= 0.0) else { continue };
+            *sum += sure * (value / sensors.unit(channel) - sensors.reading(channel, state));
+        }
+        sums
+    }
+}
+
+/// ∫ F dt from the first reading on. Before it and after the last one the excitation counts as they are.
+struct Impulse<'a> {
+    piece: &'a Piece,
+    hold: Hold,
+    sums: Vec<f64>,
+    /// The interval in which the last instant was.
+    place: usize,
+}
+
+impl<'a> Impulse<'a> {
+    fn new(piece: &'a Piece, hold: Hold) -> Impulse<'a> {
+        let mut impulse = Impulse { piece, hold, sums: vec![0.0], place: 0 };
+        for k in 0..piece.len() - 1 {
+            let next = impulse.sums[k] + impulse.within(k, piece.t[k + 1] - piece.t[k]);
+            impulse.sums.push(next);
+        }
+        impulse
+    }
+
+    /// Over the first part, s, of an interval. A band-limited excitation is the cubic through the four nearest readings.
+    fn within(&self, k: usize, x: f64) -> f64 {
+        let (t, value) = (&self.piece.t, &self.piece.excitation);
+        let dt = t[k + 1] - t[k];
+        let rise = value[k + 1] - value[k];
+        let straight = x * (value[k] + 0.5 * rise * x / dt);
+        let inner = k > 0 && k + 2 < t.len();
+        match self.hold {
+            Hold::Zero => x * value[k],
+            Hold::BandLimited if inner => {
+                let slope = |a: usize| dt * (value[a + 1] - value[a - 1]) / (t[a + 1] - t[a - 1]);
+                let [from, to] = [slope(k) - rise, slope(k + 1) - rise];
+                let s = x / dt;
+                let bend = from * (1.0 / 2.0 - s * (2.0 / 3.0 - s / 4.0)) + to * (s / 4.0 - 1.0 / 3.0) * s;
+                straight + dt * s * s * bend
+            }
+            _ => straight,
+        }
+    }
+
+    /// ∫ F dt up to an instant; fast where instants come in their order.
+    fn until(&mut self, t: f64) -> f64 {
+        let (times, values) = (&self.piece.t, &self.piece.excitation);
+        let last = times.len() - 1;
+        if t <= times[0] {
+            return (t - times[0]) * values[0];
+        }
+        if t >= times[last] {
+            return self.sums[last] + (t - times[last]) * values[last];
+        }
+        while times[self.place] > t {
+            self.place -= 1;
+        }
+        while times[self.place + 1] <= t {
+            self.place += 1;
+        }
+        self.sums[self.place] + self.within(self.place, t - times[self.place])
+    }
+}
+
+/// Position, velocity and acceleration within an interval of length h, a time x after its start: the quintic through both ends.
+fn between([from, to]: [&[f64; 4]; 2], h: f64, x: f64) -> [f64; 3] {
+    let s = x / h;
+    let [p, v, a] = [from[0], from[1] * h, from[2] * h * h];
+    let position = to[0] - p - v - 0.5 * a;
+    let velocity = to[1] * h - v - a;
+    let acceleration = to[2] * h * h - a;
+    let c = [
+        10.0 * position - 4.0 * velocity + 0.5 * acceleration,
+        -15.0 * position + 7.0 * velocity - acceleration,
+        6.0 * position - 3.0 * velocity + 0.5 * acceleration,
+    ];
+    [
+        p + s * (v + s * (0.5 * a + s * (c[0] + s * (c[1] + s * c[2])))),
+        (v + s * (a + s * (3.0 * c[0] + s * (4.0 * c[1] + s * 5.0 * c[2])))) / h,
+        (a + s * (6.0 * c[0] + s * (12.0 * c[1] + s * 20.0 * c[2]))) / (h * h),
+    ]
+}

@@ -1,0 +1,196 @@
+//! Recordings under judgement, and a law's standing on them.
+
+use super::errors::{WindowError, are_adequate, errors};
+use super::law::Law;
+use crate::diagnose::judge::{
+    Blocks, COUNT, Equation, Estimate, Folds, HeldOut, Record, Target, Timing, delay_of, disturbed, estimate, floor,
+    noise_share,
+};
+use crate::identify::Recording;
+use crate::law::{Expression, Hold, Term};
+
+/// Ratio between the delays that are tried, and steps in which the best is refined.
+const GROWTH: f64 = 1.6;
+const STEPS: usize = 2;
+
+/// Delay, in T₀, up to which its column alone takes it: the next term of the series is then 5 % of it.
+const SERIES: f64 = 0.05;
+
+/// Delay, in sample times, that is not worth another look.
+const SMALL: f64 = 0.02;
+
+/// Noise ÷ signal of the inertia term up to which it may be a regressor: the bias of 1e-4 that it brings is below any other.
+const NEGLIGIBLE: f64 = 0.01;
+
+/// Largest delay of the excitation that is sought, in T₀: beyond it a periodic motion repeats itself.
+const LONGEST: f64 = 0.3;
+
+/// Recordings of one system, ready for any law.
+#[derive(Clone, Debug)]
+pub(in crate::diagnose) struct Case {
+    pub(in crate::diagnose) record: Record,
+    pub(in crate::diagnose) folds: Folds,
+    /// The record under other draws of the sensors' noise.
+    disturbed: Vec<Record>,
+    /// Which column stands alone, whatever the candidates.
+    pub(in crate::diagnose) target: Target,
+    /// What the excitation did between samples, where the user says so.
+    hold: Option<Hold>,
+    /// The inertia of a free motion.
+    inertia: f64,
+}
+
+/// A law on a record.
+#[derive(Clone, Debug)]
+pub(in crate::diagnose) struct Standing {
+    pub(in crate::diagnose) equation: Equation,
+    pub(in crate::diagnose) held: HeldOut,
+    pub(in crate::diagnose) estimate: Estimate,
+    /// What the sensors alone would leave of the error, by window length.
+    pub(in crate::diagnose) floor: [f64; COUNT],
+    pub(in crate::diagnose) blocks: Blocks,
+}
+
+impl Case {
+    /// Of recordings, for laws of about these terms; `inertia` is that of a free motion. None where nothing moves or all is too short.
+    pub(in crate::diagnose) fn new(
+        recordings: &[&Recording],
+        terms: &[Term],
+        expressions: &[Expression],
+        hold: Option<Hold>,
+        inertia: f64,
+    ) -> Option<Case> {
+        let record = Record::new(recordings, expressions)?;
+        let is_output = !terms.contains(&Term::Inertia);
+        let disturbed = disturbed(&record, record.force_noise(is_output));
+        let folds = Folds::new(&record);
+        let mut case = Case { record, folds, disturbed, target: Target::Inertia, hold, inertia };
+        if is_output {
+            case.target = Target::Force;
+        } else if case.record.forced {
+            case.target = case.noisier();
+        }
+        Some(case)
+    }
+
+    /// The inertia term where its propagated noise is worth the word: as a regressor it would bias its own coefficient by the square of
+    /// its noise ÷ signal. Else the force, for there are forces that no term has.
+    fn noisier(&self) -> Target {
+        let noise = noise_share(&self.record, &self.disturbed);
+        if noise > NEGLIGIBLE { Target::Inertia } else { Target::Force }
+    }
+
+    /// A law of these terms with the hold that suits it, a little delay of the excitation refitted beside it. None where the record is too
+    /// short for it.
+    pub(in crate::diagnose) fn stand(&self, terms: &[Term]) -> Option<Standing> {
+        self.at(terms, self.centred(terms, self.punctual(terms).timing))
+    }
+
+    /// The law with the hold that suits it best, and no more delay than it has itself.
+    pub(in crate::diagnose) fn punctual(&self, terms: &[Term]) -> Equation {
+        let delay = terms.iter().find_map(|term| delay_of(*term)).unwrap_or(0.0);
+        let at = |hold: Hold| Equation::new(&self.record, terms, self.target, Timing { hold, delay }, false);
+        let holds = match self.hold {
+            Some(hold) => vec![hold],
+            None if self.record.forced => vec![Hold::Linear, Hold::Zero, Hold::BandLimited],
+            None => vec![Hold::Linear],
+        };
+        let error = |equation: &Equation| -> f64 {
+            let errors = self.folds.judge(equation).errors;
+            errors.iter().filter(|error| error.is_finite()).map(|error| error.ln()).sum()
+        };
+        let mut all = holds.into_iter().map(at);
+        let first = at(self.hold.unwrap_or(Hold::Linear));
+        let Some(second) = all.nth(1) else { return first };
+        let others = std::iter::once(second).chain(all).map(|equation| (error(&equation), equation));
+        let best = (error(&first), first);
+        others.fold(best, |best, other| if other.0 < best.0 { other } else { best }).1
+    }
+
+    /// The timing about which what is left of a delay is small: its column is only the first term of a series.
+    fn centred(&self, terms: &[Term], timing: Timing) -> Timing {
+        if !self.record.forced {
+            return timing;
+        }
+        let at = |delay: f64| Equation::new(&self.record, terms, self.target, Timing { delay, ..timing }, true);
+        let reach = SERIES * self.record.period;
+        let first = at(timing.delay);
+        let step = self.estimated(first.clone()).and_then(|found| found.delay).map_or(0.0, |[step, _]| step);
+        if step.abs() < SMALL * self.record.sample_time {
+            return timing;
+        }
+        let delay = timing.delay + step.clamp(-reach, reach);
+        let better = self.folds.judge(&at(delay)).score(&self.folds.judge(&first)) < 0.0;
+        if better { Timing { delay, ..timing } } else { timing }
+    }
+
+    /// The law with the delay of the excitation, up to three tenths of T₀, under which it explains most; none where its inertia would be
+    /// negative: half a period of delay turns a law round.
+    pub(in crate::diagnose) fn delayed(&self, terms: &[Term]) -> Option<f64> {
+        let punctual = self.punctual(terms).timing;
+        let at = |delay: f64| Equation::new(&self.record, terms, self.target, Timing { delay, ..punctual }, true);
+        let longest = LONGEST * self.record.period;
+        let sizes = std::iter::successors(Some(self.record.sample_time), |size| Some(GROWTH * size));
+        let judged = |delay: f64| self.folds.judge(&at(delay));
+        let first = judged(0.0);
+        let tried = sizes.take_while(|size| *size < longest).map(|delay| (judged(delay).score(&first), delay));
+        let (score, delay) = tried.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let refined = (0..STEPS).fold(delay, |delay, _| {
+            let step = self.estimated(at(delay)).and_then(|found| found.delay).map_or(0.0, |[step, _]| step);
+            (delay + step.clamp(-0.5 * delay, 0.5 * delay)).min(longest)
+        });
+        let refined = if judged(refined).score(&first) < score { refined } else { delay };
+        self.is_forward(at(refined)).then_some(refined)
+    }
+
+    /// Whether the inertia is positive.
+    fn is_forward(&self, equation: Equation) -> bool {
+        let place = equation.terms.iter().position(|term| *term == Term::Inertia);
+        let found = self.estimated(equation);
+        place.is_none_or(|index| found.is_some_and(|found| found.coefficients[index] > 0.0))
+    }
+
+    pub(in crate::diagnose) fn estimated(&self, equation: Equation) -> Option<Estimate> {
+        let blocks = Blocks::new(&self.record, &self.folds.judge(&equation));
+        estimate(&self.record, &equation, &blocks, self.inertia)
+    }
+
+    /// A law of these terms at that timing.
+    pub(in crate::diagnose) fn at(&self, terms: &[Term], timing: Timing) -> Option<Standing> {
+        self.of(Equation::new(&self.record, terms, self.target, timing, true))
+    }
+
+    /// The law of an equation.
+    pub(in crate::diagnose) fn of(&self, equation: Equation) -> Option<Standing> {
+        let held = self.folds.judge(&equation);
+        let blocks = Blocks::new(&self.record, &held);
+        let estimate = estimate(&self.record, &equation, &blocks, self.inertia)?;
+        let same = |other: &Record| Equation::new(other, &equation.terms, self.target, equation.timing, true);
+        let others: Vec<Equation> = self.disturbed.iter().map(same).collect();
+        let floor = floor(&equation, &estimate.solutions, &others);
+        Some(Standing { equation, held, estimate, floor, blocks })
+    }
+
+    /// Errors of a law whose numbers are held, over all windows, and whether they are what the sensors alone would leave.
+    pub(in crate::diagnose) fn errors_as_given(&self, law: &Law) -> Option<([WindowError; COUNT], bool)> {
+        let equation = Equation::new(&self.record, &law.terms, self.target, law.timing, false);
+        let solution = equation.solution(&law.coefficients, self.record.forced)?;
+        let solutions = [solution.clone(), solution.clone(), solution];
+        let held = HeldOut::as_given(&equation, &solutions);
+        let same = |other: &Record| Equation::new(other, &equation.terms, self.target, equation.timing, false);
+        let others: Vec<Equation> = self.disturbed.iter().map(same).collect();
+        let floor = floor(&equation, &solutions, &others);
+        let errors = errors(&self.record, &held, &held, &floor);
+        Some((errors, are_adequate(&errors)))
+    }
+
+    /// Held-out errors of a law, by window length.
+    pub(in crate::diagnose) fn errors_of(&self, standing: &Standing) -> [WindowError; COUNT] {
+        errors(&self.record, &standing.held, &standing.held, &standing.floor)
+    }
+
+    /// A law with its numbers.
+    pub(in crate::diagnose) fn law(&self, standing: &Standing) -> Law {
+        Law::of(&self.record, &standing.equation, &standing.estimate)
+    }
+}

@@ -1,0 +1,361 @@
+//! Which physical effect a law lacks, as the judge sees it.
+//!
+//! Every candidate is fitted beside the law with what time and sensors may explain; the one that lowers the held-out errors most is named
+//! where that is no chance (a sign-flip test over blocks, all candidates counted) and worth the word, or is large in every window. Nothing
+//! that a record cannot tell is claimed: a candidate that the law's own terms nearly are, one whose sign physics forbids, one that its own
+//! std swallows.
+
+use super::case::{Case, Standing};
+use super::errors::{WindowError, are_adequate, errors};
+use super::law::Law;
+use super::remainder;
+use crate::diagnose::candidates::{Contender, contest};
+use crate::diagnose::judge::{COUNT, HeldOut, PRINCIPAL, delay_of};
+use crate::law::{Catalogue, Effect, Inner, Term};
+
+/// Chance, shared among all candidates tried, below which a gain is none.
+pub const LEVEL: f64 = 0.01;
+
+/// Mean ratio of errors that is worth the word: 5 %.
+const WORTH: f64 = 0.95;
+
+/// Ratio of errors in every window that needs no test: a third of the error's energy.
+const LARGE: f64 = 0.816;
+
+/// Ratio of errors in one window that disqualifies: 2 % worse.
+const WORSE: f64 = 1.02;
+
+/// Score, for each window length, by which two candidates are equally good: 5 % of the error.
+pub(in crate::diagnose) const TIE: f64 = 0.05;
+
+/// Most candidates in a tie.
+const TIED: usize = 3;
+
+/// Share of a candidate that the law's own terms are, from which it cannot be told from them.
+const TRAP: f64 = 0.97;
+
+/// Std that a coefficient must be away from 0.
+const SURE: f64 = 2.0;
+
+/// What a diagnosis comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finding {
+    /// An effect is missing.
+    Missing,
+    /// The law explains its record down to the sensors.
+    Adequate,
+    /// More is left than the sensors explain, and no effect of the catalogue passes.
+    Unexplained,
+}
+
+/// Why a candidate is not named.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doubt {
+    /// Physics forbids its sign.
+    Sign,
+    /// The law's own terms, the excitation among them, nearly are it.
+    Trap,
+    /// Its coefficient is within its uncertainty.
+    Uncertain,
+    /// It makes the error worse in a window.
+    Worse,
+    /// Its gain may be chance, or is too small to speak of.
+    Chance,
+}
+
+/// A candidate beside the law.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidate {
+    /// Its effect id, or the name of a user's expression.
+    pub effect: String,
+    /// The candidate itself.
+    pub term: Term,
+    /// Inner parameters by name, fitted.
+    pub inner: Vec<(String, f64)>,
+    /// Its coefficient.
+    pub coefficient: f64,
+    /// Std of it, over blocks of the record.
+    pub std: f64,
+    /// Held-out errors by window length; the principal ones are those at 0.3 T₀.
+    pub errors: [WindowError; COUNT],
+    /// Probability of a gain this large by chance, all candidates counted; none where the record is too short to tell.
+    pub p_value: Option<f64>,
+    /// S = Σ ln(error after ÷ before) over the window lengths.
+    pub score: f64,
+    /// Share of it that the law's own terms are.
+    pub resemblance: f64,
+    /// Why it is not named; none where it could be.
+    pub doubt: Option<Doubt>,
+}
+
+/// A diagnosis of one law on a set of recordings.
+#[derive(Clone, Debug)]
+pub struct Diagnosis {
+    /// What it comes to.
+    pub finding: Finding,
+    /// The effect that is missing.
+    pub effect: Option<String>,
+    /// The candidates, best first.
+    pub candidates: Vec<Candidate>,
+    /// Candidates that this record cannot tell apart, the best first.
+    pub indistinguishable: Vec<Vec<String>>,
+    /// Share of the error's energy beyond the sensors' that the answer takes away; the best candidate's where none is named.
+    pub explained: f64,
+    /// What remains, in a sentence.
+    pub left: String,
+    /// Errors without and with the answer, by window length.
+    pub errors: [WindowError; COUNT],
+    /// T₀, s.
+    pub period: f64,
+    /// How long the record is, s.
+    pub duration: f64,
+    /// The law as it is, fitted.
+    pub base: Law,
+    /// The law with the effect that is missing.
+    pub improved: Option<Law>,
+    /// Candidates tried, inner parameters counted apart.
+    pub tried: usize,
+    /// Whether the record is long enough for a test of significance.
+    pub is_testable: bool,
+}
+
+impl Candidate {
+    /// Its errors at the principal length.
+    pub fn error(&self) -> WindowError {
+        self.errors[PRINCIPAL]
+    }
+}
+
+/// A contender with what decides about it.
+struct Entry {
+    contender: Contender,
+    before: HeldOut,
+    standing: Option<Standing>,
+    p_value: Option<f64>,
+    doubt: Option<Doubt>,
+}
+
+/// Diagnoses a law of these terms. None where the record is too short for them.
+pub(in crate::diagnose) fn diagnose(case: &Case, terms: &[Term]) -> Option<Diagnosis> {
+    let standing = case.stand(terms)?;
+    let (mut entries, tried) = entries(case, &standing, terms);
+    let named = entries.iter().position(|entry| entry.doubt.is_none());
+    let winner = named.map(|best| smallest(case, &standing, &entries, best));
+    let ties = winner.map_or_else(Vec::new, |winner| ties(case, &entries, winner));
+    let improved = winner.and_then(|winner| {
+        let term = entries[winner].contender.term;
+        let law: Vec<Term> = terms.iter().copied().chain([term]).collect();
+        entries[winner].standing.take().or_else(|| case.stand(&law))
+    });
+    if let Some(winner) = winner {
+        let first = entries.remove(winner);
+        entries.insert(0, first);
+    }
+    Some(conclude(case, standing, improved, &entries, (ties, tried)))
+}
+
+/// Every candidate beside the law, the best first.
+fn entries(case: &Case, standing: &Standing, terms: &[Term]) -> (Vec<Entry>, usize) {
+    let (found, tried) = contest(&case.record, &case.folds, &standing.equation, &standing.held);
+    let mut entries: Vec<Entry> = found.into_iter().map(|contender| Entry::new(contender, &standing.held)).collect();
+    weigh(case, standing, &mut entries);
+    if let Some(late) = delay(case, terms, &entries) {
+        entries.push(late);
+        entries.sort_by(|a, b| a.contender.score.total_cmp(&b.contender.score));
+        weigh(case, standing, &mut entries);
+    }
+    (entries, tried)
+}
+
+/// Significance and doubt of every candidate among all that physics and the law's own terms leave.
+fn weigh(case: &Case, standing: &Standing, entries: &mut [Entry]) {
+    for entry in entries.iter_mut() {
+        entry.doubt = entry.barred(case, standing);
+    }
+    let (mut left, _): (Vec<&mut Entry>, Vec<&mut Entry>) = entries.iter_mut().partition(|entry| entry.doubt.is_none());
+    let gains = |entry: &&mut Entry| standing.blocks.gains(&case.record, &entry.before, &entry.contender.held);
+    let values = standing.blocks.p_values(&left.iter().map(gains).collect::<Vec<_>>());
+    for (index, entry) in left.iter_mut().enumerate() {
+        entry.p_value = values.as_ref().map(|values| values[index]);
+        entry.doubt = entry.doubted();
+    }
+}
+
+/// An excitation that acts later than recorded, as an effect among the others: where the law stands better with a delay than with any of
+/// them.
+fn delay(case: &Case, terms: &[Term], others: &[Entry]) -> Option<Entry> {
+    let moves = case.record.forced && terms.contains(&Term::Inertia);
+    if !moves || terms.iter().any(|term| delay_of(*term).is_some()) {
+        return None;
+    }
+    let late = case.delayed(terms).filter(|late| *late > 0.5 * case.record.sample_time)?;
+    let before = case.folds.judge(&case.punctual(terms));
+    let term = Term::Effect(Effect::ExcitationDelay { delay: Inner::new(late) });
+    let law: Vec<Term> = terms.iter().copied().chain([term]).collect();
+    let standing = case.stand(&law)?;
+    let score = standing.held.score(&before);
+    let taken = |other: &Entry| other.doubt.is_none() && other.contender.held.score(&before) <= score;
+    if others.iter().any(taken) {
+        return None;
+    }
+    let contender = Contender { term, held: standing.held.clone(), score, resemblance: 0.0 };
+    Some(Entry { standing: Some(standing), ..Entry::new(contender, &before) })
+}
+
+impl Entry {
+    fn new(contender: Contender, before: &HeldOut) -> Entry {
+        Entry { contender, before: before.clone(), standing: None, p_value: None, doubt: None }
+    }
+
+    /// Coefficient and std.
+    fn coefficient(&self, case: &Case, standing: &Standing) -> [f64; 2] {
+        if let Some((late, own)) = delay_of(self.contender.term).zip(self.standing.as_ref()) {
+            return [1.0, own.estimate.delay.map_or(f64::NAN, |[_, std]| std / late)];
+        }
+        let equation = standing.equation.with(&case.record, self.contender.term);
+        let inertia = equation.terms.iter().position(|term| *term == Term::Inertia);
+        let found = case.estimated(equation);
+        let backward = |values: &[f64]| inertia.is_some_and(|index| values[index] <= 0.0);
+        let last = |values: &[f64]| values.last().copied().unwrap_or(f64::NAN);
+        match found {
+            Some(found) if !backward(&found.coefficients) => [last(&found.coefficients), last(&found.std)],
+            _ => [f64::NAN; 2],
+        }
+    }
+
+    /// What bars it whatever its gain.
+    fn barred(&self, case: &Case, standing: &Standing) -> Option<Doubt> {
+        let [coefficient, std] = self.coefficient(case, standing);
+        if !self.contender.allows(coefficient) {
+            return Some(Doubt::Sign);
+        }
+        if self.contender.resemblance >= TRAP {
+            return Some(Doubt::Trap);
+        }
+        (!(coefficient.abs() > SURE * std)).then_some(Doubt::Uncertain)
+    }
+
+    /// What its gain leaves to doubt.
+    fn doubted(&self) -> Option<Doubt> {
+        let ratios = self.contender.held.ratios(&self.before);
+        if ratios.iter().any(|ratio| *ratio > WORSE) || self.contender.held.errors.iter().any(|error| *error >= 1.0) {
+            return Some(Doubt::Worse);
+        }
+        let mean = self.contender.score / ratios.len().max(1) as f64;
+        let large = !ratios.is_empty() && ratios.iter().all(|ratio| *ratio <= LARGE);
+        let significant = self.p_value.is_some_and(|p| p < LEVEL) && mean.exp() <= WORTH;
+        (!(large || significant)).then_some(Doubt::Chance)
+    }
+
+    fn describe(&self, case: &Case, standing: &Standing) -> Candidate {
+        let [coefficient, std] = self.coefficient(case, standing);
+        let term = self.contender.term;
+        let inner = term.effect().map_or_else(Vec::new, |effect| {
+            let names = effect.inner().iter().map(|parameter| parameter.name.to_string());
+            names.zip(effect.inner_values()).collect()
+        });
+        Candidate {
+            effect: effect_name(term, case),
+            term,
+            inner,
+            coefficient,
+            std,
+            errors: errors(&case.record, &self.before, &self.contender.held, &standing.floor),
+            p_value: self.p_value,
+            score: self.contender.score,
+            resemblance: self.contender.resemblance,
+            doubt: self.doubt,
+        }
+    }
+}
+
+/// The effect id of a term; the user's name of an expression.
+fn effect_name(term: Term, case: &Case) -> String {
+    match term {
+        Term::Expression(index) => {
+            case.record.expressions.get(usize::from(index)).map_or_else(|| term.name(), |own| own.name().into())
+        }
+        _ => Catalogue::of(term).map_or_else(|| term.name(), |entry| entry.id.into()),
+    }
+}
+
+/// The smallest effect that the best one contains and is not significantly better than.
+fn smallest(case: &Case, standing: &Standing, entries: &[Entry], best: usize) -> usize {
+    let name = |index: usize| effect_name(entries[index].contender.term, case);
+    let larger = name(best);
+    let may_stand = |index: usize| {
+        let smaller = &entries[index];
+        let borne = matches!(smaller.doubt, None | Some(Doubt::Chance)) && smaller.contender.score < 0.0;
+        if !(borne && Catalogue::is_contained(&name(index), &larger)) {
+            return false;
+        }
+        let [smaller, larger] = [index, best].map(|index| &entries[index].contender.held);
+        let gains = standing.blocks.gains(&case.record, smaller, larger);
+        let chance = standing.blocks.p_values(&[gains]);
+        let difference = larger.score(smaller);
+        difference > -TIE * COUNT as f64
+            || chance.is_none_or(|p| p[0] >= LEVEL) && difference > COUNT as f64 * LARGE.ln()
+    };
+    (0..entries.len()).find(|index| may_stand(*index)).unwrap_or(best)
+}
+
+/// Those that are as good as the winner, it first.
+fn ties(case: &Case, entries: &[Entry], winner: usize) -> Vec<Vec<String>> {
+    let best = entries[winner].contender.score;
+    let near = |entry: &&Entry| entry.doubt.is_none() && (entry.contender.score - best).abs() <= TIE * COUNT as f64;
+    let others = entries.iter().enumerate().filter(|(index, entry)| *index != winner && near(entry));
+    let first = std::iter::once(effect_name(entries[winner].contender.term, case));
+    let group: Vec<String> = first.chain(others.map(|(_, entry)| effect_name(entry.contender.term, case))).collect();
+    if group.len() > 1 { vec![group.into_iter().take(TIED).collect()] } else { Vec::new() }
+}
+
+fn conclude(
+    case: &Case,
+    standing: Standing,
+    improved: Option<Standing>,
+    entries: &[Entry],
+    (ties, tried): (Vec<Vec<String>>, usize),
+) -> Diagnosis {
+    let adequate = are_adequate(&case.errors_of(&standing));
+    let finding = match &improved {
+        Some(_) => Finding::Missing,
+        None if adequate => Finding::Adequate,
+        None => Finding::Unexplained,
+    };
+    let candidates: Vec<Candidate> = entries.iter().map(|entry| entry.describe(case, &standing)).collect();
+    let before = entries.first().filter(|_| improved.is_some()).map_or(&standing.held, |entry| &entry.before);
+    let last = improved.as_ref().unwrap_or(&standing);
+    let errors = errors(&case.record, before, &last.held, &last.floor);
+    let best =
+        candidates.iter().find(|candidate| !matches!(candidate.doubt, Some(Doubt::Sign | Doubt::Trap | Doubt::Worse)));
+    let principal = if improved.is_some() { Some(errors[PRINCIPAL]) } else { best.map(Candidate::error) };
+    Diagnosis {
+        finding,
+        effect: candidates.first().filter(|_| improved.is_some()).map(|candidate| candidate.effect.clone()),
+        indistinguishable: ties,
+        explained: principal.map_or(0.0, share_explained),
+        left: remainder::sentence(case, last),
+        errors,
+        period: case.record.period,
+        duration: case.record.duration,
+        base: case.law(&standing),
+        improved: improved.as_ref().map(|improved| case.law(improved)),
+        tried,
+        is_testable: standing.blocks.count.is_some(),
+        candidates,
+    }
+}
+
+/// 1 − (after² − floor²) ÷ (before² − floor²), between 0 and 1.
+fn share_explained(error: WindowError) -> f64 {
+    let beyond = |value: f64| (value * value - error.floor * error.floor).max(0.0);
+    let before = beyond(error.before);
+    if before > 0.0 { (1.0 - beyond(error.after) / before).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+impl Diagnosis {
+    /// Whether what is left, with the effect that is missing, is what the sensors alone would leave.
+    pub fn is_down_to_sensors(&self) -> bool {
+        are_adequate(&self.errors)
+    }
+}

@@ -1,0 +1,109 @@
+//! A model put to recordings: its form with its best coefficients, its open inner parameters and "maybe" terms decided.
+
+use super::case::{Case, Standing};
+use super::diagnosis::{Diagnosis, TIE, diagnose};
+use super::errors::WindowError;
+use super::improve::{Addition, Improvement, add, improve};
+use super::law::Law;
+use super::sharpen::sharpened;
+use super::timing::Clock;
+use crate::diagnose::candidates::contender;
+use crate::diagnose::judge::{COUNT, delay_of};
+use crate::identify::Recording;
+use crate::law::{Effect, Given, Hold, Inner, Model, ModelTerm, Term};
+
+/// A model on recordings of one system.
+#[derive(Clone, Debug)]
+pub struct Posed {
+    case: Case,
+    terms: Vec<Term>,
+}
+
+impl Posed {
+    /// Puts a model to recordings; `hold` where it is known what the excitation did between samples. None where nothing moves, or the
+    /// record is too short for the model's form.
+    pub fn new(model: &Model, recordings: &[&Recording], hold: Option<Hold>) -> Option<Posed> {
+        let all: Vec<Term> = model.terms.iter().map(|entry| entry.term).collect();
+        let inertia = model.terms.iter().find(|entry| entry.term == Term::Inertia);
+        let inertia = inertia.map_or(1.0, |entry| if let Given::Known(value) = entry.given { value } else { 1.0 });
+        let case = Case::new(recordings, &all, &model.expressions, hold.or(model.hold), inertia)?;
+        let is_open = |entry: &&ModelTerm| entry.open.contains(&true);
+        let (open, settled): (Vec<&ModelTerm>, Vec<&ModelTerm>) = model.terms.iter().partition(is_open);
+        let settled = settled.into_iter().map(|entry| entry.term).collect();
+        let terms = open.into_iter().try_fold(settled, |terms, entry| with_open(&case, terms, entry.term))?;
+        let maybe: Vec<Term> =
+            model.terms.iter().filter(|entry| entry.given == Given::Maybe).map(|entry| entry.term).collect();
+        let terms = without_idle(&case, terms, &maybe)?;
+        Some(Posed { case, terms })
+    }
+
+    /// Which effect the model lacks.
+    pub fn diagnose(&self) -> Option<Diagnosis> {
+        diagnose(&self.case, &self.terms)
+    }
+
+    /// Effects added until nothing is missing that the catalogue has.
+    pub fn improve(&self) -> Option<Improvement> {
+        improve(&self.case, &self.terms)
+    }
+
+    /// An effect added, whatever its evidence. None where the record is too short for the law with it.
+    pub fn add(&self, effect: Term) -> Option<Addition> {
+        add(&self.case, &self.terms, effect)
+    }
+
+    /// The law of the model's form, and its held-out errors by window length (before and after alike).
+    pub fn law(&self) -> Option<(Law, [WindowError; COUNT])> {
+        let standing = self.case.stand(&self.terms)?;
+        Some((self.case.law(&standing), self.case.errors_of(&standing)))
+    }
+
+    /// Held-out errors of a law of these terms on the recordings, by window length. None where they are too short for it.
+    pub fn errors(&self, terms: &[Term]) -> Option<[WindowError; COUNT]> {
+        Some(self.case.errors_of(&self.case.stand(terms)?))
+    }
+
+    /// Errors of a law whose numbers are held, and whether they are what the sensors alone would leave.
+    pub fn errors_of(&self, law: &Law) -> Option<([WindowError; COUNT], bool)> {
+        self.case.errors_as_given(law)
+    }
+
+    /// A law with the numbers of largest likelihood, where they leave no more than the judge's own.
+    pub fn sharpened(&self, law: &Law, recordings: &[&Recording]) -> Law {
+        sharpened(&self.case, law, recordings)
+    }
+
+    /// How the sensors keep time, as this law has it.
+    pub fn clock(&self, law: &Law) -> Clock {
+        Clock::of(&self.case, law)
+    }
+
+    /// The law's terms: the model's, its open inner parameters fitted, without "maybe" terms that explain nothing.
+    pub fn terms(&self) -> &[Term] {
+        &self.terms
+    }
+}
+
+/// The law with one more term whose inner parameters are fitted from a free start.
+fn with_open(case: &Case, terms: Vec<Term>, term: Term) -> Option<Vec<Term>> {
+    let fitted = if delay_of(term).is_some() {
+        let delay = case.delayed(&terms).unwrap_or(0.0);
+        Term::Effect(Effect::ExcitationDelay { delay: Inner::new(delay) })
+    } else {
+        let before = case.stand(&terms)?;
+        contender(&case.record, &case.folds, &before.equation, &before.held, term).map_or(term, |found| found.term)
+    };
+    Some(terms.into_iter().chain([fitted]).collect())
+}
+
+/// The law without "maybe" terms that lower no error.
+fn without_idle(case: &Case, mut terms: Vec<Term>, maybe: &[Term]) -> Option<Vec<Term>> {
+    loop {
+        let standing: Standing = case.stand(&terms)?;
+        let without = |index: usize| case.folds.judge(&standing.equation.without(index)).score(&standing.held);
+        let all = (0..terms.len()).filter(|index| maybe.contains(&terms[*index]));
+        let idlest = all.map(|index| (without(index), index)).min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, index)) = idlest.filter(|(score, _)| *score < TIE * COUNT as f64) else { return Some(terms) };
+        terms.remove(index);
+    }
+}
