@@ -36,7 +36,7 @@ pub fn rises(errors: &[Option<f64>]) -> usize {
 
 /// Whether a coefficient is known no better than nothing.
 pub fn is_unknown(coefficient: f64, std: f64) -> bool {
-    !(std <= coefficient.abs())
+    std.is_nan() || std > coefficient.abs()
 }
 
 /// Whether the reference's coefficients at its two window lengths agree to a tenth; none where it gives one only.

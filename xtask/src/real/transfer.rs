@@ -43,13 +43,15 @@ impl Transfer<'_> {
 }
 
 /// The EMPS test run with the train run's numbers, friction added on the train run: force residual, open loop of 1 s. `model` is
-/// the one without friction. The second value says whether the program crashed.
+/// the one without friction; its hold is given, the one under which the floors were measured. The second value says whether the
+/// program crashed.
 ///
 /// # Errors
 /// [`Error::Start`], [`Error::File`].
 pub fn emps(binary: &Binary, model: &str, train: &str, test: &str) -> Result<(Vec<Figure>, bool), Error> {
     let options = ["--window", EMPS_WINDOW, "--horizon", EMPS_HORIZON];
-    let transfer = Transfer { model, effect: "coulomb_friction", train, test, options: &options };
+    let model = format!("hold = \"linear\"\n{model}");
+    let transfer = Transfer { model: &model, effect: "coulomb_friction", train, test, options: &options };
     let (error, crashed) = transfer.error(binary)?;
     let open_loop = error["window_rmse"].as_f64().map(|metres| 1e3 * metres);
     let figures = vec![
