@@ -37,7 +37,8 @@ impl Binary {
     /// That program, or the release one of the sources.
     ///
     /// # Errors
-    /// [`Error::Failed`] when it cannot be built, [`Error::File`] when there is no such program or no folder for its files.
+    /// [`Error::Failed`] when it cannot be built, [`Error::File`] when there is no such program or no folder for its
+    /// files.
     pub fn new(given: Option<&Path>) -> Result<Binary, Error> {
         let program = given.map_or_else(built, |path| Ok(path.to_path_buf()))?;
         let program = program.canonicalize().map_err(file("find", &program))?;

@@ -5,8 +5,8 @@ use std::time::Instant;
 /// Clock ticks per second in `/proc`: part of Linux's interface to programs.
 const TICKS: f64 = 100.0;
 
-/// Runs something that starts a child and waits for it; the child's CPU time, s, or where the system does not tell it the
-/// time that passed.
+/// Runs something that starts a child and waits for it; the child's CPU time, s, or where the system does not tell it
+/// the time that passed.
 pub fn timed<T>(run: impl FnOnce() -> T) -> (T, f64) {
     let (start, began) = (children(), Instant::now());
     let result = run();

@@ -116,8 +116,8 @@ impl Row {
     }
 }
 
-const HEADINGS: &str = "record | verdict | effect | tie | T₀, s (reference) | error before at 0.1/0.3/1 T₀ (reference) | after \
-    (reference at 0.3 T₀) | ratio | p | explained | timing | first answer | CPU, s";
+const HEADINGS: &str = "record | verdict | effect | tie | T₀, s (reference) | error before at 0.1/0.3/1 T₀ (reference) \
+    | after (reference at 0.3 T₀) | ratio | p | explained | timing | first answer | CPU, s";
 
 /// The answers as a table.
 pub fn text(rows: &[Row]) -> String {

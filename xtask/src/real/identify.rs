@@ -133,8 +133,8 @@ impl Row {
     }
 }
 
-const HEADINGS: &str = "record | law (stages) | term | coefficient | reference at 0.3 T₀, 1 T₀ | differs by, std | std ÷ value | \
-    reference agrees to a tenth | coefficient is | CPU, s";
+const HEADINGS: &str = "record | law (stages) | term | coefficient | reference at 0.3 T₀, 1 T₀ | differs by, std \
+    | std ÷ value | reference agrees to a tenth | coefficient is | CPU, s";
 
 /// The laws as a table.
 pub fn text(rows: &[Row]) -> String {

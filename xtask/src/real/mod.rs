@@ -1,7 +1,7 @@
 //! `cargo xtask real`: what the command line makes of real records, beside an independent regression's answers.
 //!
-//! It measures only: the reference's answers (`reference.toml`) never reach the program measured, which gets the recordings and
-//! the models to begin with.
+//! It measures only: the reference's answers (`reference.toml`) never reach the program measured, which gets the
+//! recordings and the models to begin with.
 
 mod answer;
 mod binary;
@@ -46,7 +46,8 @@ struct Measured {
 /// Measures what the arguments ask for, prints tables and figures.
 ///
 /// # Errors
-/// [`Error::Usage`]; [`Error::Records`] when there are no recordings; [`Error::Floors`] names the floors that are missed.
+/// [`Error::Usage`]; [`Error::Records`] when there are no recordings; [`Error::Floors`] names the floors that are
+/// missed.
 pub fn real(arguments: &[String]) -> Result<(), Error> {
     let records = reference::records()?;
     let names: Vec<&str> = records.iter().map(|record| record.name.as_str()).chain(PARTS).collect();

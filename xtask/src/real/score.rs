@@ -3,8 +3,9 @@
 /// Members that a stated tie may have.
 pub const LARGEST_TIE: usize = 3;
 
-/// Whether a diagnosis is right: one of the `right` effects, first or in a stated tie of at most [`LARGEST_TIE`]; where none
-/// is right, nothing claimed. `tie` is the stated tie in which the effect named stands, empty where it stands alone.
+/// Whether a diagnosis is right: one of the `right` effects, first or in a stated tie of at most [`LARGEST_TIE`];
+/// where none is right, nothing claimed. `tie` is the stated tie in which the effect named stands, empty where it
+/// stands alone.
 pub fn is_right(right: &[String], verdict: &str, effect: Option<&str>, tie: &[String]) -> bool {
     let claims = verdict == "missing" || effect.is_some();
     if right.is_empty() {
