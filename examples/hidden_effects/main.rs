@@ -10,7 +10,7 @@ mod table;
 
 use arguments::Arguments;
 use benchmark::{Outcome, Secret, Setting, draw, judge};
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use rayon::prelude::*;
 use table::Table;
 
@@ -41,12 +41,14 @@ fn run(setting: &Setting, arguments: &Arguments) -> Option<Outcome> {
 
 /// What repeats one problem.
 fn repeat(setting: &Setting) -> String {
-    let Setting { secret, strength, noise, samples, seed, draw } = setting;
+    let Setting { secret, strength, noise, sensors, samples, seed, draw } = setting;
     let effect = match secret {
         Secret::Missing(ids) => ids.join("+"),
         other => other.name(),
     };
+    let sensors = sensors.to_possible_value().map_or(String::new(), |value| value.get_name().to_string());
     format!(
-        "--effect \"{effect}\" --strength {strength} --noise {noise} --samples {samples} --seed {seed} --only {draw}"
+        "--effect \"{effect}\" --strength {strength} --noise {noise} --sensors {sensors} --samples {samples} \
+         --seed {seed} --only {draw}"
     )
 }

@@ -12,9 +12,11 @@ mod outside;
 mod plant;
 mod problem;
 mod secret;
+mod sensors;
 mod through_fmu;
 
 pub use judge::{Answer, Outcome, judge};
 pub use outside::Outside;
 pub use problem::{Setting, draw};
 pub use secret::{Secret, pair};
+pub use sensors::Sensors;
