@@ -16,7 +16,8 @@ pub struct Arguments {
     /// Only the draw of this number
     #[arg(long)]
     pub only: Option<u64>,
-    /// What measures the motion: ideal sensors, or an encoder, filtered differences, a late F, lost samples and a disturbance
+    /// What measures the motion: ideal sensors, or an encoder, filtered differences, a late F, lost samples and a
+    /// disturbance
     #[arg(long, value_enum, default_value_t)]
     pub sensors: Sensors,
     /// Std of the noise ÷ std of each channel [default: 0.001,0.005,0.01,0.02,0.05,0.1 for ideal sensors, else 0]

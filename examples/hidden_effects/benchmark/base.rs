@@ -48,7 +48,8 @@ impl Base {
         self.coefficients.push(coefficient);
     }
 
-    /// The law with time stretched by a factor: a natural period that much longer, stiffness and damping ratio as they were.
+    /// The law with time stretched by a factor: a natural period that much longer, stiffness and damping ratio as they
+    /// were.
     pub fn stretch(&mut self, factor: f64) {
         for (term, coefficient) in self.terms.iter().zip(&mut self.coefficients) {
             *coefficient *= match *term {

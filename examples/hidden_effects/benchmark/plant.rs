@@ -45,7 +45,8 @@ pub struct Rig {
     pub seed: u64,
     /// What the excitation does between samples where the plant runs straight.
     pub direct_hold: Hold,
-    /// A force at samples that nothing measures, ÷ [`Rig::amplitude`]; empty where there is none. Only a plant that runs straight has it.
+    /// A force at samples that nothing measures, ÷ [`Rig::amplitude`]; empty where there is none. Only a plant that
+    /// runs straight has it.
     pub disturbance: Vec<f64>,
 }
 

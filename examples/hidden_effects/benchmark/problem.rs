@@ -80,9 +80,16 @@ pub fn draw(setting: &Setting) -> Option<Problem> {
 fn attempted(setting: &Setting, generator: &mut Generator) -> Option<Problem> {
     let mut base = base::draw(generator, &setting.secret, setting.sensors);
     let lead = if generator.chance(0.5) { setting.samples / 10 } else { 0 };
-    let count = setting.samples + lead;
+    let mut rig = rig(setting, generator, &base, setting.samples + lead);
+    let alone = scaled(setting, &mut rig, &mut base)?;
+    let (track, law) = with_secret(setting, generator, &rig, &base, &alone)?;
+    measured(setting, generator, &rig, track, lead, &law)
+}
+
+/// What drives and samples a plant of that law.
+fn rig(setting: &Setting, generator: &mut Generator, base: &Base, count: usize) -> Rig {
     let is_ideal = setting.sensors == Sensors::Ideal;
-    let mut rig = Rig {
+    Rig {
         drive: generator.choose(&Drive::ALL),
         scenario: generator.chance(0.4) && is_ideal && !matches!(setting.secret, Secret::Outside(_)),
         omega: base.omega,
@@ -93,13 +100,11 @@ fn attempted(setting: &Setting, generator: &mut Generator) -> Option<Problem> {
         seed: generator.seed(),
         direct_hold: setting.sensors.hold(generator),
         disturbance: setting.sensors.disturbance(generator, base.omega, count),
-    };
-    let alone = scaled(setting, &mut rig, &mut base)?;
-    let (track, law) = with_secret(setting, generator, &rig, &base, &alone)?;
-    measured(setting, generator, &rig, track, lead, &law)
+    }
 }
 
-/// Scales the excitation to the size of the motion that the base law is to have, behind a usual rig's sensors also the law to its T₀.
+/// Scales the excitation to the size of the motion that the base law is to have, behind a usual rig's sensors also the
+/// law to its T₀.
 fn scaled(setting: &Setting, rig: &mut Rig, base: &mut Base) -> Option<Track> {
     let period = TAU / base.omega;
     let mut track = rig.run(&base.law(), PARTS[0], None)?;
@@ -239,4 +244,26 @@ fn words(rig: &Rig, law: &Law, velocity: bool, period: f64) -> String {
     };
     let Rig { drive, omega, .. } = rig;
     format!("{drive:?} {path}, {}, {channels}, omega {omega:.2}, T0 {period:.3} s: {}", rig.hold(), law.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_usual_rigs_motion_has_its_period_and_size() {
+        for (sensors, period) in [(Sensors::Slow, 2.0), (Sensors::Fast, 0.25)] {
+            for draw in 0..6 {
+                let secret = Secret::Complete(None);
+                let setting = Setting { secret, strength: 0.1, noise: 0.0, sensors, samples: 5000, seed: 1, draw };
+                let mut generator = Generator::new(setting.own_seed(0));
+                let mut base = base::draw(&mut generator, &setting.secret, sensors);
+                let mut rig = rig(&setting, &mut generator, &base, setting.samples);
+                let Some(track) = scaled(&setting, &mut rig, &mut base) else { panic!("no motion: {setting:?}") };
+                assert_eq!(rig.sample_time, 5e-3);
+                let [period, size] = [track.period() / period, std(&track.q) / base.size];
+                assert!((0.8..1.25).contains(&period) && (0.7..1.4).contains(&size), "{setting:?}: {period}, {size}");
+            }
+        }
+    }
 }

@@ -88,7 +88,8 @@ impl Sensors {
         noise.into_iter().map(|value| value * scale).collect()
     }
 
-    /// Measures a motion, whose samples before `lead` are not recorded, with Gaussian noise of `noise` times each channel's std.
+    /// Measures a motion, whose samples before `lead` are not recorded, with Gaussian noise of `noise` times each
+    /// channel's std.
     pub fn read(self, generator: &mut Generator, noise: f64, track: Track, lead: usize) -> Readings {
         match self {
             Sensors::Ideal => Readings::ideal(generator, noise, track.from(lead)),
@@ -181,10 +182,10 @@ mod tests {
 
     #[test]
     fn an_encoder_has_its_steps_in_the_amplitude() {
-        let readings = Sensors::Fast.read(&mut Generator::new(2), 0.0, track(0.25 * 1.037, 20_000), 0);
+        let readings = Sensors::Fast.read(&mut Generator::new(2), 0.0, track(0.25 * SQRT_2, 20_000), 0);
         let step = 3.0 / STEPS;
-        let whole = |q: &f64| (q / step - (q / step).round()).abs() < 0.01 * q.abs() / step + 1e-6;
-        assert!(readings.q.iter().all(whole));
+        let beside = |q: &f64| (q / step - (q / step).round()).abs();
+        assert!(readings.q.iter().all(|q| beside(q) < 0.01), "all readings are whole steps");
         let mut values = readings.q.clone();
         values.sort_by(f64::total_cmp);
         values.dedup_by(|a, b| (*a - *b).abs() < 0.1 * step);
@@ -206,8 +207,9 @@ mod tests {
         let delay = angle(&qd) / omega;
         let expected = 0.5 * SAMPLE_TIME + SQRT_2 * SAMPLE_TIME / (PI * CUTOFF);
         assert!((delay / expected - 1.0).abs() < 0.05, "{delay} s, expected {expected} s");
-        let delay = angle(&readings.excitation) / omega;
-        assert!((delay / SAMPLE_TIME - 1.0).abs() < 0.01, "F is {delay} s late");
+        let late = |(t, force): (&f64, &f64)| (force - (omega * (t - SAMPLE_TIME)).cos()).abs();
+        let worst = readings.t.iter().zip(&readings.excitation).map(late).fold(0.0, f64::max);
+        assert!(worst < 1e-9, "F is not 5 ms late: {worst}");
         let share = readings.relieved.iter().zip(&readings.excitation).map(|(less, force)| force - less);
         assert!(share.fold(0.0, |worst: f64, share| worst.max((share - 0.25).abs())) < 1e-12);
     }
