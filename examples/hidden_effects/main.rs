@@ -2,8 +2,9 @@
 //!
 //! Every effect of the catalogue hidden in turn, pairs of them, complete models, and effects that the catalogue does
 //! not have, at several strengths and noises; excitation, channels, scales and all numbers are drawn from the seed. A
-//! problem that the record cannot show, even to one who knows the truth, is counted apart. With `--misses` every wrong
-//! answer is printed with what repeats it.
+//! problem that the record cannot show, even to one who knows the truth, is counted apart. With `--sensors slow`
+//! or `fast` a usual rig measures in place of ideal sensors. With `--misses` every wrong answer is printed with what
+//! repeats it.
 
 mod arguments;
 mod benchmark;
