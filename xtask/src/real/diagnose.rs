@@ -27,6 +27,8 @@ pub struct Row {
     left: Option<String>,
     timing: Option<String>,
     right: bool,
+    /// Something can be claimed of the record.
+    claimable: bool,
     /// The effect is named with a std above its coefficient.
     unknown: bool,
     crashed: bool,
@@ -54,6 +56,7 @@ impl Row {
         Row {
             record: record.name.clone(),
             right: is_right(&record.right, &read.verdict, read.effect.as_deref(), &read.tie),
+            claimable: !record.right.is_empty(),
             ratio: read.after[MIDDLE].zip(after_reference).map(|(ours, reference)| ours / reference),
             unknown: read.coefficient.is_some_and(|[value, std]| super::score::is_unknown(value, std)),
             verdict: read.verdict,
@@ -135,11 +138,12 @@ pub fn figures(rows: &[Row], records: usize) -> Vec<Figure> {
     let all = rows.len() as f64;
     let floor = if rows.len() == records { all - ALLOWED as f64 } else { all };
     let ratio = |which: &str| format!("held-out error ÷ the reference's, {which} of {}", ratios.len());
-    vec![
-        Figure::at_least(&format!("first answer right, of {all}"), Some(right), floor, all),
-        Figure::at_most(&ratio("median"), median(&ratios), 1.15, 1.0),
-        Figure::at_most(&ratio("worst"), worst(&ratios), 1.5, 1.2),
-    ]
+    let mut figures = vec![Figure::at_least(&format!("first answer right, of {all}"), Some(right), floor, all)];
+    if rows.iter().any(|row| row.claimable) {
+        figures.push(Figure::at_most(&ratio("median"), median(&ratios), 1.15, 1.0));
+        figures.push(Figure::at_most(&ratio("worst"), worst(&ratios), 1.5, 1.2));
+    }
+    figures
 }
 
 #[cfg(test)]
