@@ -3,7 +3,7 @@
 #[path = "../examples/hidden_effects/benchmark/mod.rs"]
 mod benchmark;
 
-use benchmark::{Answer, Outcome, Outside, Secret, Setting, draw, judge, pair};
+use benchmark::{Answer, Outcome, Outside, Secret, Sensors, Setting, draw, judge, pair};
 use rayon::prelude::*;
 use std::time::{SystemTime, UNIX_EPOCH};
 use switchid::law::Catalogue;
@@ -12,7 +12,7 @@ const SEED: u64 = 20_417;
 const SAMPLES: usize = 2000;
 
 fn setting(secret: Secret, strength: f64, noise: f64, draw: u64) -> Setting {
-    Setting { secret, strength, noise, samples: SAMPLES, seed: SEED, draw }
+    Setting { secret, strength, noise, sensors: Sensors::Ideal, samples: SAMPLES, seed: SEED, draw }
 }
 
 /// The outcomes of problems that their records can show.
@@ -79,7 +79,7 @@ fn two_hidden_effects_are_found() {
 fn what_one_descent_does_not_find_is_found() {
     let hard = |ids: &[&str], strength: f64, noise: f64, draw: u64| {
         let secret = Secret::Missing(ids.iter().map(|id| id.to_string()).collect());
-        Setting { secret, strength, noise, samples: 5000, seed: 4242, draw }
+        Setting { secret, strength, noise, sensors: Sensors::Ideal, samples: 5000, seed: 4242, draw }
     };
     let settings = vec![
         hard(&["stribeck_friction", "excitation_delay"], 0.05, 0.001, 0),

@@ -1,6 +1,6 @@
 //! The command line of the benchmark, and the settings that it asks for.
 
-use super::benchmark::{Outside, Secret, Setting, pair};
+use super::benchmark::{Outside, Secret, Sensors, Setting, pair};
 use clap::Parser;
 use switchid::law::Catalogue;
 
@@ -16,8 +16,12 @@ pub struct Arguments {
     /// Only the draw of this number
     #[arg(long)]
     pub only: Option<u64>,
-    /// Std of the noise ÷ std of each channel
-    #[arg(long, value_delimiter = ',', default_values_t = [0.001, 0.005, 0.01, 0.02, 0.05, 0.1])]
+    /// What measures the motion: ideal sensors, or an encoder, filtered differences, a late F, lost samples and a
+    /// disturbance
+    #[arg(long, value_enum, default_value_t)]
+    pub sensors: Sensors,
+    /// Std of the noise ÷ std of each channel [default: 0.001,0.005,0.01,0.02,0.05,0.1 for ideal sensors, else 0]
+    #[arg(long, value_delimiter = ',')]
     pub noise: Vec<f64>,
     /// RMS of the hidden force ÷ RMS of the excitation
     #[arg(long, value_delimiter = ',', default_values_t = [0.05, 0.1, 0.2])]
@@ -28,7 +32,7 @@ pub struct Arguments {
     /// Samples of a record
     #[arg(long, default_value_t = 5000)]
     pub samples: usize,
-    /// One draw, one strength, three noises, short records
+    /// One draw, one strength, three noises where none is given, short records
     #[arg(long)]
     pub quick: bool,
     /// Problems at a time
@@ -69,6 +73,7 @@ impl Arguments {
                         secret,
                         strength,
                         noise,
+                        sensors: self.sensors,
                         samples: if self.quick { 2500 } else { self.samples },
                         seed: self.seed,
                         draw,
@@ -84,7 +89,12 @@ impl Arguments {
     }
 
     fn noises(&self) -> Vec<f64> {
-        if self.quick { vec![0.001, 0.01, 0.05] } else { self.noise.clone() }
+        match (self.sensors, self.quick) {
+            _ if !self.noise.is_empty() => self.noise.clone(),
+            (Sensors::Slow | Sensors::Fast, _) => vec![0.0],
+            (Sensors::Ideal, true) => vec![0.001, 0.01, 0.05],
+            (Sensors::Ideal, false) => vec![0.001, 0.005, 0.01, 0.02, 0.05, 0.1],
+        }
     }
 
     fn numbers(&self) -> Vec<u64> {

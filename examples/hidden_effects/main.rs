@@ -1,8 +1,10 @@
 //! The benchmark of hidden effects: `cargo run --release --example hidden_effects -- [--help]`.
 //!
-//! Every effect of the catalogue hidden in turn, pairs of them, complete models, and effects that the catalogue does not have, at several
-//! strengths and noises; excitation, channels, scales and all numbers are drawn from the seed. A problem that the record cannot show, even
-//! to one who knows the truth, is counted apart. With `--misses` every wrong answer is printed with what repeats it.
+//! Every effect of the catalogue hidden in turn, pairs of them, complete models, and effects that the catalogue does
+//! not have, at several strengths and noises; excitation, channels, scales and all numbers are drawn from the seed. A
+//! problem that the record cannot show, even to one who knows the truth, is counted apart. With `--sensors slow`
+//! or `fast` a usual rig measures in place of ideal sensors. With `--misses` every wrong answer is printed with what
+//! repeats it.
 
 mod arguments;
 mod benchmark;
@@ -10,7 +12,7 @@ mod table;
 
 use arguments::Arguments;
 use benchmark::{Outcome, Secret, Setting, draw, judge};
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use rayon::prelude::*;
 use table::Table;
 
@@ -41,12 +43,14 @@ fn run(setting: &Setting, arguments: &Arguments) -> Option<Outcome> {
 
 /// What repeats one problem.
 fn repeat(setting: &Setting) -> String {
-    let Setting { secret, strength, noise, samples, seed, draw } = setting;
+    let Setting { secret, strength, noise, sensors, samples, seed, draw } = setting;
     let effect = match secret {
         Secret::Missing(ids) => ids.join("+"),
         other => other.name(),
     };
+    let sensors = sensors.to_possible_value().map_or(String::new(), |value| value.get_name().to_string());
     format!(
-        "--effect \"{effect}\" --strength {strength} --noise {noise} --samples {samples} --seed {seed} --only {draw}"
+        "--effect \"{effect}\" --strength {strength} --noise {noise} --sensors {sensors} --samples {samples} \
+         --seed {seed} --only {draw}"
     )
 }

@@ -93,6 +93,24 @@ pub enum Error {
         /// What is missing.
         text: String,
     },
+    /// Real records are measured and not there.
+    #[error("{text}: set SWITCHID_DATA to the directory that holds emps/, silverbox/ and real/")]
+    Records {
+        /// What is missing or wrong.
+        text: String,
+    },
+    /// The table of reference answers cannot be read.
+    #[error("xtask/src/real/reference.toml: {0}")]
+    Reference(#[from] toml::de::Error),
+    /// What was measured cannot be written as JSON.
+    #[error("no JSON of what was measured: {0}")]
+    Json(#[from] serde_json::Error),
+    /// Figures do not reach their floors.
+    #[error("{} floors missed: {}", missed.len(), missed.join("; "))]
+    Floors {
+        /// The figures' names.
+        missed: Vec<String>,
+    },
     /// Some steps failed.
     #[error("{} of {total} steps failed: {}", failed.len(), failed.join(", "))]
     Steps {

@@ -1,4 +1,4 @@
-//! Chores of the project: `cargo xtask crosscheck | test | fmu | bench | study`.
+//! Chores of the project: `cargo xtask crosscheck | test | fmu | bench | study | real`.
 
 mod command;
 mod crosscheck;
@@ -7,6 +7,7 @@ mod fmu;
 mod libclang;
 mod python;
 mod readme;
+mod real;
 mod steps;
 mod test;
 
@@ -26,7 +27,11 @@ usage: cargo xtask CHORE
   bench [ARGUMENT..] cost per sample by phase, terms and window; arguments go to the
                      benchmark (--help lists them)
   study [--help]     the published method, ours and what is possible: measures what is missing in
-                     target/study, writes docs/study.md and its pictures";
+                     target/study, writes docs/study.md and its pictures
+  real [--only NAME].. [--json OUT] [--switchid PATH]
+                     what the command line makes of the real records in $SWITCHID_DATA, beside an
+                     independent regression's answers; status 1 where a figure misses its floor.
+                     NAME is a record, transfer or silverbox; PATH is a built command line";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -47,6 +52,7 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         ("fmu", []) => fmu::renew(),
         ("bench", rest) => cargo(&["bench", "--package", "switchid", "--bench", "step", "--"], rest),
         ("study", rest) => cargo(&["run", "--quiet", "--release", "--example", "study", "--"], rest),
+        ("real", rest) => real::real(rest),
         ("--help" | "-h" | "help", _) => {
             println!("{USAGE}");
             Ok(())

@@ -1,7 +1,9 @@
 //! The law that the model knows.
 
 use super::generator::Generator;
+use super::plant::Law;
 use super::secret::Secret;
+use super::sensors::Sensors;
 use switchid::law::Term;
 
 /// Terms and coefficients of a law, and its scales.
@@ -20,9 +22,9 @@ pub struct Base {
 }
 
 /// A linear oscillator, or one with a cubic spring beside the linear one, in units that are nobody's.
-pub fn draw(generator: &mut Generator, secret: &Secret) -> Base {
+pub fn draw(generator: &mut Generator, secret: &Secret, sensors: Sensors) -> Base {
     let mass = generator.decades(1e-3..1e3);
-    let omega = generator.decades(2.0..40.0);
+    let omega = sensors.omega(generator);
     let ratio = generator.decades(0.01..0.1);
     // a pendulum's displacement is an angle
     let angle = secret.has("pendulum_restoring");
@@ -44,6 +46,24 @@ impl Base {
     fn push(&mut self, term: Term, coefficient: f64) {
         self.terms.push(term);
         self.coefficients.push(coefficient);
+    }
+
+    /// The law with time stretched by a factor: a natural period that much longer, stiffness and damping ratio as they
+    /// were.
+    pub fn stretch(&mut self, factor: f64) {
+        for (term, coefficient) in self.terms.iter().zip(&mut self.coefficients) {
+            *coefficient *= match *term {
+                Term::Inertia => factor * factor,
+                term if term == Term::power(0, 1) => factor,
+                _ => 1.0,
+            };
+        }
+        self.omega /= factor;
+    }
+
+    /// All of it known to the model.
+    pub fn law(&self) -> Law {
+        Law { terms: self.terms.clone(), coefficients: self.coefficients.clone(), known: self.terms.len() }
     }
 
     /// The coefficient of a term; 0 where the law does not have it.

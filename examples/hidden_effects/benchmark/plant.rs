@@ -1,10 +1,11 @@
 //! The plant in motion: directly, as a scenario, or as an FMU.
 
-use super::drive::Drive;
+use super::drive::{Drive, rms};
 use super::generator::Generator;
 use super::outside::Agent;
 use super::problem::PARTS;
 use super::through_fmu;
+use std::f64::consts::TAU;
 use switchid::law::{Dynamics, Hold, Motion, Samples, State, Term, Trajectory, term_series};
 use switchid::simulate::{Hidden, Scenario, Stage, record};
 
@@ -42,12 +43,17 @@ pub struct Rig {
     /// RMS of the excitation, N.
     pub amplitude: f64,
     pub seed: u64,
+    /// What the excitation does between samples where the plant runs straight.
+    pub direct_hold: Hold,
+    /// A force at samples that nothing measures, ÷ [`Rig::amplitude`]; empty where there is none. Only a plant that
+    /// runs straight has it.
+    pub disturbance: Vec<f64>,
 }
 
 impl Rig {
     /// What the excitation does between samples.
     pub fn hold(&self) -> Hold {
-        if self.scenario { Hold::Zero } else { Hold::Linear }
+        if self.scenario { Hold::Zero } else { self.direct_hold }
     }
 
     /// The seed of a scenario, which FMI takes as a positive integer of 32 bits.
@@ -93,22 +99,28 @@ impl Rig {
         let values = self.drive.values(&mut generator, self.omega, self.sample_time, self.count);
         let excitation: Vec<f64> = values.iter().map(|value| value * self.amplitude).collect();
         let t: Vec<f64> = (0..self.count).map(|index| index as f64 * self.sample_time).collect();
-        let samples = Samples { t: &t, excitation: &excitation, hold: Hold::Linear };
+        let samples = Samples { t: &t, excitation: &excitation, hold: self.direct_hold };
+        let disturbance: Vec<f64> = self.disturbance.iter().map(|value| value * self.amplitude).collect();
+        let disturbance = Samples { t: &t[..disturbance.len()], excitation: &disturbance, hold: Hold::Linear };
         let dynamics = Dynamics::new(Motion { terms: &law.terms, coefficients: &law.coefficients }, &[]).ok()?;
         let mut phase = dynamics.rest(State::default());
         let width = self.sample_time / parts as f64;
         let mut track = Track::default();
         for (k, now) in t.iter().enumerate() {
+            // what is held stays until the sample's end, also at it
+            let is_held = |t: f64| self.direct_hold == Hold::Zero && t > *now;
+            let measured = |t: f64| if is_held(t) { excitation[k] } else { samples.at(t) };
             for part in 0..parts {
                 let from = now + width * part as f64;
                 let (force, strength) = match &mut agent {
-                    Some((agent, strength)) => (agent.force(from, width, phase.state, samples.at(from)), *strength),
+                    Some((agent, strength)) => (agent.force(from, width, phase.state, measured(from)), *strength),
                     None => (0.0, 0.0),
                 };
                 if part == 0 {
                     track.push(*now, phase.state, excitation[k], force);
                 }
-                phase = dynamics.step(&phase, from, width, &|t: f64| samples.at(t) - strength * force);
+                phase =
+                    dynamics.step(&phase, from, width, &|t: f64| measured(t) + disturbance.at(t) - strength * force);
             }
         }
         Some(track)
@@ -130,6 +142,13 @@ impl Track {
             signal.drain(..first);
         }
         self
+    }
+
+    /// T₀ = 2π rms q̇ ÷ rms q̈, s.
+    pub fn period(&self) -> f64 {
+        let pairs = self.qd.windows(2).zip(self.t.windows(2));
+        let acceleration: Vec<f64> = pairs.map(|(qd, t)| (qd[1] - qd[0]) / (t[1] - t[0])).collect();
+        TAU * rms(&self.qd) / rms(&acceleration)
     }
 
     /// The force of a term along the motion, per unit of its coefficient, with the part that multiplies q̈.

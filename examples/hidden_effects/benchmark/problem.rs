@@ -6,6 +6,8 @@ use super::generator::Generator;
 use super::outside::Agent;
 use super::plant::{Law, Rig, Track};
 use super::secret::{self, Secret, with_delay};
+use super::sensors::{Readings, Sensors};
+use std::f64::consts::TAU;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use switchid::identify::Recording;
 use switchid::law::{Catalogue, Hold, State, Term};
@@ -19,7 +21,9 @@ pub struct Setting {
     pub strength: f64,
     /// Std of the sensors' noise ÷ std of each channel.
     pub noise: f64,
-    /// Samples of the record.
+    /// What measures the motion.
+    pub sensors: Sensors,
+    /// Samples of the record, lost ones counted.
     pub samples: usize,
     /// Seed of the whole benchmark.
     pub seed: u64,
@@ -61,6 +65,9 @@ impl Setting {
         let mut hasher = DefaultHasher::new();
         (self.seed, self.draw, attempt, self.secret.name()).hash(&mut hasher);
         (self.strength.to_bits(), self.noise.to_bits(), self.samples).hash(&mut hasher);
+        if self.sensors != Sensors::Ideal {
+            self.sensors.hash(&mut hasher);
+        }
         hasher.finish()
     }
 }
@@ -71,30 +78,45 @@ pub fn draw(setting: &Setting) -> Option<Problem> {
 }
 
 fn attempted(setting: &Setting, generator: &mut Generator) -> Option<Problem> {
-    let base = base::draw(generator, &setting.secret);
+    let mut base = base::draw(generator, &setting.secret, setting.sensors);
     let lead = if generator.chance(0.5) { setting.samples / 10 } else { 0 };
-    let mut rig = Rig {
+    let mut rig = rig(setting, generator, &base, setting.samples + lead);
+    let alone = scaled(setting, &mut rig, &mut base)?;
+    let (track, law) = with_secret(setting, generator, &rig, &base, &alone)?;
+    measured(setting, generator, &rig, track, lead, &law)
+}
+
+/// What drives and samples a plant of that law.
+fn rig(setting: &Setting, generator: &mut Generator, base: &Base, count: usize) -> Rig {
+    // a scenario's own terms must have the inertia, and nothing disturbs it
+    let straight = matches!(setting.secret, Secret::Outside(_)) || setting.secret.has("inertia");
+    let is_ideal = setting.sensors == Sensors::Ideal;
+    Rig {
         drive: generator.choose(&Drive::ALL),
-        scenario: generator.chance(0.4) && !matches!(setting.secret, Secret::Outside(_)),
+        scenario: generator.chance(0.4) && is_ideal && !straight,
         omega: base.omega,
-        sample_time: std::f64::consts::TAU / base.omega / generator.uniform(35.0..80.0),
-        count: setting.samples + lead,
+        sample_time: setting.sensors.sample_time(generator, base.omega),
+        count,
         amplitude: base.stiffness * base.size,
         fmu: setting.draw % 2 == 1,
         seed: generator.seed(),
-    };
-    let alone = scaled(&mut rig, &base)?;
-    let (track, law) = with_secret(setting, generator, &rig, &base, &alone)?;
-    measured(setting, generator, &rig, track.from(lead), &law)
+        direct_hold: setting.sensors.hold(generator),
+        disturbance: setting.sensors.disturbance(generator, base.omega, count),
+    }
 }
 
-/// Scales the excitation to the size of the motion that the base law is to have.
-fn scaled(rig: &mut Rig, base: &Base) -> Option<Track> {
-    let law = Law { terms: base.terms.clone(), coefficients: base.coefficients.clone(), known: base.terms.len() };
-    let mut track = rig.run(&law, PARTS[0], None)?;
+/// Scales the excitation to the size of the motion that the base law is to have, behind a usual rig's sensors also the
+/// law to its T₀.
+fn scaled(setting: &Setting, rig: &mut Rig, base: &mut Base) -> Option<Track> {
+    let period = TAU / base.omega;
+    let mut track = rig.run(&base.law(), PARTS[0], None)?;
     for _ in 0..3 {
         rig.amplitude *= (base.size / std(&track.q)).clamp(0.1, 10.0);
-        track = rig.run(&law, PARTS[0], None)?;
+        if setting.sensors != Sensors::Ideal {
+            base.stretch((period / track.period()).clamp(0.5, 2.0));
+            rig.omega = base.omega;
+        }
+        track = rig.run(&base.law(), PARTS[0], None)?;
     }
     Some(track)
 }
@@ -110,7 +132,7 @@ fn with_secret(
     let scale = State { q: std(&alone.q), qd: std(&alone.qd) };
     if let Secret::Outside(effect) = setting.secret {
         let agent = Agent::draw(generator, effect, scale, base.omega, rig.sample_time, rig.count);
-        let law = Law { terms: base.terms.clone(), coefficients: base.coefficients.clone(), known: base.terms.len() };
+        let law = base.law();
         return Some((with_agent(setting, rig, &law, alone, agent)?, law));
     }
     let mut known = base.clone();
@@ -130,12 +152,9 @@ fn with_secret(
         coefficients: known.coefficients.iter().chain(&first).copied().collect(),
         known: known.terms.len(),
     };
-    // a scenario's own terms must have the inertia
-    let mut rig = rig.clone();
-    rig.scenario &= known.terms.contains(&Term::Inertia);
     for _ in 0..ITERATIONS {
         let track = rig.run(&law, PARTS[0], None)?;
-        strengthen(setting, &rig, &mut law, &track);
+        strengthen(setting, rig, &mut law, &track);
     }
     let track = rig.run(&law, PARTS[1], None)?;
     bounded(&track, alone).then_some((track, law))
@@ -177,31 +196,34 @@ fn bounded(track: &Track, alone: &Track) -> bool {
     (0.1..5.0).contains(&ratio) && largest(&track.q) < 10.0 * largest(&alone.q)
 }
 
-fn measured(setting: &Setting, generator: &mut Generator, rig: &Rig, track: Track, law: &Law) -> Option<Problem> {
-    let mut noisy = |signal: &[f64]| -> Vec<f64> {
-        let deviation = setting.noise * std(signal);
-        signal.iter().map(|value| value + deviation * generator.normal()).collect()
+fn measured(
+    setting: &Setting,
+    generator: &mut Generator,
+    rig: &Rig,
+    track: Track,
+    lead: usize,
+    law: &Law,
+) -> Option<Problem> {
+    let period = track.period();
+    let readings = setting.sensors.read(generator, setting.noise, track, lead);
+    let Readings { t, q, qd, excitation, relieved } = &readings;
+    let record = |excitation: &Vec<f64>| {
+        Recording::new("draw", t.clone(), Some(q.clone()), qd.clone(), Some(excitation.clone()))
     };
-    let (q, qd) = (noisy(&track.q), noisy(&track.qd));
-    let velocity = generator.chance(0.5);
-    let qd = velocity.then_some(qd);
-    let record =
-        |excitation: Vec<f64>| Recording::new("draw", track.t.clone(), Some(q.clone()), qd.clone(), Some(excitation));
-    let relieved = track.excitation.iter().zip(&track.outside).map(|(force, outside)| force - outside).collect();
     let complete = matches!(setting.secret, Secret::Complete(_));
     let split = if complete { law.terms.len() } else { law.known };
     Some(Problem {
-        recording: record(track.excitation.clone()).ok()?,
+        recording: record(excitation).ok()?,
         hold: rig.hold(),
         model: law.terms[..split].to_vec(),
         lacking: law.terms[split..].to_vec(),
         coefficients: law.coefficients.clone(),
         relieved: matches!(setting.secret, Secret::Outside(_)).then(|| record(relieved)).and_then(Result::ok),
-        words: words(rig, law, velocity),
+        words: words(rig, law, qd.is_some(), period),
     })
 }
 
-fn words(rig: &Rig, law: &Law, velocity: bool) -> String {
+fn words(rig: &Rig, law: &Law, velocity: bool, period: f64) -> String {
     let pairs = law.terms.iter().zip(&law.coefficients);
     let law: Vec<String> = pairs
         .map(|(term, coefficient)| {
@@ -219,5 +241,28 @@ fn words(rig: &Rig, law: &Law, velocity: bool) -> String {
         (true, false) => "scenario",
         (false, _) => "direct",
     };
-    format!("{:?} {path}, {channels}, omega {:.2}: {}", rig.drive, rig.omega, law.join(", "))
+    let Rig { drive, omega, .. } = rig;
+    format!("{drive:?} {path}, {}, {channels}, omega {omega:.2}, T0 {period:.3} s: {}", rig.hold(), law.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_usual_rigs_motion_has_its_period_and_size() {
+        for (sensors, period) in [(Sensors::Slow, 2.0), (Sensors::Fast, 0.25)] {
+            for draw in 0..6 {
+                let secret = Secret::Complete(None);
+                let setting = Setting { secret, strength: 0.1, noise: 0.0, sensors, samples: 5000, seed: 1, draw };
+                let mut generator = Generator::new(setting.own_seed(0));
+                let mut base = base::draw(&mut generator, &setting.secret, sensors);
+                let mut rig = rig(&setting, &mut generator, &base, setting.samples);
+                let Some(track) = scaled(&setting, &mut rig, &mut base) else { panic!("no motion: {setting:?}") };
+                assert_eq!(rig.sample_time, 5e-3);
+                let [period, size] = [track.period() / period, std(&track.q) / base.size];
+                assert!((0.8..1.25).contains(&period) && (0.7..1.4).contains(&size), "{setting:?}: {period}, {size}");
+            }
+        }
+    }
 }
