@@ -2,21 +2,21 @@
 
 use super::problem::{Problem, Setting};
 use super::secret::{Secret, id};
+use super::sensors::Sensors;
 use rustix::time::{ClockId, clock_gettime};
-use switchid::diagnose::{Diagnosis, Evidence, Finding, Fit, Form, Improvement, diagnose_model, error, improve, refit};
-use switchid::evidence::Noise;
-use switchid::law::{Given, Model, Term};
+use switchid::diagnose::{Candidate, Diagnosis, Finding, Improvement, Posed, WindowError, same_effect};
+use switchid::law::{Given, Hold, Model, Term};
 
-/// Log-likelihood, nats, that the hidden effect must be worth on the record for it to be seen at all.
-const VISIBLE: f64 = 12.0;
+/// Ratio of held-out errors, with the true law and without, up to which a record shows what is hidden.
+const VISIBLE: f64 = 0.9;
 
-/// Log-likelihood, nats, by which an effect of the catalogue must fall short of the truth for it to be another one.
-const ALIKE: f64 = 6.0;
+/// Most by which the share that an answer explains may differ from the true one.
+const HONEST: f64 = 0.1;
 
 /// What a diagnosis came to, against the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// The hidden effects by name; adequate where nothing is hidden; unexplained where the catalogue does not have it.
+    /// The hidden effects by name; nothing where nothing is hidden; unexplained, or its share told, where the catalogue does not have it.
     Right,
     /// Another effect first, the hidden one in a stated tie with it.
     Tied,
@@ -35,7 +35,7 @@ pub enum Answer {
 pub struct Outcome {
     /// The answer.
     pub answer: Answer,
-    /// Whether this record can show what is hidden: the truth is worth [`VISIBLE`] nats, and nothing in the catalogue comes as near.
+    /// Whether this record can show what is hidden: the true law cuts the held-out error by a tenth.
     pub visible: bool,
     /// Whether the answer was a tie with the truth in it.
     pub tie: bool,
@@ -48,17 +48,22 @@ pub struct Outcome {
 }
 
 /// Diagnoses the record under the model, then looks at the truth.
+///
+/// Where the sensors are a usual rig's, nobody knows the hold, and a complete law leaves what they are: it is right to name nothing.
 pub fn judge(setting: &Setting, problem: &Problem) -> Outcome {
-    let evidence = Evidence::new(&[(&problem.recording, problem.hold)]);
     let model = Model::of("draw", problem.model.iter().map(|term| (*term, Given::Fit)));
+    let hold = (setting.sensors == Sensors::Ideal).then_some(problem.hold);
     let start = clock();
+    let Some(posed) = Posed::new(&model, &[&problem.recording], hold) else {
+        return Outcome::without_law(clock() - start);
+    };
     match &setting.secret {
-        Secret::Missing(ids) if ids.len() > 1 => judge_several(&model, &evidence, problem, start),
+        Secret::Missing(ids) if ids.len() > 1 => judge_several(&posed, problem, start),
         secret => {
-            let found = diagnose_model(&model, &evidence);
+            let found = posed.diagnose();
             let seconds = clock() - start;
             match found {
-                Some(found) => judge_one(secret, &found, &evidence, problem, seconds),
+                Some(found) => judge_one(setting, secret, &found, (&posed, hold), problem, seconds),
                 None => Outcome::without_law(seconds),
             }
         }
@@ -83,67 +88,76 @@ impl Outcome {
     }
 }
 
-fn judge_one(secret: &Secret, found: &Diagnosis, evidence: &Evidence, problem: &Problem, seconds: f64) -> Outcome {
+/// Held-out error at the principal window length; where none is told there, at the longest.
+fn principal(errors: &[WindowError]) -> f64 {
+    let told = |index: usize| Some(errors[index].after).filter(|error| error.is_finite());
+    told(1).or(told(2)).unwrap_or(f64::INFINITY)
+}
+
+fn judge_one(
+    setting: &Setting,
+    secret: &Secret,
+    found: &Diagnosis,
+    (posed, hold): (&Posed, Option<Hold>),
+    problem: &Problem,
+    seconds: f64,
+) -> Outcome {
     let truth = if problem.lacking.is_empty() { "" } else { id(problem.lacking[0]) };
-    let expected = match secret {
-        Secret::Missing(_) => Finding::Missing,
-        Secret::Complete(_) => Finding::Adequate,
-        Secret::Outside(_) => Finding::Unexplained,
-    };
     let named = found.finding == Finding::Missing && found.effect.as_deref() == Some(truth);
     let tie = found.indistinguishable.iter().any(|group| group.iter().any(|id| id == truth));
-    let answer = match found.finding {
-        Finding::Missing if named => Answer::Right,
-        finding if finding == expected && finding != Finding::Missing => Answer::Right,
-        Finding::Missing if tie => Answer::Tied,
-        Finding::Missing => Answer::Wrong,
-        Finding::Adequate => Answer::Adequate,
-        Finding::Unexplained => Answer::Unexplained,
+    let base = posed.errors(&problem.model).map_or(f64::INFINITY, |errors| principal(&errors));
+    let true_error = true_error(posed, hold, problem);
+    let ideal = setting.sensors == Sensors::Ideal;
+    let answer = match (secret, found.finding) {
+        (Secret::Missing(_), Finding::Missing) if named => Answer::Right,
+        (Secret::Missing(_), Finding::Missing) if tie => Answer::Tied,
+        (Secret::Complete(_), Finding::Adequate) => Answer::Right,
+        (Secret::Complete(_), Finding::Unexplained) if !ideal => Answer::Right,
+        (Secret::Outside(_), Finding::Unexplained) => Answer::Right,
+        (Secret::Outside(_), Finding::Missing) if is_honest(found, base, true_error) => Answer::Right,
+        (_, Finding::Missing) => Answer::Wrong,
+        (_, Finding::Adequate) => Answer::Adequate,
+        (_, Finding::Unexplained) => Answer::Unexplained,
     };
-    let oracle = oracle(&found.base, evidence, problem);
-    let gain = oracle.as_ref().map_or(0.0, |oracle| oracle.log_likelihood - found.base.log_likelihood);
-    let ratio = found.improved.as_ref().filter(|_| named).zip(oracle.as_ref());
-    let ratio = ratio.map(|(trial, oracle)| error(&trial.fit, evidence) / error(oracle, evidence));
-    let visible = match secret {
-        Secret::Missing(_) => gain >= VISIBLE,
-        Secret::Complete(_) => true,
-        Secret::Outside(_) => gain >= VISIBLE && gain - best_gain(found) >= ALIKE,
-    };
-    Outcome { answer, visible, tie, ratio, seconds, words: words(found, gain) }
+    let visible = matches!(secret, Secret::Complete(_)) || true_error <= VISIBLE * base;
+    let ratio = named.then(|| principal(&found.errors) / true_error);
+    let words = format!("{} | base {base:.4} true {true_error:.4}", words(found));
+    Outcome { answer, visible, tie, ratio, seconds, words }
 }
 
-fn best_gain(found: &Diagnosis) -> f64 {
-    found.candidates.iter().map(|candidate| candidate.gain).fold(0.0, f64::max)
+/// Whether the share that an answer claims to explain is no more than what it would be of the whole error, within a tenth.
+fn is_honest(found: &Diagnosis, base: f64, true_error: f64) -> bool {
+    let left = principal(&found.errors);
+    let share = (base.powi(2) - left.powi(2)) / (base.powi(2) - true_error.powi(2));
+    (found.explained - share).abs() <= HONEST
 }
 
-/// The true form, fitted from the truth.
-fn oracle(base: &Fit, evidence: &Evidence, problem: &Problem) -> Option<Fit> {
-    match &problem.relieved {
+/// What the true law leaves.
+fn true_error(posed: &Posed, hold: Option<Hold>, problem: &Problem) -> f64 {
+    let errors = match &problem.relieved {
         Some(relieved) => {
-            let relieved = Evidence::new(&[(relieved, problem.hold)]);
-            refit(&base.form, &relieved.pieces, &problem.coefficients, base.noise)
+            let model = Model::of("relieved", problem.model.iter().map(|term| (*term, Given::Fit)));
+            Posed::new(&model, &[relieved], hold).and_then(|posed| posed.errors(&problem.model))
         }
-        None => complete(problem, &|_| true, base.noise, evidence),
-    }
+        None => posed.errors(&complete(problem, &|_| true)),
+    };
+    errors.map_or(f64::INFINITY, |errors| principal(&errors))
 }
 
-/// The model with those of the lacking terms, by position, fitted from the truth.
-fn complete(problem: &Problem, wanted: &dyn Fn(usize) -> bool, noise: Noise, evidence: &Evidence) -> Option<Fit> {
-    let own = problem.model.len();
-    let all = problem.model.iter().chain(&problem.lacking).zip(&problem.coefficients).enumerate();
-    let chosen = all.filter(|(index, _)| *index < own || wanted(index - own));
-    let (terms, coefficients): (Vec<Term>, Vec<f64>) = chosen.map(|(_, (term, value))| (*term, *value)).unzip();
-    let form = terms.iter().fold(Form::new(Vec::new(), Vec::new(), Vec::new()), |form, term| form.with(*term));
-    refit(&form, &evidence.pieces, &coefficients, noise)
+/// The model's terms with those of the lacking ones, by position.
+fn complete(problem: &Problem, wanted: &dyn Fn(usize) -> bool) -> Vec<Term> {
+    let lacking = problem.lacking.iter().enumerate().filter(|(index, _)| wanted(*index));
+    problem.model.iter().copied().chain(lacking.map(|(_, term)| *term)).collect()
 }
 
 /// Several hidden effects are found when the staircase ends with just these.
-fn judge_several(model: &Model, evidence: &Evidence, problem: &Problem, start: f64) -> Outcome {
-    let found = improve(model, evidence);
+fn judge_several(posed: &Posed, problem: &Problem, start: f64) -> Outcome {
+    let found = posed.improve();
     let seconds = clock() - start;
     let Some(found) = found else { return Outcome::without_law(seconds) };
-    let law = &found.steps[found.steps.len() - 1].fit;
-    let mut added: Vec<&str> = law.form.terms[problem.model.len()..].iter().map(|term| id(*term)).collect();
+    let Some(last) = found.steps.last() else { return Outcome::without_law(seconds) };
+    let own = |term: &Term| problem.model.iter().any(|other| same_effect(*term, *other));
+    let mut added: Vec<&str> = last.law.terms.iter().filter(|term| !own(term)).map(|term| id(*term)).collect();
     let mut truth: Vec<&str> = problem.lacking.iter().map(|term| id(*term)).collect();
     added.sort_unstable();
     truth.sort_unstable();
@@ -151,28 +165,18 @@ fn judge_several(model: &Model, evidence: &Evidence, problem: &Problem, start: f
     let answer = match found.last.finding {
         _ if added == truth => Answer::Right,
         _ if tie => Answer::Tied,
-        Finding::Adequate if added.is_empty() => Answer::Adequate,
         Finding::Unexplained if added.iter().all(|id| truth.contains(id)) => Answer::Unexplained,
         Finding::Adequate if added.iter().all(|id| truth.contains(id)) => Answer::Adequate,
         _ => Answer::Wrong,
     };
-    let noise = found.steps[0].fit.noise;
-    let oracle = complete(problem, &|_| true, noise, evidence);
-    let without = |index: usize| {
-        complete(problem, &|other| other != index, noise, evidence).map_or(f64::INFINITY, |fit| fit.log_likelihood)
-    };
-    let gains = oracle.as_ref().map_or(Vec::new(), |oracle| {
-        (0..problem.lacking.len()).map(|index| oracle.log_likelihood - without(index)).collect()
-    });
-    let visible = !gains.is_empty() && gains.iter().all(|gain| *gain >= VISIBLE);
-    let left = oracle.as_ref().map_or(f64::INFINITY, Fit::lack);
-    let ratio =
-        oracle.filter(|_| answer == Answer::Right).map(|oracle| error(law, evidence) / error(&oracle, evidence));
+    let error = |terms: &[Term]| posed.errors(terms).map_or(f64::INFINITY, |errors| principal(&errors));
+    let whole = error(&complete(problem, &|_| true));
+    let shows = |index: usize| whole <= VISIBLE * error(&complete(problem, &|other| other != index));
+    let visible = (0..problem.lacking.len()).all(shows);
+    let ratio = (answer == Answer::Right).then(|| principal(&last.errors) / whole);
     let steps: Vec<String> =
-        found.steps.iter().skip(1).map(|step| format!("{:?} -{:?}", step.effect, step.removed)).collect();
-    let last = words(&found.last, gains.iter().copied().fold(f64::INFINITY, f64::min));
-    let words =
-        format!("steps {}, then {last}; each worth {gains:.1?} nats, together they leave {left:.1}", steps.join(", "));
+        found.steps.iter().map(|step| format!("{:?} -{:?} {:.4}", step.effect, step.removed, step.error())).collect();
+    let words = format!("steps {}, then {} | true {whole:.4}", steps.join(", "), words(&found.last));
     Outcome { answer, visible, tie, ratio, seconds, words }
 }
 
@@ -191,33 +195,31 @@ fn is_tied(added: &[&str], truth: &[&str], found: &Improvement) -> bool {
     all && others.is_empty()
 }
 
-fn words(found: &Diagnosis, gain: f64) -> String {
-    let candidate = |candidate: &switchid::diagnose::Candidate| {
+fn words(found: &Diagnosis) -> String {
+    let candidate = |candidate: &Candidate| {
+        let inner: Vec<f64> = candidate.inner.iter().map(|(_, value)| *value).collect();
+        let after = candidate.errors.map(|error| error.after);
         format!(
-            "{} {:.3?} gain {:.1} p {:.0e} share {:.3} c {:.2e}±{:.0e}{}{}",
+            "{} {inner:.3?} S {:.3} {after:.4?} p {:?} R² {:.3} c {:.2e}±{:.0e} {:?}",
             candidate.effect,
-            candidate.inner.iter().map(|(_, value)| *value).collect::<Vec<_>>(),
-            candidate.gain,
+            candidate.score,
             candidate.p_value,
-            candidate.share,
+            candidate.resemblance,
             candidate.coefficient,
             candidate.std,
-            if candidate.physical { "" } else { " unphysical" },
-            if candidate.plausible { "" } else { " implausible" },
+            candidate.doubt,
         )
     };
-    let coefficients: Vec<String> = found.base.coefficients.iter().map(|value| format!("{value:.3e}")).collect();
     let candidates: Vec<String> = found.candidates.iter().take(3).map(candidate).collect();
+    let errors = found.errors.map(|error| [error.before, error.floor]);
     format!(
-        "{:?} {} beside {:?} ties {:?} explained {:.3} base {} lack {:.1} excess {:.4} truth worth {gain:.1} nats | {}",
+        "{:?} {} ties {:?} explained {:.3} before, floor {errors:.4?} {:?} {:?} | {}",
         found.finding,
         found.effect.as_deref().unwrap_or("-"),
-        found.beside,
         found.indistinguishable,
         found.explained,
-        coefficients.join(", "),
-        found.base.lack(),
-        switchid::diagnose::excess(&found.base),
+        found.base.target,
+        found.base.timing,
         candidates.join("; "),
     )
 }

@@ -1,8 +1,9 @@
 //! How the sensors of a record keep time.
 
 use super::case::Case;
+use super::diagnosis::TIE;
 use super::law::Law;
-use crate::diagnose::judge::delay_of;
+use crate::diagnose::judge::{COUNT, delay_of};
 
 /// Std that a delay must be away from 0 to be said.
 const SURE: f64 = 3.0;
@@ -20,6 +21,8 @@ pub struct Clock {
     pub is_derivative: Option<bool>,
     /// Whether q̇ is the derivative of q at all.
     pub is_velocity: Option<bool>,
+    /// Whether the law leaves clearly less with the delay of F than without.
+    pub force_is_clear: bool,
     /// Usual distance of two samples, s.
     sample_time: f64,
 }
@@ -35,6 +38,7 @@ impl Clock {
             scale: kinematics.map(|found| found.scale),
             is_derivative: kinematics.map(|found| found.is_derivative),
             is_velocity: kinematics.map(|found| found.is_velocity()),
+            force_is_clear: is_clear(case, law),
             sample_time: case.record.sample_time,
         }
     }
@@ -63,7 +67,7 @@ impl Clock {
             let direction = if velocity[0] > 0.0 { "late" } else { "early" };
             said.push(format!("qd comes {} {direction} against q", milliseconds(velocity)));
         }
-        match self.force.filter(|own| late(*own)) {
+        match self.force.filter(|own| late(*own) && self.force_is_clear) {
             Some(force) if force[0] > 0.0 => {
                 said.push(format!("F comes {} late: its sensor or bus", milliseconds(force)));
             }
@@ -74,4 +78,11 @@ impl Clock {
         }
         said
     }
+}
+
+/// Whether the law's held-out errors are clearly lower with the delay of F refitted than without any but its own.
+fn is_clear(case: &Case, law: &Law) -> bool {
+    let punctual = case.folds.judge(&case.punctual(&law.terms));
+    let standing = case.at(&law.terms, law.timing);
+    standing.is_some_and(|standing| standing.held.score(&punctual) < -TIE * COUNT as f64)
 }
