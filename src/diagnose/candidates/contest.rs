@@ -16,7 +16,9 @@ const CONTENDERS: usize = 8;
 pub(in crate::diagnose) struct Contender {
     /// It, with the inner parameters that most parts of the record prefer.
     pub(in crate::diagnose) term: Term,
-    /// Errors with it.
+    /// Errors without it …
+    pub(in crate::diagnose) before: HeldOut,
+    /// … and with it.
     pub(in crate::diagnose) held: HeldOut,
     /// S, against the law without it.
     pub(in crate::diagnose) score: f64,
@@ -27,7 +29,19 @@ pub(in crate::diagnose) struct Contender {
 /// A variant with its column, and whether that holds the target itself.
 type Tried = (Variant, (Column, bool));
 
+/// A law beside which candidates are tried, and its errors.
+struct Arena<'a> {
+    record: &'a Record,
+    folds: &'a Folds,
+    equation: &'a Equation,
+    base: &'a HeldOut,
+    scale: Scale,
+}
+
 /// All candidates beside a law, the best first, and how many were tried, inner parameters counted apart.
+///
+/// A candidate that holds q̈ itself has the target's own noise, which would pass for physics: it is tried on the even readings' motion while the
+/// target is that of the odd ones.
 pub(in crate::diagnose) fn contest(
     record: &Record,
     folds: &Folds,
@@ -36,30 +50,13 @@ pub(in crate::diagnose) fn contest(
 ) -> (Vec<Contender>, usize) {
     let scale = scale(record);
     let all = variants(&eligible(record, equation), &equation.terms, &scale);
-    let screen = Screen::new(folds, equation);
-    let mut groups: Vec<Vec<Variant>> = Vec::new();
-    for variant in &all {
-        match groups.iter_mut().find(|group| same_effect(group[0].term, variant.term)) {
-            Some(group) => group.push(*variant),
-            None => groups.push(vec![*variant]),
-        }
-    }
-    let ranked = |mut found: Vec<Contender>| {
-        found.sort_by(|a, b| a.score.total_cmp(&b.score));
-        found
-    };
-    let columns = |group: &[Variant]| -> Vec<Tried> {
-        group.iter().map(|variant| (*variant, column(record, equation, variant.term))).collect()
-    };
-    let found =
-        ranked(groups.iter().map(|group| Contender::chosen(&screen, equation, base, columns(group)).0).collect());
-    let contenders = found.iter().take(CONTENDERS).filter_map(|found| {
-        let group = groups.iter().find(|group| same_effect(group[0].term, found.term))?;
-        Some(narrowed(record, (&screen, folds), equation, base, columns(group), &scale))
-    });
-    let mut robust = ranked(contenders.collect());
-    robust.extend(found.into_iter().skip(CONTENDERS));
-    (robust, all.len())
+    let is_apart = |variant: &Variant| equation.target == Target::Inertia && record.accelerates(variant.term);
+    let (apart, common): (Vec<Variant>, Vec<Variant>) = all.iter().partition(|variant| is_apart(variant));
+    let arena = Arena { record, folds, equation, base, scale };
+    let mut found = arena.contest(&common);
+    found.extend(arena.contest_apart(&apart));
+    found.sort_by(|a, b| a.score.total_cmp(&b.score));
+    (found, all.len())
 }
 
 /// One candidate beside a law.
@@ -72,9 +69,100 @@ pub(in crate::diagnose) fn contender(
 ) -> Option<Contender> {
     let scale = scale(record);
     let group = variants(&[term], &equation.terms, &scale);
-    let screen = Screen::new(folds, equation);
-    let tried: Vec<Tried> = group.iter().map(|own| (*own, column(record, equation, own.term))).collect();
-    (!tried.is_empty()).then(|| narrowed(record, (&screen, folds), equation, base, tried, &scale))
+    Arena { record, folds, equation, base, scale }.contest(&group).into_iter().next()
+}
+
+impl Arena<'_> {
+    /// The best variant of every effect, the best effect first.
+    fn contest(&self, all: &[Variant]) -> Vec<Contender> {
+        let screen = Screen::new(self.folds, self.equation);
+        let mut groups: Vec<Vec<Variant>> = Vec::new();
+        for variant in all {
+            match groups.iter_mut().find(|group| same_effect(group[0].term, variant.term)) {
+                Some(group) => group.push(*variant),
+                None => groups.push(vec![*variant]),
+            }
+        }
+        let ranked = |mut found: Vec<Contender>| {
+            found.sort_by(|a, b| a.score.total_cmp(&b.score));
+            found
+        };
+        let coarse = |group: &Vec<Variant>| self.chosen(&screen, &self.columns(group)).0;
+        let found = ranked(groups.iter().map(coarse).collect());
+        let narrowed = found.iter().take(CONTENDERS).filter_map(|found| {
+            let group = groups.iter().find(|group| same_effect(group[0].term, found.term))?;
+            Some(self.narrowed(&screen, self.columns(group)))
+        });
+        let mut robust = ranked(narrowed.collect());
+        robust.extend(found.into_iter().skip(CONTENDERS));
+        robust
+    }
+
+    /// The same where candidates and target have each half of the readings.
+    fn contest_apart(&self, all: &[Variant]) -> Vec<Contender> {
+        let Some([even, odd]) = self.record.halves().filter(|_| !all.is_empty()) else { return Vec::new() };
+        let equation = self.equation.for_motion(&odd);
+        let base = self.folds.judge(&equation);
+        Arena { record: &even, equation: &equation, base: &base, ..*self }.contest(all)
+    }
+
+    fn columns(&self, group: &[Variant]) -> Vec<Tried> {
+        group.iter().map(|variant| (*variant, column(self.record, self.equation, variant.term))).collect()
+    }
+
+    /// What the parts of the record choose among variants of one effect, and which.
+    fn chosen(&self, screen: &Screen, tried: &[Tried]) -> (Contender, Vec<usize>) {
+        let columns: Vec<&(Column, bool)> = tried.iter().map(|(_, column)| column).collect();
+        let (chosen, held) = screen.choose(&columns);
+        let votes = |index: &usize| chosen.iter().filter(|own| *own == index).count();
+        let middle = chosen.iter().copied().max_by_key(votes).unwrap_or(0);
+        let resemblance = self.equation.resemblance(PRINCIPAL, &columns[middle].0[PRINCIPAL]);
+        let (term, score, before) = (tried[middle].0.term, held.score(self.base), self.base.clone());
+        (Contender { term, score, before, held, resemblance }, chosen)
+    }
+
+    /// The grid narrowed around what the parts of the record prefer, then a robust fit in each part.
+    fn narrowed(&self, screen: &Screen, mut tried: Vec<Tried>) -> Contender {
+        let (mut found, mut chosen) = self.chosen(screen, &tried);
+        for _ in 0..ROUNDS {
+            let new = self.new_neighbours(&tried, &chosen);
+            if new.is_empty() {
+                break;
+            }
+            tried = kept(&tried, &chosen);
+            tried.extend(self.columns(&new));
+            (found, chosen) = self.chosen(screen, &tried);
+        }
+        let joining = |fold: usize| chosen.get(fold).map(|index| (&tried[*index].1.0, tried[*index].1.1));
+        let held = self.folds.judge_with(self.equation, &joining);
+        Contender { score: held.score(self.base), held, ..found }
+    }
+
+    /// Neighbours of what was chosen that were not tried yet.
+    fn new_neighbours(&self, tried: &[Tried], chosen: &[usize]) -> Vec<Variant> {
+        let near = chosen.iter().flat_map(|index| tried[*index].0.neighbours());
+        near.filter(|variant| is_within(variant.term, &self.scale)).fold(
+            Vec::new(),
+            |mut new: Vec<Variant>, variant| {
+                let known = new.iter().chain(tried.iter().map(|(own, _)| own)).any(|own| own.term == variant.term);
+                if !known {
+                    new.push(variant);
+                }
+                new
+            },
+        )
+    }
+}
+
+/// What was chosen, each once, at the next spacing.
+fn kept(tried: &[Tried], chosen: &[usize]) -> Vec<Tried> {
+    chosen.iter().fold(Vec::new(), |mut kept: Vec<Tried>, index| {
+        let (variant, column) = &tried[*index];
+        if !kept.iter().any(|(own, _)| own.term == variant.term) {
+            kept.push((Variant { spacing: variant.spacing.cbrt(), ..*variant }, column.clone()));
+        }
+        kept
+    })
 }
 
 fn scale(record: &Record) -> Scale {
@@ -101,45 +189,6 @@ fn column(record: &Record, equation: &Equation, term: Term) -> (Column, bool) {
     (record.term(term, equation.timing), holds_target)
 }
 
-/// The grid narrowed around what the parts of the record prefer, then a robust fit in each part.
-fn narrowed(
-    record: &Record,
-    (screen, folds): (&Screen, &Folds),
-    equation: &Equation,
-    base: &HeldOut,
-    mut tried: Vec<Tried>,
-    scale: &Scale,
-) -> Contender {
-    let (mut found, mut chosen) = Contender::chosen(screen, equation, base, tried.clone());
-    for _ in 0..ROUNDS {
-        let near: Vec<Variant> = chosen.iter().flat_map(|index| tried[*index].0.neighbours()).collect();
-        let inside = |variant: &Variant| is_within(variant.term, scale);
-        let new = near.into_iter().filter(inside).fold(Vec::<Variant>::new(), |mut kept, variant| {
-            let known = kept.iter().any(|other| other.term == variant.term);
-            let known = known || tried.iter().any(|(other, _)| other.term == variant.term);
-            if !known {
-                kept.push(variant);
-            }
-            kept
-        });
-        if new.is_empty() {
-            break;
-        }
-        let keep: Vec<Tried> = chosen.iter().map(|index| tried[*index].clone()).collect();
-        tried = keep.into_iter().fold(Vec::new(), |mut kept: Vec<Tried>, own| {
-            if !kept.iter().any(|(other, _)| other.term == own.0.term) {
-                kept.push((Variant { spacing: own.0.spacing.cbrt(), ..own.0 }, own.1));
-            }
-            kept
-        });
-        tried.extend(new.into_iter().map(|variant| (variant, column(record, equation, variant.term))));
-        (found, chosen) = Contender::chosen(screen, equation, base, tried.clone());
-    }
-    let joining = |fold: usize| chosen.get(fold).map(|index| (&tried[*index].1.0, tried[*index].1.1));
-    let held = folds.judge_with(equation, &joining);
-    Contender { score: held.score(base), held, ..found }
-}
-
 fn is_within(term: Term, scale: &Scale) -> bool {
     let Term::Effect(effect) = term else { return true };
     effect.inner_values().iter().enumerate().all(|(index, value)| {
@@ -149,17 +198,6 @@ fn is_within(term: Term, scale: &Scale) -> bool {
 }
 
 impl Contender {
-    /// What the parts of the record choose among variants of one effect, and which.
-    fn chosen(screen: &Screen, equation: &Equation, base: &HeldOut, tried: Vec<Tried>) -> (Contender, Vec<usize>) {
-        let terms: Vec<Term> = tried.iter().map(|(variant, _)| variant.term).collect();
-        let columns: Vec<(Column, bool)> = tried.into_iter().map(|(_, column)| column).collect();
-        let (chosen, held) = screen.choose(&columns);
-        let votes = |index: &usize| chosen.iter().filter(|own| *own == index).count();
-        let middle = chosen.iter().copied().max_by_key(votes).unwrap_or(0);
-        let resemblance = equation.resemblance(PRINCIPAL, &columns[middle].0[PRINCIPAL]);
-        (Contender { term: terms[middle], score: held.score(base), held, resemblance }, chosen)
-    }
-
     /// Whether physics allows the sign of this coefficient.
     pub(in crate::diagnose) fn allows(&self, coefficient: f64) -> bool {
         Catalogue::of(self.term).is_none_or(|entry| entry.sign.allows(coefficient))

@@ -84,6 +84,13 @@ impl Equation {
         equation
     }
 
+    /// The same with the inertia term of another record as its target.
+    pub(in crate::diagnose) fn for_motion(&self, record: &Record) -> Equation {
+        let right = record.measured_inertia();
+        let spread = [0, 1, 2].map(|which| spread(&right[which], self.functions[which]));
+        Equation { right, spread, ..self.clone() }
+    }
+
     /// The same without the term of that position.
     pub(in crate::diagnose) fn without(&self, index: usize) -> Equation {
         let mut equation = self.clone();

@@ -158,8 +158,8 @@ impl<'a> Screen<'a> {
     }
 
     /// Of several variants of one candidate: which one each part's training prefers, and the errors of that choice.
-    pub(in crate::diagnose) fn choose(&self, variants: &[(Column, bool)]) -> (Vec<usize>, HeldOut) {
-        let fits: Vec<Vec<[Option<Fitted>; COUNT]>> = variants.iter().map(|(column, _)| self.fit(column)).collect();
+    pub(in crate::diagnose) fn choose(&self, variants: &[&(Column, bool)]) -> (Vec<usize>, HeldOut) {
+        let fits: Vec<Vec<[Option<Fitted>; COUNT]>> = variants.iter().map(|variant| self.fit(&variant.0)).collect();
         let loss = |variant: usize, fold: usize| -> f64 {
             fits[variant][fold].iter().flatten().map(|fitted| fitted.loss.max(f64::MIN_POSITIVE).ln()).sum()
         };
@@ -171,7 +171,7 @@ impl<'a> Screen<'a> {
             let mut left = vec![f64::NAN; right.len()];
             for (fold, variant) in chosen.iter().enumerate() {
                 let Some(Fitted { solution, .. }) = &fits[*variant][fold][which] else { continue };
-                let (column, holds_target) = &variants[*variant];
+                let (column, holds_target) = variants[*variant];
                 let mut columns = self.equation.columns(which);
                 columns.push(&column[which]);
                 let coefficient = solution[solution.len() - 1];

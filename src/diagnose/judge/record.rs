@@ -74,6 +74,13 @@ impl Record {
         Record::cut(motions, self.period, self.sample_time, self.forced, self.expressions.clone())
     }
 
+    /// The same record as every second reading of each channel shows it: the even ones, and the odd ones. What noise the two have is not
+    /// the same.
+    pub(in crate::diagnose) fn halves(&self) -> Option<[Record; 2]> {
+        let half = |first: usize| self.moved(self.motions.iter().map(|motion| motion.half(first)).collect());
+        Some([half(0)?, half(1)?])
+    }
+
     fn column(&self, order: usize, values: impl FnMut(&(usize, usize, Nodes)) -> Vec<f64>, factor: f64) -> Column {
         let mut column = [0, 1, 2].map(|which| vec![0.0; self.windows[which].rows()]);
         self.add(order, &self.nodes.iter().map(values).collect(), factor, &mut column);
@@ -84,14 +91,9 @@ impl Record {
         self.windows.iter().zip(column).for_each(|(windows, rows)| windows.add(order, cells, factor, rows));
     }
 
-    /// ∫ φ q̈ dt = −∫ φ' q̇ dt of the smoothed motion.
-    pub(in crate::diagnose) fn inertia(&self) -> Column {
-        self.column(1, |(.., nodes)| nodes.integrals(&nodes.qd), -1.0)
-    }
-
-    /// The same of the readings: of q̇ where it is measured, else of q.
+    /// ∫ φ q̈ dt = −∫ φ' q̇ dt = ∫ φ'' q dt of the readings: of q̇ where it is measured, else of q.
     pub(in crate::diagnose) fn measured_inertia(&self) -> Column {
-        let mut column = self.inertia();
+        let mut column = self.column(1, |(.., nodes)| nodes.integrals(&nodes.qd), -1.0);
         for (channel, order, factor) in [(0, 2, 1.0), (1, 1, -1.0)] {
             let own = |(index, number, nodes): &(usize, usize, Nodes)| {
                 let motion = &self.motions[*index];
@@ -117,10 +119,10 @@ impl Record {
         self.column(1, |piece| piece.2.integrals(&self.excitation(piece, timing)), 1.0)
     }
 
-    /// ∫ φ f dt of a term; of the inertia, that of the smoothed motion.
+    /// ∫ φ f dt of a term.
     pub(in crate::diagnose) fn term(&self, term: Term, timing: Timing) -> Column {
         match term {
-            Term::Inertia => self.inertia(),
+            Term::Inertia => self.measured_inertia(),
             _ => self.column(0, |piece| piece.2.integrals(&self.series(term, piece, timing)), 1.0),
         }
     }

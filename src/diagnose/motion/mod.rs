@@ -40,6 +40,9 @@ const ROUNDED: f64 = 1e-7;
 /// Distance from the smoothed motion, in robust std, beyond which a single reading is a wild one (one in 10⁹ were the noise Gaussian).
 const WILD: f64 = 6.0;
 
+/// Factor on the variance of a reading that is not to be taken.
+const UNREAD: f64 = 1e12;
+
 /// The motion of one piece.
 #[derive(Clone, Debug)]
 pub(super) struct Track {
@@ -49,6 +52,8 @@ pub(super) struct Track {
     pub(super) read: [bool; 2],
     /// Factor on the variance of every reading by channel; empty where none is wild.
     pub(super) doubt: [Vec<f64>; 2],
+    /// For how many samples each reading that is taken stands.
+    pub(super) share: f64,
     /// Position, velocity, acceleration and jerk at every sample.
     pub(super) states: States,
 }
@@ -99,6 +104,18 @@ impl Motion {
         let sensors = Sensors { cutoff: likeliest_cutoff(&self.pieces, sensors, both), ..sensors };
         let tracks = follow(&self.pieces, sensors, both);
         Motion { kinematics: Some(kinematics), sensors, tracks, ..self }
+    }
+
+    /// The motion as every second reading shows it, from the first or from the second on.
+    pub(super) fn half(&self, first: usize) -> Motion {
+        let tracks = self.pieces.iter().zip(&self.tracks).map(|(piece, whole)| {
+            let doubt = [0, 1].map(|channel| {
+                let usual = |k: usize| whole.doubt[channel].get(k).copied().unwrap_or(1.0);
+                (0..piece.len()).map(|k| if k % 2 == first { usual(k) } else { UNREAD }).collect()
+            });
+            Track { share: 2.0, ..track(piece, self.sensors, whole.read, doubt) }
+        });
+        Motion { tracks: tracks.collect(), ..self.clone() }
     }
 
     /// (q, q̇) at every sample, piece by piece.
@@ -158,7 +175,7 @@ fn follow(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> Vec<Track> {
 fn track(piece: &Piece, sensors: Sensors, read: [bool; 2], doubt: [Vec<f64>; 2]) -> Track {
     let spline = Spline::new(&piece.t, sensors, read, [&doubt[0], &doubt[1]]);
     let states = spline.smooth(readings(piece, read));
-    Track { spline, read, doubt, states }
+    Track { spline, read, doubt, share: 1.0, states }
 }
 
 /// By what factor the variance of each reading is larger than usual; empty where no reading is wild.

@@ -88,7 +88,7 @@ impl Nodes {
         let last = piece.len() - 1;
         for (k, (value, state)) in values.iter().zip(&track.states).enumerate() {
             let weight = 0.5 * (piece.t[(k + 1).min(last)] - piece.t[k.saturating_sub(1)]);
-            let sure = weight / track.doubt[channel].get(k).copied().unwrap_or(1.0);
+            let sure = track.share * weight / track.doubt[channel].get(k).copied().unwrap_or(1.0);
             let place = (piece.t[k] - sensors.lag(channel) - self.start) / self.cell();
             let Some(sum) = sums.get_mut(place as usize).filter(|_| place >= 0.0) else { continue };
             *sum += sure * (value / sensors.unit(channel) - sensors.reading(channel, state));

@@ -129,7 +129,6 @@ impl Candidate {
 /// A contender with what decides about it.
 struct Entry {
     contender: Contender,
-    before: HeldOut,
     standing: Option<Standing>,
     p_value: Option<f64>,
     doubt: Option<Doubt>,
@@ -145,7 +144,7 @@ pub(in crate::diagnose) fn diagnose(case: &Case, terms: &[Term]) -> Option<Diagn
     let improved = winner.and_then(|winner| {
         let term = entries[winner].contender.term;
         let law: Vec<Term> = terms.iter().copied().chain([term]).collect();
-        entries[winner].standing.take().or_else(|| case.stand(&law))
+        entries[winner].standing.clone().or_else(|| case.stand(&law))
     });
     if let Some(winner) = winner {
         let first = entries.remove(winner);
@@ -157,7 +156,7 @@ pub(in crate::diagnose) fn diagnose(case: &Case, terms: &[Term]) -> Option<Diagn
 /// Every candidate beside the law, the best first.
 fn entries(case: &Case, standing: &Standing, terms: &[Term]) -> (Vec<Entry>, usize) {
     let (found, tried) = contest(&case.record, &case.folds, &standing.equation, &standing.held);
-    let mut entries: Vec<Entry> = found.into_iter().map(|contender| Entry::new(contender, &standing.held)).collect();
+    let mut entries: Vec<Entry> = found.into_iter().map(Entry::new).collect();
     weigh(case, standing, &mut entries);
     if let Some(late) = delay(case, terms, &entries) {
         entries.push(late);
@@ -173,7 +172,8 @@ fn weigh(case: &Case, standing: &Standing, entries: &mut [Entry]) {
         entry.doubt = entry.barred(case, standing);
     }
     let (mut left, _): (Vec<&mut Entry>, Vec<&mut Entry>) = entries.iter_mut().partition(|entry| entry.doubt.is_none());
-    let gains = |entry: &&mut Entry| standing.blocks.gains(&case.record, &entry.before, &entry.contender.held);
+    let gains =
+        |entry: &&mut Entry| standing.blocks.gains(&case.record, &entry.contender.before, &entry.contender.held);
     let values = standing.blocks.p_values(&left.iter().map(gains).collect::<Vec<_>>());
     for (index, entry) in left.iter_mut().enumerate() {
         entry.p_value = values.as_ref().map(|values| values[index]);
@@ -198,13 +198,13 @@ fn delay(case: &Case, terms: &[Term], others: &[Entry]) -> Option<Entry> {
     if others.iter().any(taken) {
         return None;
     }
-    let contender = Contender { term, held: standing.held.clone(), score, resemblance: 0.0 };
-    Some(Entry { standing: Some(standing), ..Entry::new(contender, &before) })
+    let contender = Contender { term, before, held: standing.held.clone(), score, resemblance: 0.0 };
+    Some(Entry { standing: Some(standing), ..Entry::new(contender) })
 }
 
 impl Entry {
-    fn new(contender: Contender, before: &HeldOut) -> Entry {
-        Entry { contender, before: before.clone(), standing: None, p_value: None, doubt: None }
+    fn new(contender: Contender) -> Entry {
+        Entry { contender, standing: None, p_value: None, doubt: None }
     }
 
     /// Coefficient and std.
@@ -237,7 +237,7 @@ impl Entry {
 
     /// What its gain leaves to doubt.
     fn doubted(&self) -> Option<Doubt> {
-        let ratios = self.contender.held.ratios(&self.before);
+        let ratios = self.contender.held.ratios(&self.contender.before);
         if ratios.iter().any(|ratio| *ratio > WORSE) || self.contender.held.errors.iter().any(|error| *error >= 1.0) {
             return Some(Doubt::Worse);
         }
@@ -260,7 +260,7 @@ impl Entry {
             inner,
             coefficient,
             std,
-            errors: errors(&case.record, &self.before, &self.contender.held, &standing.floor),
+            errors: errors(&case.record, &self.contender.before, &self.contender.held, &standing.floor),
             p_value: self.p_value,
             score: self.contender.score,
             resemblance: self.contender.resemblance,
@@ -323,7 +323,7 @@ fn conclude(
         None => Finding::Unexplained,
     };
     let candidates: Vec<Candidate> = entries.iter().map(|entry| entry.describe(case, &standing)).collect();
-    let before = entries.first().filter(|_| improved.is_some()).map_or(&standing.held, |entry| &entry.before);
+    let before = entries.first().filter(|_| improved.is_some()).map_or(&standing.held, |entry| &entry.contender.before);
     let last = improved.as_ref().unwrap_or(&standing);
     let errors = errors(&case.record, before, &last.held, &last.floor);
     let best =
