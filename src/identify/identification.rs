@@ -25,6 +25,10 @@ pub struct Stage {
     pub coefficients: Vec<Coefficient>,
     /// Whether its coefficients were moving at its end: those published are the last ones.
     pub drifting: bool,
+    /// Whether its law was vouched for at its end.
+    pub valid: bool,
+    /// Share of the force's variance that the coefficients explain where they are those of the weak form, which no law vouches for.
+    pub explained: Option<f64>,
     /// What its data could not determine.
     pub unidentifiable: Vec<String>,
 }
@@ -205,6 +209,8 @@ fn begin(identifier: &Identifier, start: f64) -> Stage {
         law_number: None,
         recognised: false,
         drifting: false,
+        valid: false,
+        explained: None,
         coefficients: identifier.coefficients().to_vec(),
         unidentifiable: identifier.unidentifiable(),
     }
@@ -215,6 +221,6 @@ fn renew(stage: &mut Stage, identifier: &Identifier, t: f64) {
     let output = identifier.output();
     stage.identified = output.identified_time;
     (stage.law_number, stage.recognised) = (output.law_number, output.recognised);
-    stage.drifting = output.drifting;
+    (stage.drifting, stage.valid, stage.explained) = (output.drifting, output.valid, output.explained);
     stage.coefficients.copy_from_slice(identifier.coefficients());
 }

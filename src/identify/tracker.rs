@@ -12,6 +12,7 @@ mod switch;
 
 use super::deviation::Deviation;
 use super::drift::Drift;
+use super::functional::WeakForm;
 use super::identifier::{Coefficient, Output, Status};
 use super::known::KnownLaws;
 use super::moving::Moving;
@@ -86,6 +87,7 @@ pub struct Tracker {
     afresh: u32,
     live: Live,
     bank: Bank,
+    weak_form: WeakForm,
     roughness: Roughness,
     /// Whether a law's residuals have told the sensors' noise.
     noise_known: bool,
@@ -163,6 +165,7 @@ impl Tracker {
             afresh: 0,
             live: Live::new(problem),
             bank: Bank::new(n, HYPOTHESES),
+            weak_form: WeakForm::new(problem),
             roughness: Roughness::default(),
             noise_known: false,
             deviation: Deviation::new(settings.deviation_interval, settings.sample_time),
@@ -217,7 +220,9 @@ impl Tracker {
             output.switch_time = sample.t;
             self.start.begin(0);
         }
+        let switches = output.switch_count;
         self.window.push(sample);
+        self.weak_form.step(problem, sample);
         self.measure_roughness(problem, output);
         self.follow(problem, settings, output);
         if !output.drifting || self.resting {
@@ -226,6 +231,20 @@ impl Tracker {
         self.track_moving(problem, published, output);
         self.track_drift(problem, settings, published, output);
         self.foretell(problem, published, output);
+        if output.switch_count != switches {
+            self.weak_form.restart();
+        }
+    }
+
+    /// What a caller is to see: of a record whose law cannot state an honest std, the coefficients of the weak form in place of its own. They
+    /// are not validated.
+    pub fn show(&mut self, problem: &Problem, settings: &Settings, shown: &mut [Coefficient], output: &mut Output) {
+        let stated = problem.free.iter().any(|index| shown[*index].std.is_some());
+        if stated || output.drifting {
+            return;
+        }
+        output.explained = self.weak_form.publish(problem, self.first_noise(settings), shown);
+        output.valid &= output.explained.is_none();
     }
 
     fn seek_constant_law(
