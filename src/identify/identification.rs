@@ -34,9 +34,12 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// The coefficients that are known, with their std.
+    /// The coefficients that are known, with their std: of a law that nobody vouches for those that are known better than their own size, and
+    /// the 0 of a term that it has dropped.
     pub fn known(&self) -> impl Iterator<Item = (&Coefficient, f64)> {
-        self.coefficients.iter().filter_map(|coefficient| Some((coefficient, coefficient.std?)))
+        let told = |value: f64, std: f64| self.valid || value == 0.0 || std < value.abs();
+        let known = self.coefficients.iter().filter_map(|coefficient| Some((coefficient, coefficient.std?)));
+        known.filter(move |(coefficient, std)| told(coefficient.value, *std))
     }
 
     /// The terms whose coefficients are not known as well as a law that is vouched for asks, and for how many more seconds such motion

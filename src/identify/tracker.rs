@@ -237,14 +237,13 @@ impl Tracker {
     }
 
     /// What a caller is to see: of a record whose law cannot state an honest std, the coefficients of the weak form in place of its own. They
-    /// are not validated.
+    /// are not validated; nor is a law of which some std is not known.
     pub fn show(&mut self, problem: &Problem, settings: &Settings, shown: &mut [Coefficient], output: &mut Output) {
-        let stated = problem.free.iter().any(|index| shown[*index].std.is_some());
-        if stated || output.drifting {
-            return;
+        let stated = problem.free.iter().filter(|index| shown[**index].std.is_some()).count();
+        if stated == 0 && !output.drifting {
+            output.explained = self.weak_form.publish(problem, self.first_noise(settings), shown);
         }
-        output.explained = self.weak_form.publish(problem, self.first_noise(settings), shown);
-        output.valid &= output.explained.is_none();
+        output.valid &= stated == problem.n();
     }
 
     fn seek_constant_law(

@@ -30,6 +30,9 @@ const RATIO: f64 = 10.0;
 /// … which must at least be passed itself; twice the ratio is the octave beside the right one.
 const PASSED: std::ops::RangeInclusive<f64> = 2.6..=2.0 * RATIO;
 
+/// No sensor resolves a smaller part of its range: 20 bits.
+const RESOLUTION: f64 = 1e-6;
+
 /// A coefficient is told to lack so many records like the one there is, at most: scatter falls with the length as long as the motion stays.
 const FORESEEN: f64 = 10.0;
 
@@ -105,6 +108,12 @@ impl WeakForm {
         let ratios = self.octaves.iter().enumerate().filter_map(|(index, octave)| Some((index, ratio(octave)?)));
         let (index, ratio) = ratios.min_by(|a, b| off(a.1).total_cmp(&off(b.1)))?;
         (PASSED.contains(&ratio) && self.octaves[index].is_ready()).then_some(index)
+    }
+
+    /// Whether an inertia can be told from none by any sensor: it is above zero, and its force more than a millionth of the right side.
+    pub fn resolves(&self, inertia: f64) -> bool {
+        let [acceleration, right] = self.octaves[0].amplitudes();
+        inertia > 0.0 && inertia * acceleration >= RESOLUTION * right
     }
 
     /// Writes the coefficients that are known to better than their own size, under sensor noise of these variances; returns the share of

@@ -189,6 +189,11 @@ impl Octave {
         true
     }
 
+    /// Root of Σ of squares of q̈'s integrals and of the right side's.
+    pub(super) fn amplitudes(&self) -> [f64; 2] {
+        [self.energies[1].sqrt(), (self.spread + self.rows * self.mean * self.mean).sqrt()]
+    }
+
     pub(super) fn estimate(&self) -> &Estimate {
         &self.estimate
     }
