@@ -240,7 +240,9 @@ impl Tracker {
     /// are not validated; nor is a law of which some std is not known.
     pub fn show(&mut self, problem: &Problem, settings: &Settings, shown: &mut [Coefficient], output: &mut Output) {
         let stated = problem.free.iter().filter(|index| shown[**index].std.is_some()).count();
-        if stated == 0 && !output.drifting {
+        // a law whose innovations are white is on its way to state an std of its own
+        let consistent = self.phase == Phase::Refining && self.stage.explains;
+        if stated == 0 && !consistent && !output.drifting {
             output.explained = self.weak_form.publish(problem, self.first_noise(settings), shown);
         }
         output.valid &= stated == problem.n();
