@@ -62,6 +62,9 @@ const INERTIA_SPREAD: f64 = 0.5;
 /// Samples for which a suspicion keeps the law in use from being renewed: what comes may belong to another law.
 const SUSPENSE: u64 = 1000;
 
+/// Once in so many samples it is asked which lengths of variation are too short for the motion.
+const REST_EVERY: u64 = 256;
+
 /// After so many passes in a row what a law leaves unexplained is no matter of a fit that has not settled.
 const LASTS: u32 = 3;
 
@@ -223,6 +226,9 @@ impl Tracker {
         let switches = output.switch_count;
         self.window.push(sample);
         self.weak_form.step(problem, sample);
+        if self.window.end().is_multiple_of(REST_EVERY) {
+            self.weak_form.rest(problem, self.first_noise(settings));
+        }
         self.measure_roughness(problem, output);
         self.follow(problem, settings, output);
         if !output.drifting || self.resting {

@@ -30,6 +30,9 @@ const RATIO: f64 = 10.0;
 /// … which must at least be passed itself; twice the ratio is the octave beside the right one.
 const PASSED: std::ops::RangeInclusive<f64> = 2.6..=2.0 * RATIO;
 
+/// Octaves below the fitting one that go on: one to compare with, and one more where the motion quickens.
+const SPARE: usize = 2;
+
 /// No sensor resolves a smaller part of its range: 20 bits.
 const RESOLUTION: f64 = 1e-6;
 
@@ -43,6 +46,8 @@ pub struct WeakForm {
     regression: Regression,
     columns: Vec<f64>,
     gains: [f64; 3],
+    /// The first octave that forms rows.
+    finest: usize,
     begun: Option<f64>,
     last: Option<Sample>,
     /// ∫ q̇ dt, where the displacement is not measured.
@@ -58,6 +63,7 @@ impl WeakForm {
             regression: Regression::new(n),
             columns: vec![0.0; n + 1],
             gains: [0, 1, 2].map(|order| Functional::noise_gain(order, ADVANCE)),
+            finest: 0,
             begun: None,
             last: None,
             travelled: 0.0,
@@ -86,14 +92,15 @@ impl WeakForm {
             },
             ..sample
         });
-        for octave in &mut self.octaves {
+        for (index, octave) in self.octaves.iter_mut().enumerate() {
             let Some(averaged) = next else { return };
-            next = octave.take(problem, averaged);
+            next = if index < self.finest { octave.average(averaged) } else { octave.take(problem, averaged) };
         }
     }
 
     fn begin(&mut self, t: f64, dt: f64) {
         (self.begun, self.travelled) = (Some(t), 0.0);
+        self.finest = 0;
         let mut averaged = 1.0;
         for octave in &mut self.octaves {
             octave.begin(averaged, averaged * dt);
@@ -101,11 +108,24 @@ impl WeakForm {
         }
     }
 
+    /// Ends the rows of octaves too fine for the motion, under sensor noise of these variances: they cost more than all others. Where the motion
+    /// has quickened they begin anew.
+    pub fn rest(&mut self, problem: &Problem, variance: [f64; 2]) {
+        let sensors = Sensors { variance, gains: self.gains };
+        let Some(fitting) = self.fitting(problem, &sensors) else { return };
+        let finest = fitting.saturating_sub(SPARE);
+        for index in finest..self.finest {
+            self.octaves[index].resume();
+        }
+        self.finest = finest;
+    }
+
     /// The octave that fits the motion: the nearest in rate, if it has rows enough.
     fn fitting(&self, problem: &Problem, sensors: &Sensors) -> Option<usize> {
         let ratio = |octave: &Octave| Some(octave.rate() / octave.frequency(problem, sensors)?);
         let off = |ratio: f64| (ratio / RATIO).ln().abs();
-        let ratios = self.octaves.iter().enumerate().filter_map(|(index, octave)| Some((index, ratio(octave)?)));
+        let octaves = self.octaves.iter().enumerate().skip(self.finest);
+        let ratios = octaves.filter_map(|(index, octave)| Some((index, ratio(octave)?)));
         let (index, ratio) = ratios.min_by(|a, b| off(a.1).total_cmp(&off(b.1)))?;
         (PASSED.contains(&ratio) && self.octaves[index].is_ready()).then_some(index)
     }
@@ -122,40 +142,66 @@ impl WeakForm {
     pub fn publish(&mut self, problem: &Problem, variance: [f64; 2], shown: &mut [Coefficient]) -> Option<f64> {
         let sensors = Sensors { variance, gains: self.gains };
         let fitting = self.fitting(problem, &sensors)?;
+        let near = fitting.saturating_sub(1).max(self.finest)..(fitting + 2).min(OCTAVES);
         let WeakForm { octaves, regression, columns, .. } = self;
-        let near = fitting.saturating_sub(1)..(fitting + 2).min(OCTAVES);
         for octave in &mut octaves[near.clone()] {
             if octave.solve(problem, &sensors, regression, columns) {
                 break;
             }
         }
-        let own = octaves[fitting].estimate();
-        let beside = octaves[near].iter().map(Octave::estimate).filter(|other| other.is_known());
-        let is_law = own.error < 1.0 && beside.clone().count() > 1;
-        let std = |free: usize| own.std[free].hypot(moved(own, beside.clone(), free));
-        let known = |free: usize| std(free) < own.coefficients[free].abs();
-        let inverted = problem.free_inertia().is_some_and(|free| known(free) && own.coefficients[free] < 0.0);
-        if !is_law || inverted || !(0..problem.n()).any(known) {
+        let compared = Compared { own: octaves[fitting].estimate(), octaves: &octaves[near] };
+        if !compared.is_law(problem) {
             return None;
         }
-        let length = self.last?.t - self.begun?;
-        for (coefficient, value) in shown.iter_mut().zip(&problem.known) {
-            *coefficient = Coefficient { value: *value, std: Some(0.0), needed: None, ..*coefficient };
-        }
-        for (free, index) in problem.free.iter().enumerate() {
-            let (value, std) = (own.coefficients[free], std(free));
-            let growth = (std / value).powi(2) - 1.0;
-            shown[*index].needed = (0.0..FORESEEN).contains(&growth).then(|| growth * length);
-            shown[*index].std = known(free).then_some(std);
-            if known(free) {
-                shown[*index].value = value;
-            }
-        }
-        Some(1.0 - own.error * own.error)
+        compared.write(problem, self.last?.t - self.begun?, shown);
+        Some(1.0 - compared.own.error * compared.own.error)
     }
 }
 
-/// How far the coefficient is from where variations half and twice as long put it, the larger of both.
-fn moved<'a>(own: &Estimate, beside: impl Iterator<Item = &'a Estimate>, free: usize) -> f64 {
-    beside.map(|other| (other.coefficients[free] - own.coefficients[free]).abs()).fold(0.0, f64::max)
+/// An estimate beside those from variations half and twice as long, itself among them.
+struct Compared<'a> {
+    own: &'a Estimate,
+    octaves: &'a [Octave],
+}
+
+impl Compared<'_> {
+    /// Estimates of other lengths, and this one.
+    fn lengths(&self) -> impl Iterator<Item = &Estimate> {
+        self.octaves.iter().map(Octave::estimate).filter(|estimate| estimate.is_known())
+    }
+
+    /// Of the scatter in time, and of how far another length moves the coefficient.
+    fn std(&self, free: usize) -> f64 {
+        let value = self.own.coefficients[free];
+        let moved = self.lengths().map(|other| (other.coefficients[free] - value).abs()).fold(0.0, f64::max);
+        self.own.std[free].hypot(moved)
+    }
+
+    fn knows(&self, free: usize) -> bool {
+        self.std(free) < self.own.coefficients[free].abs()
+    }
+
+    /// Whether there is anything to compare with, and what is known can be a law.
+    fn is_law(&self, problem: &Problem) -> bool {
+        let inverted = problem.free_inertia().is_some_and(|free| self.knows(free) && self.own.coefficients[free] < 0.0);
+        let known = (0..problem.n()).any(|free| self.knows(free));
+        self.own.error < 1.0 && self.lengths().count() > 1 && known && !inverted
+    }
+
+    /// Writes what is known from a record of this length, s, and how much more of it the rest needs.
+    fn write(&self, problem: &Problem, length: f64, shown: &mut [Coefficient]) {
+        for (index, coefficient) in shown.iter_mut().enumerate() {
+            match problem.free.iter().position(|free| *free == index) {
+                None => (coefficient.value, coefficient.std) = (problem.known[index], Some(0.0)),
+                Some(free) => {
+                    let (value, std) = (self.own.coefficients[free], self.std(free));
+                    let growth = (std / value).powi(2) - 1.0;
+                    coefficient.needed = (0.0..FORESEEN).contains(&growth).then_some(growth * length);
+                    if std < value.abs() {
+                        (coefficient.value, coefficient.std) = (value, Some(std));
+                    }
+                }
+            }
+        }
+    }
 }

@@ -71,8 +71,13 @@ impl Octave {
 
     /// Forgets all samples; the next are averages of `averaged`, `dt` apart.
     pub(super) fn begin(&mut self, averaged: f64, dt: f64) {
-        (self.averaged, self.dt) = (averaged, dt);
-        (self.first, self.energies, self.mean, self.spread, self.rows) = (None, [0.0; 2], 0.0, 0.0, 0.0);
+        (self.averaged, self.dt, self.first) = (averaged, dt, None);
+        self.resume();
+    }
+
+    /// Forgets all rows.
+    pub(super) fn resume(&mut self) {
+        (self.energies, self.mean, self.spread, self.rows) = ([0.0; 2], 0.0, 0.0, 0.0);
         self.blocks.clear();
         self.estimate.clear();
         self.solved = false;
@@ -98,6 +103,11 @@ impl Octave {
             let qd = if problem.channels.qd { middle.qd } else { qd };
             self.form_row(problem, &Sample { qd, ..middle }, middle.t - before.t);
         }
+        self.average(sample)
+    }
+
+    /// Takes an averaged sample without a row of its own; returns the one of the next octave where it is complete.
+    pub(super) fn average(&mut self, sample: Sample) -> Option<Sample> {
         match self.first.take() {
             None => {
                 self.first = Some(sample);
