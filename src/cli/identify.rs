@@ -310,7 +310,7 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
     text
 }
 
-/// What is to be said of coefficients that no law vouches for.
+/// What is to be said of coefficients that are not validated.
 fn explained(share: f64) -> String {
     format!(
         "  not validated: it explains {:.1} % of the force, and what is left is no white sensor noise; the std are those between parts of the \

@@ -25,16 +25,16 @@ pub struct Stage {
     pub coefficients: Vec<Coefficient>,
     /// Whether its coefficients were moving at its end: those published are the last ones.
     pub drifting: bool,
-    /// Whether its law was vouched for at its end.
+    /// Whether its law was validated at its end.
     pub valid: bool,
-    /// Share of the force's variance that the coefficients explain where they are those of the weak form, which no law vouches for.
+    /// Share of the force's variance that the coefficients explain where they are those of the weak form, which are not validated.
     pub explained: Option<f64>,
     /// What its data could not determine.
     pub unidentifiable: Vec<String>,
 }
 
 impl Stage {
-    /// The coefficients that are known, with their std: of a law that nobody vouches for those that are known better than their own size, and
+    /// The coefficients that are known, with their std: of a law that is not validated those that are known better than their own size, and
     /// the 0 of a term that it has dropped.
     pub fn known(&self) -> impl Iterator<Item = (&Coefficient, f64)> {
         let told = |value: f64, std: f64| self.valid || value == 0.0 || std < value.abs();

@@ -111,7 +111,7 @@ pub struct Output {
     pub recognised: bool,
     /// What the identifier is doing.
     pub status: Status,
-    /// Whether the present law is vouched for; every std is known then.
+    /// Whether the present law is validated; every std is known then.
     pub valid: bool,
     /// Whether the coefficients move: they are followed as they go, and vouched for as long as their stated e is below 0.2².
     pub drifting: bool,

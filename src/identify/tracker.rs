@@ -243,12 +243,15 @@ impl Tracker {
     }
 
     /// What a caller is to see: of a record whose law cannot state an honest std, the coefficients of the weak form in place of its own. They
-    /// are not validated; nor is a law of which some std is not known.
+    /// are not validated; nor is a law at rest of which some std is not known.
     pub fn show(&mut self, problem: &Problem, settings: &Settings, shown: &mut [Coefficient], output: &mut Output) {
+        if output.drifting {
+            return;
+        }
         let stated = problem.free.iter().filter(|index| shown[**index].std.is_some()).count();
         // a law whose innovations are white is on its way to state an std of its own
         let consistent = self.phase == Phase::Refining && self.stage.explains;
-        if stated == 0 && !consistent && !output.drifting {
+        if stated == 0 && !consistent {
             output.explained = self.weak_form.publish(problem, self.first_noise(settings), shown);
         }
         output.valid &= stated == problem.n();
