@@ -89,6 +89,92 @@ fn near(found: &Value, pointer: &str, source: f64, share: f64) {
     assert!((value / source - 1.0).abs() < share, "{pointer} = {value}, source {source}");
 }
 
+/// Records with the coefficients that an independent robust weak-form regression finds at 0.3 T₀, and whether it finds the same within 10 % at
+/// 1 T₀. It adds a Stribeck part to the Coulomb friction of kuka_ax6 (0.37) and kuka_ax4 (0.29), which ours has to share between Coulomb and
+/// viscous friction, and a Dahl friction in Coulomb's place to marm_free.
+const REFERENCE: [(&str, &str, Coefficients); 6] = [
+    ("emps/emps_train_tidy.csv", EMPS_COLUMNS, EMPS_TRAIN),
+    ("emps/emps_test_pulses_tidy.csv", EMPS_COLUMNS, EMPS_TEST),
+    (
+        "real/kuka_ax6.csv",
+        "",
+        &[("qdd", 0.45, true), ("qd", 2.82, true), ("coulomb_friction", 0.53, true), ("1", 0.04, false)],
+    ),
+    ("real/kuka_ax4.csv", "", &[("qd", 1.00, false), ("coulomb_friction", 0.49, false), ("1", -0.15, false)]),
+    ("real/dfki_ddp.csv", "", DFKI_DDP),
+    (
+        "real/marm_free.csv",
+        "",
+        &[("qd", 0.27, true), ("coulomb_friction", 0.116, true), ("pendulum_restoring", -65.3, true)],
+    ),
+];
+
+/// Term, value, whether the two windows agree.
+type Coefficients = &'static [(&'static str, f64, bool)];
+
+const EMPS_COLUMNS: &str = "[columns]\nt = \"time_s\"\nq = \"position_m\"\nF = \"force_N\"\n";
+const EMPS_TRAIN: Coefficients =
+    &[("qdd", 93.6, true), ("qd", 195.0, true), ("coulomb_friction", 21.3, true), ("1", -3.2, false)];
+const EMPS_TEST: Coefficients =
+    &[("qdd", 92.8, true), ("qd", 204.0, true), ("coulomb_friction", 21.6, true), ("1", -3.27, false)];
+const DFKI_DDP: Coefficients = &[
+    ("qdd", 0.207, true),
+    ("coulomb_friction", 0.167, false),
+    ("pendulum_restoring", 3.83, true),
+    ("1", 0.029, false),
+];
+
+fn with_friction(columns: &str, inertia: &str, more: &str) -> String {
+    format!(
+        "{columns}[terms]\ninertia = {inertia}\nlinear_damping = \"fit\"\ncoulomb_friction = \"fit\"\nconstant_force = \"fit\"\n{more}"
+    )
+}
+
+/// A law on each of them; 90 % of the coefficients within 3 std of the reference's, and 90 % of those that it knows well known to a third.
+#[test]
+fn real_records_with_friction_give_the_coefficients_that_they_know() {
+    let (mut within, mut all, mut sharp, mut well_known) = (0, 0, 0, 0);
+    for (name, columns, reference) in REFERENCE {
+        let Some(data) = recording(name) else { return };
+        let swings = reference.iter().any(|(term, ..)| *term == "pendulum_restoring");
+        let inertia = if name.contains("marm") { "1" } else { "\"fit\"" };
+        let model = with_friction(columns, inertia, if swings { "pendulum_restoring = \"fit\"\n" } else { "" });
+        let stages = identify(&data, &model)["stages"].clone();
+        let stage = stages.as_array().unwrap().last().unwrap();
+        assert!(stage["law"].is_string(), "{name}: {stage:#}");
+        assert!(
+            stage["valid"] == true || stage["explained"].as_f64().is_some_and(|share| share > 0.9),
+            "{name}: {stage:#}"
+        );
+        for (term, source, agrees) in reference {
+            let [value, std] = ["coefficients", "std"].map(|key| stage[key][*term].as_f64().unwrap_or(f64::NAN));
+            eprintln!("{name}: {term} = {value} ± {std}, reference {source}");
+            (all, within) = (all + 1, within + i32::from((value - source).abs() < 3.0 * std));
+            well_known += i32::from(*agrees);
+            sharp += i32::from(*agrees && std < value.abs() / 3.0);
+        }
+    }
+    assert!(10 * within >= 9 * all, "{within} of {all} within 3 std");
+    assert!(10 * sharp >= 9 * well_known, "{sharp} of {well_known} known to a third");
+}
+
+/// Machines move these dampers: the forces that are measured are no excitation of any inertia.
+#[test]
+fn no_law_with_an_inertia_below_zero_is_told_of_a_damper() {
+    for (name, more) in [("real/mr_10_2.csv", ""), ("real/mr_A1.csv", "linear_stiffness = \"fit\"\n")] {
+        let Some(data) = recording(name) else { return };
+        for model in [
+            with_friction("", "\"fit\"", more),
+            format!("[terms]\ninertia = \"fit\"\nlinear_damping = \"fit\"\n{more}"),
+        ] {
+            for stage in identify(&data, &model)["stages"].as_array().unwrap() {
+                let inertia = stage["coefficients"]["qdd"].as_f64();
+                assert!(inertia.is_none_or(|inertia| inertia > 0.0), "{name}: {stage:#}");
+            }
+        }
+    }
+}
+
 const EMPS: &str = "hold = \"linear\"\n[columns]\nt = \"time_s\"\nq = \"position_m\"\nF = \"force_N\"\n[terms]\n";
 
 #[test]

@@ -299,6 +299,7 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
     if !open.is_empty() {
         let _ = writeln!(text, "  not known: {}", open.join(", "));
     }
+    text += &stage.explained.map_or_else(String::new, explained);
     text += &lacking(stage);
     if limit.is_some_and(|limit| !limit.explained()) {
         text += "  the law leaves more than sensor noise: no comparison with what any method could reach\n";
@@ -307,6 +308,15 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
         let _ = writeln!(text, "  no data of this stage determine {combination}");
     }
     text
+}
+
+/// What is to be said of coefficients that are not validated.
+fn explained(share: f64) -> String {
+    format!(
+        "  not validated: it explains {:.1} % of the force, and what is left is no white sensor noise; the std are those between parts of the \
+         record and between lengths of variation\n",
+        100.0 * share
+    )
 }
 
 /// `q^3: not known yet, about 1.4 s more of such motion`, a line for each coefficient that a law to vouch for needs better.

@@ -29,6 +29,10 @@ struct StageReport {
     /// The same whenever a law returns; null where no law was vouched for.
     law_number: Option<u32>,
     recognised: bool,
+    /// Whether the law was validated at the stage's end.
+    valid: bool,
+    /// Share of the force's variance that the coefficients explain; null where they are not those of the weak form.
+    explained: Option<f64>,
     law: Option<String>,
     coefficients: Pairs,
     std: Pairs,
@@ -78,6 +82,8 @@ impl StageReport {
             identified: stage.identified,
             law_number: stage.law_number,
             recognised: stage.recognised,
+            valid: stage.valid,
+            explained: stage.explained,
             law: stage.law(forced),
             coefficients: Pairs(stage.known().map(|(known, _)| (known.term.name(), known.value)).collect()),
             std: Pairs(stage.known().map(|(known, std)| (known.term.name(), std)).collect()),

@@ -25,14 +25,21 @@ pub struct Stage {
     pub coefficients: Vec<Coefficient>,
     /// Whether its coefficients were moving at its end: those published are the last ones.
     pub drifting: bool,
+    /// Whether its law was validated at its end.
+    pub valid: bool,
+    /// Share of the force's variance that the coefficients explain where they are those of the weak form, which are not validated.
+    pub explained: Option<f64>,
     /// What its data could not determine.
     pub unidentifiable: Vec<String>,
 }
 
 impl Stage {
-    /// The coefficients that are known, with their std.
+    /// The coefficients that are known, with their std: of a law that is not validated those that are known better than their own size, and
+    /// the 0 of a term that it has dropped.
     pub fn known(&self) -> impl Iterator<Item = (&Coefficient, f64)> {
-        self.coefficients.iter().filter_map(|coefficient| Some((coefficient, coefficient.std?)))
+        let told = |value: f64, std: f64| self.valid || value == 0.0 || std < value.abs();
+        let known = self.coefficients.iter().filter_map(|coefficient| Some((coefficient, coefficient.std?)));
+        known.filter(move |(coefficient, std)| told(coefficient.value, *std))
     }
 
     /// The terms whose coefficients are not known as well as a law that is vouched for asks, and for how many more seconds such motion
@@ -205,6 +212,8 @@ fn begin(identifier: &Identifier, start: f64) -> Stage {
         law_number: None,
         recognised: false,
         drifting: false,
+        valid: false,
+        explained: None,
         coefficients: identifier.coefficients().to_vec(),
         unidentifiable: identifier.unidentifiable(),
     }
@@ -215,6 +224,6 @@ fn renew(stage: &mut Stage, identifier: &Identifier, t: f64) {
     let output = identifier.output();
     stage.identified = output.identified_time;
     (stage.law_number, stage.recognised) = (output.law_number, output.recognised);
-    stage.drifting = output.drifting;
+    (stage.drifting, stage.valid, stage.explained) = (output.drifting, output.valid, output.explained);
     stage.coefficients.copy_from_slice(identifier.coefficients());
 }

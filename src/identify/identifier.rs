@@ -111,7 +111,7 @@ pub struct Output {
     pub recognised: bool,
     /// What the identifier is doing.
     pub status: Status,
-    /// Whether the present law is vouched for.
+    /// Whether the present law is validated; every std is known then.
     pub valid: bool,
     /// Whether the coefficients move: they are followed as they go, and vouched for as long as their stated e is below 0.2².
     pub drifting: bool,
@@ -125,6 +125,9 @@ pub struct Output {
     pub prediction_qd: f64,
     /// The effect of the catalogue that the present law lacks most; `None` where none stands out.
     pub missing: Option<Missing>,
+    /// Share of the force's variance that the published coefficients explain where they are those of the weak form; `None` where they are
+    /// those of a law that states its own std, and while nothing is known.
+    pub explained: Option<f64>,
     /// Estimated std of the displacement's sensor noise; `None` while not known or not measured.
     pub noise_q: Option<f64>,
     /// Estimated std of the velocity's sensor noise; `None` while not known or not measured.
@@ -170,6 +173,8 @@ pub struct Identifier {
     potential: Vec<Term>,
     coefficients: Vec<Coefficient>,
     output: Output,
+    /// What the caller sees of both.
+    shown: (Vec<Coefficient>, Output),
     last: Option<f64>,
 }
 
@@ -184,7 +189,7 @@ impl Identifier {
         model.check_inertia()?;
         model.check_streaming()?;
         model.check_free(settings.channels.excitation)?;
-        let coefficients = model
+        let coefficients: Vec<Coefficient> = model
             .terms
             .iter()
             .map(|entry| Coefficient { term: entry.term, value: 0.0, std: None, needed: None })
@@ -207,11 +212,13 @@ impl Identifier {
             threshold: 0.0,
             prediction_q: 0.0,
             prediction_qd: 0.0,
+            explained: None,
             noise_q: None,
             noise_qd: None,
             missing: None,
         };
-        Ok(Identifier { settings, problem, engine, potential, coefficients, output, last: None })
+        let shown = (coefficients.clone(), output);
+        Ok(Identifier { settings, problem, engine, potential, coefficients, output, shown, last: None })
     }
 
     /// Takes one sample.
@@ -222,10 +229,15 @@ impl Identifier {
         self.accept(&sample)?;
         self.last = Some(sample.t);
         let sample = self.measured(sample);
-        let Identifier { settings, problem, engine, coefficients, output, .. } = self;
+        let Identifier { settings, problem, engine, coefficients, output, shown, .. } = self;
         match engine {
             Engine::Default(tracker) => tracker.step(problem, settings, sample, coefficients, output),
             Engine::Publication(publication) => publication.step(problem, settings, sample, coefficients, output),
+        }
+        shown.0.copy_from_slice(coefficients);
+        shown.1 = *output;
+        if let Engine::Default(tracker) = engine {
+            tracker.show(problem, settings, &mut shown.0, &mut shown.1);
         }
         Ok(())
     }
@@ -287,12 +299,12 @@ impl Identifier {
 
     /// The published coefficients, in the order of the model's terms.
     pub fn coefficients(&self) -> &[Coefficient] {
-        &self.coefficients
+        &self.shown.0
     }
 
     /// All other outputs after the last step.
     pub fn output(&self) -> &Output {
-        &self.output
+        &self.shown.1
     }
 
     /// Log-likelihood per measurement of the present stage's law, to compare settings on one record by; `None` while there is no

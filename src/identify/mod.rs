@@ -9,6 +9,7 @@ mod deviation;
 mod drift;
 mod equations;
 mod forecast;
+mod functional;
 mod identification;
 mod identifier;
 mod known;

@@ -12,6 +12,7 @@ mod switch;
 
 use super::deviation::Deviation;
 use super::drift::Drift;
+use super::functional::WeakForm;
 use super::identifier::{Coefficient, Output, Status};
 use super::known::KnownLaws;
 use super::moving::Moving;
@@ -61,6 +62,9 @@ const INERTIA_SPREAD: f64 = 0.5;
 /// Samples for which a suspicion keeps the law in use from being renewed: what comes may belong to another law.
 const SUSPENSE: u64 = 1000;
 
+/// Once in so many samples it is asked which lengths of variation are too short for the motion.
+const REST_EVERY: u64 = 256;
+
 /// After so many passes in a row what a law leaves unexplained is no matter of a fit that has not settled.
 const LASTS: u32 = 3;
 
@@ -86,6 +90,7 @@ pub struct Tracker {
     afresh: u32,
     live: Live,
     bank: Bank,
+    weak_form: WeakForm,
     roughness: Roughness,
     /// Whether a law's residuals have told the sensors' noise.
     noise_known: bool,
@@ -163,6 +168,7 @@ impl Tracker {
             afresh: 0,
             live: Live::new(problem),
             bank: Bank::new(n, HYPOTHESES),
+            weak_form: WeakForm::new(problem),
             roughness: Roughness::default(),
             noise_known: false,
             deviation: Deviation::new(settings.deviation_interval, settings.sample_time),
@@ -217,7 +223,12 @@ impl Tracker {
             output.switch_time = sample.t;
             self.start.begin(0);
         }
+        let switches = output.switch_count;
         self.window.push(sample);
+        self.weak_form.step(problem, sample);
+        if self.window.end().is_multiple_of(REST_EVERY) {
+            self.weak_form.rest(problem, self.first_noise(settings));
+        }
         self.measure_roughness(problem, output);
         self.follow(problem, settings, output);
         if !output.drifting || self.resting {
@@ -226,6 +237,24 @@ impl Tracker {
         self.track_moving(problem, published, output);
         self.track_drift(problem, settings, published, output);
         self.foretell(problem, published, output);
+        if output.switch_count != switches {
+            self.weak_form.restart();
+        }
+    }
+
+    /// What a caller is to see: of a record whose law cannot state an honest std, the coefficients of the weak form in place of its own. They
+    /// are not validated; nor is a law at rest of which some std is not known.
+    pub fn show(&mut self, problem: &Problem, settings: &Settings, shown: &mut [Coefficient], output: &mut Output) {
+        if output.drifting {
+            return;
+        }
+        let stated = problem.free.iter().filter(|index| shown[**index].std.is_some()).count();
+        // a law whose innovations are white is on its way to state an std of its own
+        let consistent = self.phase == Phase::Refining && self.stage.explains;
+        if stated == 0 && !consistent {
+            output.explained = self.weak_form.publish(problem, self.first_noise(settings), shown);
+        }
+        output.valid &= stated == problem.n();
     }
 
     fn seek_constant_law(

@@ -12,10 +12,12 @@
 //! overdetermined system, solved by pseudo-inverse ([`Regression`]). Terms linear in q̇ are integrated by parts, so that they
 //! need no velocity: ∫ qᵃ q̇ φ dt = −∫ qᵃ⁺¹/(a+1) φ' dt. A constant times δq̇ gives ∫ φ' dt = 0 whatever the data.
 
+mod functional;
 mod regression;
 mod row;
 mod variation;
 
+pub use functional::{Functional, Pole, signal};
 pub use regression::{Direction, Fit, Regression};
 pub use row::{Row, Section};
 pub use variation::Variation;

@@ -204,7 +204,7 @@ impl Tracker {
     }
 
     /// Sensor variances before any law: as set, or from differences.
-    fn first_noise(&self, settings: &Settings) -> [f64; 2] {
+    pub(super) fn first_noise(&self, settings: &Settings) -> [f64; 2] {
         let found = self.roughness.variance().unwrap_or([0.0; 2]);
         let given = [settings.noise_q, settings.noise_qd];
         [0, 1].map(|index| match given[index] {

@@ -85,7 +85,11 @@ impl Tracker {
                 Some(_) => coefficient.std = None,
             }
         }
-        output.valid = self.drift.predicts() && self.drift.stated_error() < TRUSTED;
+        let physical = self.is_physical(problem, published[problem.inertia].value);
+        if !physical {
+            problem.free.iter().for_each(|index| published[*index].std = None);
+        }
+        output.valid = physical && self.drift.predicts() && self.drift.stated_error() < TRUSTED;
         output.status = if output.valid { Status::Tracking } else { Status::Acquiring };
         if output.valid {
             output.identified_time.get_or_insert(self.now());

@@ -28,7 +28,8 @@ impl Tracker {
         published: &mut [Coefficient],
         output: &mut Output,
     ) {
-        let vouched = self.stage.is_vouched();
+        let physical = self.is_physical(problem, self.stage.all[problem.inertia]);
+        let vouched = self.stage.is_vouched() && physical;
         if output.drifting && !vouched {
             return;
         }
@@ -39,7 +40,7 @@ impl Tracker {
             }
         }
         // of a law that does not explain its record, or that several share, the std is that of none
-        if !(vouched || self.stage.is_beyond_doubt() || self.recognised.is_some()) {
+        if !physical || !(vouched || self.stage.is_beyond_doubt() || self.recognised.is_some()) {
             problem.free.iter().for_each(|index| published[*index].std = None);
             return;
         }
@@ -63,6 +64,11 @@ impl Tracker {
                 output.status = Status::Tracking;
             }
         }
+    }
+
+    /// Whether the inertia, where it is sought, is one that a motion can have.
+    pub(super) fn is_physical(&self, problem: &Problem, inertia: f64) -> bool {
+        problem.free_inertia().is_none() || self.weak_form.resolves(inertia)
     }
 
     /// How long a law takes to be known, and what it leaves unexplained then.
