@@ -1,9 +1,10 @@
-//! What the sensors alone would leave of a right law, by trial: noise added to the readings, through the smoother and every term.
+//! What the sensors alone would leave of a right law, by trial: noise added to the readings, through a smoother that follows the motion less
+//! far, and every term.
 
 use super::equation::Equation;
 use super::record::Record;
 use super::windows::{COUNT, PRINCIPAL};
-use crate::diagnose::motion::{Motion, Track, readings};
+use crate::diagnose::motion::Motion;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -11,7 +12,8 @@ use rand_distr::{Distribution, StandardNormal};
 /// Times that noise is drawn.
 const DRAWS: u64 = 2;
 
-/// The record as other draws of the sensors' noise would have shown it, twice as noisy; `force` is the std of the excitation's readings.
+/// The record as other draws of the sensors' noise would have shown it, and as a smoother at the likeliest cutoff sees it, without the margin:
+/// what that changes is what smoothing may take. `force` is the std of the excitation's readings.
 pub(in crate::diagnose) fn disturbed(record: &Record, force: f64) -> Vec<Record> {
     (0..DRAWS).filter_map(|seed| record.moved(noisy(record, force, seed))).collect()
 }
@@ -27,12 +29,12 @@ fn noisy(record: &Record, force: f64, seed: u64) -> Vec<Motion> {
     let mut motions = record.motions.clone();
     for motion in &mut motions {
         let [q, qd] = motion.sensors.noise;
+        let closer = motion.sensors.without_margin();
         for (piece, track) in motion.pieces.iter_mut().zip(&mut motion.tracks) {
             piece.q.iter_mut().for_each(|values| add(values, q));
             piece.qd.iter_mut().for_each(|values| add(values, qd));
             add(&mut piece.excitation, force);
-            let states = track.spline.smooth(readings(piece, track.read));
-            *track = Track { states, ..track.clone() };
+            *track = track.resmoothed(piece, closer);
         }
     }
     motions

@@ -77,6 +77,20 @@ pub(super) fn readings(piece: &Piece, read: [bool; 2]) -> [Option<&[f64]>; 2] {
     [measured[0].filter(|_| read[0]), measured[1].filter(|_| read[1])]
 }
 
+impl Track {
+    /// The same readings smoothed another way.
+    pub(super) fn resmoothed(&self, piece: &Piece, sensors: Sensors) -> Track {
+        Track { share: self.share, ..track(piece, sensors, self.read, self.doubt.clone()) }
+    }
+}
+
+impl Sensors {
+    /// With the likeliest cutoff itself.
+    pub(super) fn without_margin(self) -> Sensors {
+        Sensors { cutoff: self.cutoff / MARGIN, ..self }
+    }
+}
+
 impl Motion {
     /// Of a recording whose excitation did this between samples. None where no piece has samples enough.
     pub(super) fn of(recording: &Recording, hold: Hold) -> Option<Motion> {

@@ -10,7 +10,7 @@ use super::errors::{WindowError, are_adequate, errors};
 use super::law::Law;
 use super::remainder;
 use crate::diagnose::candidates::{Contender, contest};
-use crate::diagnose::judge::{COUNT, HeldOut, PRINCIPAL, delay_of};
+use crate::diagnose::judge::{COUNT, PRINCIPAL, delay_of};
 use crate::law::{Catalogue, Effect, Inner, Term};
 
 /// Chance, shared among all candidates tried, below which a gain is none.
@@ -31,8 +31,9 @@ pub(in crate::diagnose) const TIE: f64 = 0.05;
 /// Most candidates in a tie.
 const TIED: usize = 3;
 
-/// Share of a candidate that the law's own terms are, from which it cannot be told from them.
-const TRAP: f64 = 0.97;
+/// Share of a candidate that the law's own terms are, from which it cannot be told from them: what little error its readings have is then
+/// ten times as large in its coefficient.
+const TRAP: f64 = 0.99;
 
 /// Std that a coefficient must be away from 0.
 const SURE: f64 = 2.0;
