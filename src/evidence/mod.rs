@@ -35,5 +35,5 @@ pub use joint::{Joint, Start, Unknowns};
 pub use lack::{Lack, Missing};
 pub use pass::{IntervalMap, Observation, Pass, RIVALS, Track, gains};
 pub use single::{Single, either};
-pub use symmetric::LogSum;
+pub use symmetric::{LogSum, System};
 pub use weighing::{Belief, Weighing};

@@ -8,6 +8,7 @@ mod capture;
 mod deviation;
 mod drift;
 mod equations;
+mod force_law;
 mod forecast;
 mod identification;
 mod identifier;
