@@ -176,6 +176,7 @@ fn settings(
     let (hold, from) = match (arguments.hold.as_deref().and_then(Hold::from_id), model.hold) {
         (Some(hold), _) => (hold, "as asked"),
         (None, Some(hold)) => (hold, "the model's"),
+        (None, None) if model.is_force_law() => (settings.hold, "no part of a law that gives F"),
         (None, None) => (identify::choose_hold(model, recording, &settings), "chosen"),
     };
     Ok((Settings { hold, ..settings }, from))
@@ -226,7 +227,7 @@ pub(super) fn stages(run: &Run) -> impl Iterator<Item = (&Stage, Option<&StageLi
 
 /// Estimated std of the sensors' noise by channel.
 pub(super) fn noise(found: &Identification) -> Vec<(String, f64)> {
-    let channels = [("q", found.noise_q), ("qd", found.noise_qd)];
+    let channels = [("q", found.noise_q), ("qd", found.noise_qd), ("F", found.noise_force)];
     channels.into_iter().filter_map(|(channel, std)| Some((channel.to_string(), std?))).collect()
 }
 

@@ -23,6 +23,8 @@ pub struct Stage {
     pub recognised: bool,
     /// The last published coefficients, in the order of the model's terms.
     pub coefficients: Vec<Coefficient>,
+    /// Share of the force's variance that a law which gives it explains; `None` while not known, and for a law of motion.
+    pub explained: Option<f64>,
     /// Whether its coefficients were moving at its end: those published are the last ones.
     pub drifting: bool,
     /// What its data could not determine.
@@ -60,6 +62,8 @@ pub struct Identification {
     pub noise_q: Option<f64>,
     /// Estimated std of the velocity's sensor noise.
     pub noise_qd: Option<f64>,
+    /// Estimated std of what the force has besides a law that gives it; `None` for a law of motion.
+    pub noise_force: Option<f64>,
     /// The laws that were vouched for, to be recognised in other recordings.
     pub known_laws: SavedLaws,
     /// The samples that were not used, and why.
@@ -154,6 +158,7 @@ pub fn identify_knowing(
         stages: Vec::new(),
         noise_q: None,
         noise_qd: None,
+        noise_force: None,
         known_laws: known.clone(),
         skipped: Vec::new(),
     };
@@ -192,6 +197,7 @@ fn follow(
     found.stages.push(present);
     found.known_laws = identifier.known_laws();
     found.noise_q = identifier.output().noise_q.or(found.noise_q);
+    found.noise_force = identifier.output().noise_force.or(found.noise_force);
     found.noise_qd = identifier.output().noise_qd.or(found.noise_qd);
 }
 
@@ -204,6 +210,7 @@ fn begin(identifier: &Identifier, start: f64) -> Stage {
         identified: None,
         law_number: None,
         recognised: false,
+        explained: None,
         drifting: false,
         coefficients: identifier.coefficients().to_vec(),
         unidentifiable: identifier.unidentifiable(),
@@ -215,6 +222,7 @@ fn renew(stage: &mut Stage, identifier: &Identifier, t: f64) {
     let output = identifier.output();
     stage.identified = output.identified_time;
     (stage.law_number, stage.recognised) = (output.law_number, output.recognised);
+    stage.explained = output.explained;
     stage.drifting = output.drifting;
     stage.coefficients.copy_from_slice(identifier.coefficients());
 }

@@ -65,6 +65,10 @@ impl ChannelNoise {
         let [before, last] = self.last;
         let (dt, channel) = (t - before, self.channel);
         self.last = [t, value];
+        if self.count == 1 && value == last {
+            // before it moves a motion tells neither noise nor smoothness
+            return;
+        }
         self.count = self.count.saturating_add(1);
         self.power += (value * value - self.power) / f64::from(self.count);
         for rival in &mut self.rivals {
@@ -74,6 +78,11 @@ impl ChannelNoise {
                 count => rival.add(dt, channel, value, count > SETTLING),
             }
         }
+    }
+
+    /// Readings since the motion began.
+    pub fn count(&self) -> usize {
+        self.count as usize
     }
 
     /// The likeliest; none before enough readings.

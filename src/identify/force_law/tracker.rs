@@ -43,6 +43,12 @@ const PRICE: f64 = 2.0;
 /// Part of a term that another one must be for both to count as not told apart.
 const TOUCHED: f64 = 1e-3;
 
+/// Std by which neighbouring residuals may be correlated by chance: one in a thousand.
+const SURPRISE: f64 = 3.1;
+
+/// Largest correlation that is told from 1.
+const MOST_ALIKE: f64 = 1.0 - 1e-6;
+
 /// Samples over which mean squares are taken.
 const MEMORY: f64 = 4000.0;
 
@@ -61,6 +67,7 @@ pub struct ForceTracker {
     /// The first samples, until the smoother can begin.
     first: Vec<Sample>,
     taken: usize,
+    has_begun: bool,
     next_look: u64,
     lag: usize,
     /// Instants taken from the smoother.
@@ -92,10 +99,12 @@ struct Segment {
     every: Vec<bool>,
     /// Whether the record determines the coefficient.
     determined: Vec<bool>,
-    /// Mean squares of residuals, and of what the motion's error makes of them.
+    /// Mean square of the residuals, their mean product with the one before, and what the motion's error makes of them.
     residual: f64,
+    lagged: f64,
     of_motion: f64,
     means: f64,
+    last_residual: f64,
     /// The force's own noise, variance; none before the first block.
     white: Option<f64>,
     established: bool,
@@ -111,6 +120,7 @@ impl ForceTracker {
             smoother: Smoother::new(),
             first: vec![Sample::default(); FIRST],
             taken: 0,
+            has_begun: false,
             next_look: FIRST as u64,
             lag: LONGEST,
             passed: 0,
@@ -121,7 +131,7 @@ impl ForceTracker {
             features: vec![0.0; problem.terms.len()],
             deviation: Deviation::new(settings.deviation_interval, settings.sample_time),
             suspected: None,
-            previous: f64::NEG_INFINITY,
+            previous: 0.0,
         }
     }
 
@@ -135,17 +145,31 @@ impl ForceTracker {
         output: &mut Output,
     ) {
         self.listen(problem, sample);
-        if self.taken < FIRST {
-            self.first[self.taken] = sample;
-            self.taken += 1;
-            if self.taken == FIRST {
-                self.believe(problem, settings);
-                (0..FIRST).for_each(|index| self.advance(problem, settings, self.first[index], output));
-            }
-        } else {
+        if self.has_begun {
             self.advance(problem, settings, sample, output);
+        } else {
+            self.wait(problem, settings, sample, output);
         }
         self.publish(problem, settings, sample, coefficients, output);
+    }
+
+    /// Keeps the first samples until they tell what the sensors are; of a machine that stands still the last ones.
+    fn wait(&mut self, problem: &Problem, settings: &Settings, sample: Sample, output: &mut Output) {
+        if self.taken == FIRST {
+            self.first.rotate_left(1);
+            self.taken -= 1;
+        }
+        self.first[self.taken] = sample;
+        self.taken += 1;
+        let measured = [problem.channels.q, problem.channels.qd];
+        let is_known = |(noise, measured): (&ChannelNoise, bool)| !measured || noise.count() >= FIRST / 2;
+        if self.taken == FIRST && self.noises.iter().zip(measured).all(is_known) {
+            self.has_begun = true;
+            self.previous = self.first[0].t;
+            self.stage.start = self.previous;
+            self.believe(problem, settings);
+            (0..FIRST).for_each(|index| self.advance(problem, settings, self.first[index], output));
+        }
     }
 
     /// What the present stage cannot determine.
@@ -234,7 +258,7 @@ impl ForceTracker {
         self.changes.suppose(stage.samples, [self.previous.max(stage.start), instant.t], &stage.sums);
         self.previous = instant.t;
         let block_is_full = stage.add(problem, &mut self.features, &instant, of_motion);
-        self.changes.look(stage.samples, &stage.sums, &stage.every, stage.blocks.verdict().inflation);
+        self.changes.look(stage.samples, &stage.sums, &stage.every, stage.inflation());
         let evidence = self.changes.evidence();
         let level = (settings.false_alarm_interval / settings.sample_time).ln().max(0.0);
         if stage.established && evidence > level {
@@ -290,7 +314,7 @@ impl ForceTracker {
             (None, false, 0) => Status::Acquiring,
             (None, false, _) => Status::ReIdentifying,
         };
-        output.noise_force = stage.white.map(f64::sqrt);
+        output.noise_force = stage.white.filter(|_| !stage.is_coloured()).map(f64::sqrt);
         let [q, qd] = self.smoothness.map(|channel| channel.map(|channel| channel.variance.sqrt()));
         (output.noise_q, output.noise_qd) = (q, qd);
         self.predict(problem, settings, sample, output);
@@ -317,7 +341,7 @@ impl Segment {
             sums: Sums::none(n),
             blocks: Blocks::new(n),
             samples: 0,
-            start: f64::NEG_INFINITY,
+            start: 0.0,
             system: System::new(n),
             inverse: vec![0.0; n * n],
             free: vec![0.0; n],
@@ -326,6 +350,8 @@ impl Segment {
             every: vec![true; n],
             determined: vec![false; n],
             residual: 0.0,
+            lagged: 0.0,
+            last_residual: 0.0,
             of_motion: 0.0,
             means: 0.0,
             white: None,
@@ -339,7 +365,7 @@ impl Segment {
         self.start = start;
         self.blocks.begin(&self.sums);
         self.active.fill(true);
-        self.established = false;
+        (self.established, self.means) = (false, 0.0);
         self.solve(problem, false);
     }
 
@@ -354,9 +380,11 @@ impl Segment {
         let weight = self.white.map_or(1.0, |white| white / (white + of_motion));
         self.sums.add(features, force, weight);
         self.samples += 1;
-        if self.samples > 2 * features.len() as u64 {
+        let last = std::mem::replace(&mut self.last_residual, residual);
+        if self.samples as f64 > RECORD * features.len() as f64 {
             self.means = (self.means + 1.0).min(MEMORY);
             self.residual += (residual * residual - self.residual) / self.means;
+            self.lagged += (residual * last - self.lagged) / self.means;
             self.of_motion += (of_motion - self.of_motion) / self.means;
         }
         let is_full = self.blocks.add(features, force, weight);
@@ -392,7 +420,7 @@ impl Segment {
     /// Drops the "maybe" term that is worth least, where it is not worth its price.
     fn drop_one(&mut self, problem: &Problem) -> bool {
         let n = self.free.len();
-        let scale = self.variance() * self.blocks.verdict().inflation;
+        let scale = self.variance() * self.inflation();
         let price = PRICE * self.sums.count.max(2.0).ln();
         let worth = |row: &usize| self.free[*row].powi(2) / (scale * self.inverse[row * n + row]);
         let candidates = (0..n).filter(|row| self.active[*row] && problem.maybe[*row]);
@@ -448,7 +476,7 @@ impl Segment {
             return Some(0.0);
         }
         let white = self.variance() * self.inverse[row * n + row];
-        let variance = if verdict.is_coloured { verdict.covariance[row * n + row].max(white) } else { white };
+        let variance = if self.is_coloured() { verdict.covariance[row * n + row].max(white) } else { white };
         Some(variance.sqrt()).filter(|std| std.is_finite())
     }
 
@@ -459,11 +487,27 @@ impl Segment {
         (size > 0.0).then_some(squares / size)
     }
 
+    /// Correlation of neighbouring residuals, where it is no chance.
+    fn correlation(&self) -> f64 {
+        let found = if self.residual > 0.0 { self.lagged / self.residual } else { 0.0 };
+        if found * found * self.means > SURPRISE * SURPRISE { found.clamp(0.0, MOST_ALIKE) } else { 0.0 }
+    }
+
+    /// Samples that say as much as one independent sample: residuals that follow from one another say less, as those of an autoregression do
+    /// (Bartlett, J. Royal Statistical Society 8 Suppl., 1946).
+    fn inflation(&self) -> f64 {
+        let correlation = self.correlation();
+        self.blocks.verdict().inflation.max((1.0 + correlation) / (1.0 - correlation))
+    }
+
+    fn is_coloured(&self) -> bool {
+        self.blocks.verdict().is_coloured || self.correlation() > 0.0
+    }
+
     /// Whether the law explains its record down to white noise, holds throughout it, and is known.
     fn is_valid(&self) -> bool {
-        let verdict = self.blocks.verdict();
         let is_known = self.error().is_some_and(|error| error < MARGIN * SETTLED);
-        self.established && verdict.is_known && !verdict.is_coloured && is_known
+        self.established && self.blocks.verdict().is_known && !self.is_coloured() && is_known
     }
 
     /// Share of the force's variance that the law explains.
@@ -492,7 +536,7 @@ impl Segment {
     /// A mean deviation that noise alone hardly gives.
     fn unusual_deviation(&self, of_motion: f64, settings: &Settings) -> f64 {
         let std = (self.variance() + of_motion).sqrt();
-        let samples = (settings.deviation_interval / settings.sample_time / self.blocks.verdict().inflation).max(1.0);
+        let samples = (settings.deviation_interval / settings.sample_time / self.inflation()).max(1.0);
         let [mean, spread] = [std::f64::consts::FRAC_2_PI.sqrt(), (1.0 - std::f64::consts::FRAC_2_PI).sqrt()];
         std * (mean + UNUSUAL * spread / samples.sqrt())
     }
