@@ -166,7 +166,9 @@ pub enum BuildError {
         key: String,
     },
     /// The publication's method has laws of motion only.
-    #[error("[terms] has no inertia: the publication's method identifies laws of motion; leave --method out, or add inertia = \"fit\"")]
+    #[error(
+        "[terms] has no inertia: the publication's method identifies laws of motion; leave --method out, or add inertia = \"fit\""
+    )]
     PublishedForceLaw,
 }
 
@@ -206,14 +208,7 @@ impl Identifier {
     /// # Errors
     /// [`BuildError`] when settings or model are refused.
     pub fn new(model: &Model, settings: Settings) -> Result<Identifier, BuildError> {
-        settings.check()?;
-        model.check()?;
-        match model.is_force_law() {
-            true => check_force_law(model, &settings)?,
-            false => model.check_inertia()?,
-        }
-        model.check_streaming()?;
-        model.check_free(settings.channels.excitation)?;
+        check(model, &settings)?;
         let coefficients = model
             .terms
             .iter()
@@ -349,6 +344,18 @@ impl Identifier {
         let always = self.potential.iter().map(|term| format!("{term} in [potential]"));
         from_data.into_iter().chain(always).collect()
     }
+}
+
+/// Checks that the model can be identified sample by sample from what is measured.
+pub(super) fn check(model: &Model, settings: &Settings) -> Result<(), BuildError> {
+    settings.check()?;
+    model.check()?;
+    match model.is_force_law() {
+        true => check_force_law(model, settings)?,
+        false => model.check_inertia()?,
+    }
+    model.check_streaming()?;
+    Ok(model.check_free(settings.channels.excitation)?)
 }
 
 /// Checks that a law whose output is F can be identified from what is measured.

@@ -9,6 +9,7 @@ mod builtin;
 mod check;
 mod excitation;
 mod hidden;
+mod imposed;
 mod noise;
 mod parametric;
 mod plant;

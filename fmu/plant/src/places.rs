@@ -100,7 +100,7 @@ impl Places {
         let mut scenario = Scenario::new(&law.name, law.terms(), self.schedule(law, values)?, NEVER);
         scenario.seed = values.integer(self.seed).max(0) as u64;
         scenario.initial = State { q, qd };
-        scenario.noise = SensorNoise { q: noise_q, qd: noise_qd };
+        scenario.noise = SensorNoise { q: noise_q, qd: noise_qd, ..SensorNoise::default() };
         scenario.excitation = self.excitation(values);
         scenario.hidden = self.hidden_effects(values)?;
         Ok(scenario)

@@ -132,13 +132,15 @@ impl Blocks {
             for row in 0..n {
                 for column in 0..n {
                     let of_block = &block.information[column * n..(column + 1) * n];
-                    self.matrix[row * n + column] = if active[row] { dot(&inverse[row * n..(row + 1) * n], of_block) } else { 0.0 };
+                    self.matrix[row * n + column] =
+                        if active[row] { dot(&inverse[row * n..(row + 1) * n], of_block) } else { 0.0 };
                 }
             }
             for row in (0..n).filter(|row| active[*row]) {
                 expected += self.matrix[row * n + row];
                 let others = (0..n).filter(|column| active[*column]);
-                variance += 2.0 * others.map(|column| self.matrix[row * n + column] * self.matrix[column * n + row]).sum::<f64>();
+                variance += 2.0
+                    * others.map(|column| self.matrix[row * n + column] * self.matrix[column * n + row]).sum::<f64>();
             }
         }
         self.meat(coefficients, active);

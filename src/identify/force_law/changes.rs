@@ -74,7 +74,8 @@ pub struct Switch {
 impl Changes {
     /// For n unknowns.
     pub fn new(n: usize) -> Changes {
-        let hypothesis = Hypothesis { sample: 0, t: 0.0, previous: 0.0, before: Sums::none(n), evidence: 0.0, looked: 0 };
+        let hypothesis =
+            Hypothesis { sample: 0, t: 0.0, previous: 0.0, before: Sums::none(n), evidence: 0.0, looked: 0 };
         let work = Work {
             since: Sums::none(n),
             both: Sums::none(n),
@@ -130,9 +131,8 @@ impl Changes {
         let best = self.likeliest();
         self.weigh(best, now, total, active, inflation);
         for _ in 1..LOOKS.min(self.count) {
-            let waited = |hypothesis: &Hypothesis| {
-                (now + 1 - hypothesis.looked) as f64 / (now + 1 - hypothesis.sample) as f64
-            };
+            let waited =
+                |hypothesis: &Hypothesis| (now + 1 - hypothesis.looked) as f64 / (now + 1 - hypothesis.sample) as f64;
             let all = self.hypotheses[..self.count].iter().enumerate();
             let longest = all.max_by(|a, b| waited(a.1).total_cmp(&waited(b.1))).map_or(0, |(index, _)| index);
             self.weigh(longest, now, total, active, inflation);
@@ -236,7 +236,8 @@ impl Work {
             self.h[row] = self.score[row] - dot(gain, &self.score);
             for (column, entry) in self.law.iter_mut().enumerate() {
                 // the law's coefficients are no longer needed
-                *entry = self.since.information[row * n + column] - (0..n).map(|k| gain[k] * self.since.information[k * n + column]).sum::<f64>();
+                *entry = self.since.information[row * n + column]
+                    - (0..n).map(|k| gain[k] * self.since.information[k * n + column]).sum::<f64>();
             }
             self.both.information[row * n..(row + 1) * n].copy_from_slice(&self.law);
         }
@@ -253,7 +254,15 @@ impl Work {
     }
 
     /// Even chances of a switch of all coefficients, and of one alone, any.
-    fn mixture(&mut self, before: &Sums, active: &[bool], freedom: [f64; 2], left: f64, variance: f64, inflation: f64) -> f64 {
+    fn mixture(
+        &mut self,
+        before: &Sums,
+        active: &[bool],
+        freedom: [f64; 2],
+        left: f64,
+        variance: f64,
+        inflation: f64,
+    ) -> f64 {
         let n = active.len();
         let [known, freedom] = freedom;
         let factor = |gained: f64| {

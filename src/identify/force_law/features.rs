@@ -8,7 +8,8 @@ use super::smoother::Instant;
 use crate::law::Term;
 
 /// Points of the displacement in std, and their weights.
-const OF_Q: [(f64, f64); 3] = [(0.0, 2.0 / 3.0), (1.732_050_807_568_877_2, 1.0 / 6.0), (-1.732_050_807_568_877_2, 1.0 / 6.0)];
+const OF_Q: [(f64, f64); 3] =
+    [(0.0, 2.0 / 3.0), (1.732_050_807_568_877_2, 1.0 / 6.0), (-1.732_050_807_568_877_2, 1.0 / 6.0)];
 
 /// Points of the velocity in std, and their weights; more of them, since friction jumps there.
 const OF_QD: [(f64, f64); 5] = [
@@ -44,8 +45,8 @@ fn points(instant: &Instant) -> impl Iterator<Item = (f64, f64, f64)> {
     let slope = if of_q > 0.0 { across / of_q } else { 0.0 };
     let rest = (of_qd - slope * across).max(0.0).sqrt();
     OF_Q.into_iter().flat_map(move |(along, share)| {
-        OF_QD.into_iter().map(move |(beside, weight)| {
-            (q + along * std, qd + slope * along * std + beside * rest, share * weight)
-        })
+        OF_QD
+            .into_iter()
+            .map(move |(beside, weight)| (q + along * std, qd + slope * along * std + beside * rest, share * weight))
     })
 }

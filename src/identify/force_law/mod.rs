@@ -6,15 +6,19 @@
 //! - `features`: the regressors under that belief, and what it leaves open of the force;
 //! - `sums`: the regression; `blocks`: whether what it leaves is white, and its covariance where it is not;
 //! - `changes`: at which instant the law switched;
-//! - `tracker`: the stages, one after the other.
+//! - `segment`: the law of one stage; `tracker`: the stages, one after the other;
+//! - `fit`: one law over a whole recording.
 
 mod blocks;
 mod changes;
 mod features;
+mod fit;
 mod kinematics;
 mod noise;
+mod segment;
 mod smoother;
 mod sums;
 mod tracker;
 
+pub use fit::{ForceFit, fit_force_law};
 pub use tracker::ForceTracker;

@@ -33,7 +33,10 @@ struct Rival {
 pub struct ChannelNoise {
     channel: usize,
     rivals: Vec<Rival>,
+    /// Readings since the motion began, those that count, and those since the last interruption.
+    begun: u32,
     count: u32,
+    since: u32,
     last: [f64; 2],
     /// Mean square of the readings.
     power: f64,
@@ -57,7 +60,7 @@ impl ChannelNoise {
             Rival { ratio, filter: Kinematics::default(), squares: 0.0, logarithms: LogSum::default() }
         };
         let rivals = (0..RATIOS as i32).map(rival).collect();
-        ChannelNoise { channel, rivals, count: 0, last: [0.0; 2], power: 0.0 }
+        ChannelNoise { channel, rivals, begun: 0, count: 0, since: 0, last: [0.0; 2], power: 0.0 }
     }
 
     /// Takes a reading at time t, s.
@@ -65,29 +68,36 @@ impl ChannelNoise {
         let [before, last] = self.last;
         let (dt, channel) = (t - before, self.channel);
         self.last = [t, value];
-        if self.count == 1 && value == last {
+        if self.begun == 1 && value == last {
             // before it moves a motion tells neither noise nor smoothness
             return;
         }
-        self.count = self.count.saturating_add(1);
-        self.power += (value * value - self.power) / f64::from(self.count);
+        self.begun = self.begun.saturating_add(1);
+        self.since = self.since.saturating_add(1);
+        self.count = self.count.saturating_add(u32::from(self.since > SETTLING));
+        self.power += (value * value - self.power) / f64::from(self.begun);
         for rival in &mut self.rivals {
-            match self.count {
+            match self.since {
                 1 => {}
                 2 => rival.filter = Kinematics::begin(channel, [last, value], dt, 1.0),
-                count => rival.add(dt, channel, value, count > SETTLING),
+                since => rival.add(dt, channel, value, since > SETTLING),
             }
         }
     }
 
     /// Readings since the motion began.
     pub fn count(&self) -> usize {
-        self.count as usize
+        self.begun as usize
+    }
+
+    /// The next reading is not the last one's neighbour.
+    pub fn interrupt(&mut self) {
+        self.since = 0;
     }
 
     /// The likeliest; none before enough readings.
     pub fn likeliest(&self) -> Option<Smoothness> {
-        let count = f64::from(self.count.checked_sub(SETTLING).filter(|count| *count > 0)?);
+        let count = f64::from(Some(self.count).filter(|count| *count > 0)?);
         let floor = ROUNDING * ROUNDING * self.power.max(f64::MIN_POSITIVE);
         let loss = |rival: &Rival| (rival.squares / count).max(floor).ln() + rival.logarithms.total() / count;
         let best = self.rivals.iter().min_by(|a, b| loss(a).total_cmp(&loss(b)))?;

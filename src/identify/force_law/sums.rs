@@ -36,7 +36,9 @@ impl Sums {
 
     /// Takes one sample.
     pub fn add(&mut self, features: &[f64], force: f64, weight: f64) {
-        for ((row, right), feature) in self.information.chunks_exact_mut(features.len().max(1)).zip(&mut self.right).zip(features) {
+        for ((row, right), feature) in
+            self.information.chunks_exact_mut(features.len().max(1)).zip(&mut self.right).zip(features)
+        {
             let scaled = weight * feature;
             row.iter_mut().zip(features).for_each(|(entry, other)| *entry += scaled * other);
             *right += scaled * force;

@@ -1,12 +1,11 @@
 //! The identifier of a law whose force is the output, sample by sample.
 
-use super::blocks::Blocks;
 use super::changes::{Changes, Switch};
 use super::features::expect;
 use super::noise::{ChannelNoise, Smoothness};
+use super::segment::Segment;
 use super::smoother::{Instant, LONGEST, Smoother};
-use super::sums::{Sums, dot};
-use crate::evidence::System;
+use super::sums::dot;
 use crate::identify::deviation::Deviation;
 use crate::identify::identifier::{Coefficient, Output, Sample, Status};
 use crate::identify::problem::Problem;
@@ -19,44 +18,14 @@ const FIRST: usize = 64;
 /// Part by which a longer wait may still lower the variance of a residual.
 const GAIN_OF_WAITING: f64 = 0.05;
 
-/// Samples per unknown, at least, of a law in which a switch can be seen.
-const RECORD: f64 = 8.0;
-
-/// e of eq. (8) below which a law counts as known …
-const SETTLED: f64 = 0.05 * 0.05;
-
-/// … and the share of it that the stated covariance, an expectation, must stay below.
-const MARGIN: f64 = 0.5;
-
 /// Std of a residual beyond which a reading stands alone until others confirm it.
 const FAR: f64 = 6.0;
 
 /// Readings in a row that may stand alone; one more is no outlier.
 const ALONE: usize = 2;
 
-/// Least share of the residual's variance that is the force's own noise.
-const OWN: f64 = 0.01;
-
-/// Price of a term in twice the log-likelihood, ÷ ln of the number of samples (Schwarz's is 1; that of the tracker of motion).
-const PRICE: f64 = 2.0;
-
-/// Part of a term that another one must be for both to count as not told apart.
-const TOUCHED: f64 = 1e-3;
-
-/// Std by which neighbouring residuals may be correlated by chance: one in a thousand.
-const SURPRISE: f64 = 3.1;
-
-/// Largest correlation that is told from 1.
-const MOST_ALIKE: f64 = 1.0 - 1e-6;
-
-/// Samples over which mean squares are taken.
-const MEMORY: f64 = 4000.0;
-
 /// Samples for which a law is not renewed while a switch is suspected.
 const SUSPENSE: u64 = 1000;
-
-/// Std of a mean deviation by which it is out of the ordinary.
-const UNUSUAL: f64 = 5.0;
 
 /// The law of the present stage and what it stands on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -80,34 +49,6 @@ pub struct ForceTracker {
     deviation: Deviation,
     suspected: Option<u64>,
     previous: f64,
-}
-
-/// The regression of one stage.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Segment {
-    sums: Sums,
-    blocks: Blocks,
-    samples: u64,
-    start: f64,
-    system: System,
-    /// Λ⁻¹ over the active terms.
-    inverse: Vec<f64>,
-    /// Free coefficients; all of them, with the known ones.
-    free: Vec<f64>,
-    all: Vec<f64>,
-    active: Vec<bool>,
-    every: Vec<bool>,
-    /// Whether the record determines the coefficient.
-    determined: Vec<bool>,
-    /// Mean square of the residuals, their mean product with the one before, and what the motion's error makes of them.
-    residual: f64,
-    lagged: f64,
-    of_motion: f64,
-    means: f64,
-    last_residual: f64,
-    /// The force's own noise, variance; none before the first block.
-    white: Option<f64>,
-    established: bool,
 }
 
 impl ForceTracker {
@@ -174,14 +115,13 @@ impl ForceTracker {
 
     /// What the present stage cannot determine.
     pub fn unidentifiable(&self, problem: &Problem) -> Vec<String> {
-        if self.stage.sums.count < RECORD * problem.n() as f64 { Vec::new() } else { self.stage.open(problem) }
+        self.stage.open(problem)
     }
 
     /// The sensors' noise learns from every sample.
     fn listen(&mut self, problem: &Problem, sample: Sample) {
         let channels = problem.channels;
-        for (noise, (measured, value)) in
-            self.noises.iter_mut().zip([(channels.q, sample.q), (channels.qd, sample.qd)])
+        for (noise, (measured, value)) in self.noises.iter_mut().zip([(channels.q, sample.q), (channels.qd, sample.qd)])
         {
             if measured {
                 noise.add(sample.t, value);
@@ -223,7 +163,8 @@ impl ForceTracker {
         let (least, present) = (variance(LONGEST), variance(self.lag));
         let Some(white) = self.stage.white.filter(|_| present > 0.0) else { return LONGEST };
         let by_motion = self.stage.of_motion / present;
-        let enough = |lag: &usize| white + by_motion * variance(*lag) <= (1.0 + GAIN_OF_WAITING) * (white + by_motion * least);
+        let enough =
+            |lag: &usize| white + by_motion * variance(*lag) <= (1.0 + GAIN_OF_WAITING) * (white + by_motion * least);
         (0..LONGEST).find(enough).unwrap_or(LONGEST)
     }
 
@@ -275,8 +216,9 @@ impl ForceTracker {
         if block_is_full || !suspended {
             stage.solve(problem, block_is_full);
         }
-        let enough = stage.sums.count >= RECORD * problem.n() as f64 && stage.blocks.verdict().is_known;
-        stage.established |= enough && self.changes.largest() < 0.0;
+        if self.changes.largest() < 0.0 {
+            stage.establish();
+        }
     }
 
     /// A new stage, of what came since.
@@ -331,213 +273,5 @@ impl ForceTracker {
             0.0 => self.stage.unusual_deviation(of_motion, settings),
             threshold => threshold,
         };
-    }
-}
-
-impl Segment {
-    fn new(problem: &Problem) -> Segment {
-        let n = problem.n();
-        Segment {
-            sums: Sums::none(n),
-            blocks: Blocks::new(n),
-            samples: 0,
-            start: 0.0,
-            system: System::new(n),
-            inverse: vec![0.0; n * n],
-            free: vec![0.0; n],
-            all: problem.known.clone(),
-            active: vec![true; n],
-            every: vec![true; n],
-            determined: vec![false; n],
-            residual: 0.0,
-            lagged: 0.0,
-            last_residual: 0.0,
-            of_motion: 0.0,
-            means: 0.0,
-            white: None,
-            established: false,
-        }
-    }
-
-    /// Goes on with the sums as they are, since sample `first`; what is known of the sensors stays.
-    fn begin_anew(&mut self, start: f64, first: u64, problem: &Problem) {
-        self.samples -= first;
-        self.start = start;
-        self.blocks.begin(&self.sums);
-        self.active.fill(true);
-        (self.established, self.means) = (false, 0.0);
-        self.solve(problem, false);
-    }
-
-    /// Takes one instant, whose features stand in `features`; true where that filled a block.
-    fn add(&mut self, problem: &Problem, features: &mut [f64], instant: &Instant, of_motion: f64) -> bool {
-        let residual = instant.force - dot(features, &self.all);
-        let held: f64 = dot(features, &problem.known);
-        for (place, index) in problem.free.iter().enumerate() {
-            features[place] = features[*index];
-        }
-        let (features, force) = (&features[..problem.n()], instant.force - held);
-        let weight = self.white.map_or(1.0, |white| white / (white + of_motion));
-        self.sums.add(features, force, weight);
-        self.samples += 1;
-        let last = std::mem::replace(&mut self.last_residual, residual);
-        if self.samples as f64 > RECORD * features.len() as f64 {
-            self.means = (self.means + 1.0).min(MEMORY);
-            self.residual += (residual * residual - self.residual) / self.means;
-            self.lagged += (residual * last - self.lagged) / self.means;
-            self.of_motion += (of_motion - self.of_motion) / self.means;
-        }
-        let is_full = self.blocks.add(features, force, weight);
-        if is_full && self.means > 0.0 {
-            self.white = Some((self.residual - self.of_motion).max(OWN * self.residual)).filter(|white| *white > 0.0);
-        }
-        is_full
-    }
-
-    /// Solves for the coefficients; where `choose`, for the terms that the law has, and what the blocks say of it.
-    fn solve(&mut self, problem: &Problem, choose: bool) {
-        if choose {
-            self.active.fill(true);
-        }
-        self.regress();
-        while choose && self.drop_one(problem) {
-            self.regress();
-        }
-        if choose {
-            self.find_determined();
-            let variance = self.variance();
-            self.blocks.judge(&self.free, &self.inverse, &self.active, variance);
-        }
-        problem.scatter(&self.free, &mut self.all);
-    }
-
-    fn regress(&mut self) {
-        self.sums.eliminate(&self.active, &mut self.system);
-        self.system.solve(&mut self.free);
-        self.system.invert(&mut self.inverse);
-    }
-
-    /// Drops the "maybe" term that is worth least, where it is not worth its price.
-    fn drop_one(&mut self, problem: &Problem) -> bool {
-        let n = self.free.len();
-        let scale = self.variance() * self.inflation();
-        let price = PRICE * self.sums.count.max(2.0).ln();
-        let worth = |row: &usize| self.free[*row].powi(2) / (scale * self.inverse[row * n + row]);
-        let candidates = (0..n).filter(|row| self.active[*row] && problem.maybe[*row]);
-        let least = candidates.min_by(|a, b| worth(a).total_cmp(&worth(b)));
-        match least.filter(|row| worth(row).is_nan() || worth(row) < price) {
-            Some(row) => {
-                self.active[row] = false;
-                true
-            }
-            None => false,
-        }
-    }
-
-    /// Variance of what the law leaves, at full weight.
-    fn variance(&self) -> f64 {
-        let unknowns = self.active.iter().filter(|active| **active).count() as f64;
-        let freedom = (self.sums.count - unknowns).max(1.0);
-        let rounding = 1e-14 * self.sums.squares;
-        (self.sums.loss(&self.free).max(rounding) / freedom).max(f64::MIN_POSITIVE)
-    }
-
-    /// Terms that nothing tells apart from others have no value of their own.
-    fn find_determined(&mut self) {
-        let n = self.free.len();
-        self.determined.fill(true);
-        let information = &self.sums.information;
-        for unknown in (0..n).filter(|unknown| self.active[*unknown] && !self.system.is_solved(*unknown)) {
-            let column = &information[unknown * n..(unknown + 1) * n];
-            for other in (0..n).filter(|other| self.active[*other]) {
-                // what the other solved term takes of this one, in units of their features
-                let share = dot(&self.inverse[other * n..(other + 1) * n], column);
-                let touched = share * share * information[other * n + other] > TOUCHED * TOUCHED * column[unknown];
-                self.determined[other] &= other != unknown && !touched;
-            }
-        }
-    }
-
-    /// Combinations of terms that the record does not tell apart.
-    fn open(&self, problem: &Problem) -> Vec<String> {
-        let open = (0..self.free.len()).filter(|row| self.active[*row] && !self.determined[*row]);
-        let open: Vec<usize> = open.collect();
-        if open.is_empty() { Vec::new() } else { vec![problem.together(&open)] }
-    }
-
-    /// Std of a free coefficient: the sandwich where the rest is not white.
-    fn std(&self, row: usize) -> Option<f64> {
-        let n = self.free.len();
-        let verdict = self.blocks.verdict();
-        if !(verdict.is_known && self.determined[row]) {
-            return None;
-        }
-        if !self.active[row] {
-            return Some(0.0);
-        }
-        let white = self.variance() * self.inverse[row * n + row];
-        let variance = if self.is_coloured() { verdict.covariance[row * n + row].max(white) } else { white };
-        Some(variance.sqrt()).filter(|std| std.is_finite())
-    }
-
-    /// e of eq. (8) by the stated covariance.
-    fn error(&self) -> Option<f64> {
-        let squares = (0..self.free.len()).map(|row| self.std(row).map(|std| std * std)).sum::<Option<f64>>()?;
-        let size: f64 = self.all.iter().map(|value| value * value).sum();
-        (size > 0.0).then_some(squares / size)
-    }
-
-    /// Correlation of neighbouring residuals, where it is no chance.
-    fn correlation(&self) -> f64 {
-        let found = if self.residual > 0.0 { self.lagged / self.residual } else { 0.0 };
-        if found * found * self.means > SURPRISE * SURPRISE { found.clamp(0.0, MOST_ALIKE) } else { 0.0 }
-    }
-
-    /// Samples that say as much as one independent sample: residuals that follow from one another say less, as those of an autoregression do
-    /// (Bartlett, J. Royal Statistical Society 8 Suppl., 1946).
-    fn inflation(&self) -> f64 {
-        let correlation = self.correlation();
-        self.blocks.verdict().inflation.max((1.0 + correlation) / (1.0 - correlation))
-    }
-
-    fn is_coloured(&self) -> bool {
-        self.blocks.verdict().is_coloured || self.correlation() > 0.0
-    }
-
-    /// Whether the law explains its record down to white noise, holds throughout it, and is known.
-    fn is_valid(&self) -> bool {
-        let is_known = self.error().is_some_and(|error| error < MARGIN * SETTLED);
-        self.established && self.blocks.verdict().is_known && !self.is_coloured() && is_known
-    }
-
-    /// Share of the force's variance that the law explains.
-    fn explained(&self, problem: &Problem) -> Option<f64> {
-        let spread = self.sums.spread();
-        let is_known = self.blocks.verdict().is_known && problem.n() > 0 && spread > 0.0;
-        is_known.then(|| (1.0 - self.sums.loss(&self.free) / spread).max(0.0))
-    }
-
-    fn publish(&self, problem: &Problem, coefficients: &mut [Coefficient], is_valid: bool) {
-        for (row, index) in problem.free.iter().enumerate() {
-            let std = self.std(row).filter(|std| is_valid || *std < self.free[row].abs() || !self.active[row]);
-            let coefficient = &mut coefficients[*index];
-            if std.is_some() {
-                coefficient.value = self.free[row];
-            }
-            coefficient.std = std;
-            coefficient.needed = if is_valid { Some(0.0) } else { None };
-        }
-        for index in (0..coefficients.len()).filter(|index| !problem.free.contains(index)) {
-            coefficients[index].value = problem.known[index];
-            coefficients[index].std = Some(0.0);
-        }
-    }
-
-    /// A mean deviation that noise alone hardly gives.
-    fn unusual_deviation(&self, of_motion: f64, settings: &Settings) -> f64 {
-        let std = (self.variance() + of_motion).sqrt();
-        let samples = (settings.deviation_interval / settings.sample_time / self.inflation()).max(1.0);
-        let [mean, spread] = [std::f64::consts::FRAC_2_PI.sqrt(), (1.0 - std::f64::consts::FRAC_2_PI).sqrt()];
-        std * (mean + UNUSUAL * spread / samples.sqrt())
     }
 }
