@@ -4,7 +4,7 @@
 //! larger: Cov θ = Λ⁻¹ (Σ g_b g_bᵀ) Λ⁻¹ holds whatever its correlation within a block and, by Bartlett's weight ½, into the next one
 //! (Newey and West, *Econometrica* 55, 1987; Cameron and Miller, *J. Human Resources* 50, 2015, for the factor B ÷ (B − 1)).
 
-use super::sums::{Sums, dot};
+use super::sums::{Sums, Weight, dot};
 use serde::{Deserialize, Serialize};
 
 /// Most blocks; when all are full, neighbours merge and blocks become twice as long. Even.
@@ -70,7 +70,7 @@ impl Blocks {
     }
 
     /// Takes one sample; true where that filled a block.
-    pub fn add(&mut self, features: &[f64], force: f64, weight: f64) -> bool {
+    pub fn add(&mut self, features: &[f64], force: f64, weight: &Weight) -> bool {
         let block = &mut self.blocks[self.full];
         block.add(features, force, weight);
         if block.count < self.length {

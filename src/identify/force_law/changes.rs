@@ -139,6 +139,11 @@ impl Changes {
         }
     }
 
+    /// Looks at every hypothesis.
+    pub fn look_at_all(&mut self, now: u64, total: &Sums, active: &[bool], inflation: f64) {
+        (0..self.count).for_each(|index| self.weigh(index, now, total, active, inflation));
+    }
+
     fn weigh(&mut self, index: usize, now: u64, total: &Sums, active: &[bool], inflation: f64) {
         let hypothesis = &mut self.hypotheses[index];
         hypothesis.looked = now + 1;
@@ -179,7 +184,9 @@ impl Changes {
         for index in (0..self.count).rev() {
             let (hypothesis, share) = (&self.hypotheses[index], self.mass(index, top) / total);
             let from = index.checked_sub(1).map_or(hypothesis.previous, |index| self.hypotheses[index].t);
-            let (away, width) = (0.5 * (hypothesis.previous + hypothesis.t) - time, hypothesis.t - from);
+            let to = self.hypotheses[(index + 1).min(self.count - 1)].t;
+            let (away, width) = (0.5 * (hypothesis.previous + hypothesis.t) - time, to - from);
+            // the instant may lie anywhere between the neighbours
             square += share * (away * away + width * width / 12.0);
             // from the latest instant back: those behind which next to nothing of the posterior lies
             if sum < 1.0 - TOO_LATE {

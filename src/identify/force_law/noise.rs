@@ -18,6 +18,9 @@ const SETTLING: u32 = 8;
 /// Noise ÷ RMS of the readings below which it is rounding.
 const ROUNDING: f64 = 1e-9;
 
+/// Log-likelihood below the largest, nats, up to which a ratio is not refuted: the profile's one-sided 95 % bound, χ²₁(0.9) ÷ 2.
+const PLAUSIBLE: f64 = 1.35;
+
 /// One ratio and how well it predicts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Rival {
@@ -95,12 +98,14 @@ impl ChannelNoise {
         self.since = 0;
     }
 
-    /// The likeliest; none before enough readings.
+    /// The roughest motion that the readings do not refute; none before enough readings.
     pub fn likeliest(&self) -> Option<Smoothness> {
         let count = f64::from(Some(self.count).filter(|count| *count > 0)?);
         let floor = ROUNDING * ROUNDING * self.power.max(f64::MIN_POSITIVE);
         let loss = |rival: &Rival| (rival.squares / count).max(floor).ln() + rival.logarithms.total() / count;
-        let best = self.rivals.iter().min_by(|a, b| loss(a).total_cmp(&loss(b)))?;
+        let least = self.rivals.iter().map(loss).fold(f64::INFINITY, f64::min);
+        // a motion taken for too rough is known less well than it could be, one taken for too smooth is another motion
+        let best = self.rivals.iter().rev().find(|rival| count * (loss(rival) - least) <= 2.0 * PLAUSIBLE)?;
         let variance = (best.squares / count).max(floor);
         Some(Smoothness { variance, intensity: best.ratio * variance })
     }

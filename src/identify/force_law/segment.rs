@@ -1,8 +1,8 @@
 //! The regression of one stage: its coefficients, how well they are known, and whether they explain the force.
 
 use super::blocks::Blocks;
-use super::smoother::Instant;
-use super::sums::{Sums, dot};
+use super::smoother::{Instant, LONGEST};
+use super::sums::{Sums, Weight, dot};
 use crate::evidence::System;
 use crate::identify::identifier::Coefficient;
 use crate::identify::problem::Problem;
@@ -15,9 +15,6 @@ const SETTLED: f64 = 0.05 * 0.05;
 /// … and the share of it that the stated covariance, an expectation, must stay below.
 const MARGIN: f64 = 0.5;
 
-/// Least share of the residual's variance that is the force's own noise.
-const OWN: f64 = 0.01;
-
 /// Price of a term in twice the log-likelihood, ÷ ln of the number of samples (Schwarz's is 1; that of the tracker of motion).
 const PRICE: f64 = 2.0;
 
@@ -29,6 +26,9 @@ const SURPRISE: f64 = 3.1;
 
 /// Largest correlation that is told from 1.
 const MOST_ALIKE: f64 = 1.0 - 1e-6;
+
+/// Samples over which the motion's error is one and the same: as far as the smoother looks.
+pub const COHERENT: f64 = LONGEST as f64;
 
 /// Samples over which mean squares are taken.
 const MEMORY: f64 = 4000.0;
@@ -56,7 +56,7 @@ pub struct Segment {
     pub every: Vec<bool>,
     /// Whether the record determines the coefficient.
     determined: Vec<bool>,
-    /// Mean square of the residuals, their mean product with the one before, and what the motion's error makes of them.
+    /// Mean square of the recursive residuals, their mean product with the one before, and mean variance by the motion's error.
     residual: f64,
     lagged: f64,
     pub of_motion: f64,
@@ -137,21 +137,40 @@ impl Segment {
             features[place] = features[*index];
         }
         let (features, force) = (&features[..problem.n()], instant.force - held);
-        let weight = self.white.map_or(1.0, |white| white / (white + of_motion));
-        self.sums.add(features, force, weight);
-        self.samples += 1;
-        let last = std::mem::replace(&mut self.last_residual, residual);
-        if self.samples as f64 > RECORD * features.len() as f64 {
-            self.means = (self.means + 1.0).min(MEMORY);
-            self.residual += (residual * residual - self.residual) / self.means;
-            self.lagged += (residual * last - self.lagged) / self.means;
-            self.of_motion += (of_motion - self.of_motion) / self.means;
+        let weight = self.weight(of_motion);
+        if self.is_long() {
+            self.compare(residual, features, weight, of_motion);
         }
-        let is_full = self.blocks.add(features, force, weight);
-        if is_full && self.means > 0.0 {
-            self.white = Some((self.residual - self.of_motion).max(OWN * self.residual)).filter(|white| *white > 0.0);
+        self.sums.add(features, force, &weight);
+        self.samples += 1;
+        let is_full = self.blocks.add(features, force, &weight);
+        if is_full && self.is_long() {
+            self.white = Some(self.variance());
         }
         is_full
+    }
+
+    /// What a sample counts. Where the motion hardly tells which side of a jump it is on, it does so for as long as that lasts: errors that the motion
+    /// makes are one error over [`COHERENT`] samples.
+    fn weight(&self, of_motion: f64) -> Weight {
+        let whole = Weight { value: 1.0, freedom: 1.0 };
+        self.white.map_or(whole, |white| {
+            let value = white / (white + COHERENT * of_motion);
+            Weight { value, freedom: value * (white + of_motion) / white }
+        })
+    }
+
+    /// Takes the residual that the law of the samples before leaves: under the right law these recursive residuals, scaled to equal variance, are
+    /// white (Brown, Durbin and Evans, J. Royal Statistical Society B 37, 1975).
+    fn compare(&mut self, residual: f64, features: &[f64], weight: Weight, of_motion: f64) {
+        let n = features.len();
+        let leverage: f64 = (0..n).map(|row| features[row] * dot(&self.inverse[row * n..(row + 1) * n], features)).sum();
+        let scaled = residual * (weight.value / weight.freedom / (1.0 + weight.value * leverage.max(0.0))).sqrt();
+        let last = std::mem::replace(&mut self.last_residual, scaled);
+        self.means = (self.means + 1.0).min(MEMORY);
+        self.residual += (scaled * scaled - self.residual) / self.means;
+        self.lagged += (scaled * last - self.lagged) / self.means;
+        self.of_motion += (of_motion - self.of_motion) / self.means;
     }
 
     /// Solves for the coefficients; where `choose`, for the terms that the law has, and what the blocks say of it.

@@ -8,6 +8,15 @@ use serde::{Deserialize, Serialize};
 /// Part of a pivot's diagonal entry below which it is rounding: what the others leave of its term is nothing.
 pub const ROUNDING: f64 = 1e-10;
 
+/// What a sample counts.
+#[derive(Clone, Copy, Debug)]
+pub struct Weight {
+    /// w.
+    pub value: f64,
+    /// Expectation of w (F − φᵀθ)² ÷ σ².
+    pub freedom: f64,
+}
+
 /// Sums over a stretch of a record, for n unknowns.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sums {
@@ -19,7 +28,7 @@ pub struct Sums {
     pub squares: f64,
     pub force: f64,
     pub weight: f64,
-    /// Samples.
+    /// Degrees of freedom: the samples, each with the share of σ² that its weighted residual has.
     pub count: f64,
 }
 
@@ -35,7 +44,8 @@ impl Sums {
     }
 
     /// Takes one sample.
-    pub fn add(&mut self, features: &[f64], force: f64, weight: f64) {
+    pub fn add(&mut self, features: &[f64], force: f64, weight: &Weight) {
+        let Weight { value: weight, freedom } = *weight;
         for ((row, right), feature) in
             self.information.chunks_exact_mut(features.len().max(1)).zip(&mut self.right).zip(features)
         {
@@ -46,7 +56,7 @@ impl Sums {
         self.squares += weight * force * force;
         self.force += weight * force;
         self.weight += weight;
-        self.count += 1.0;
+        self.count += freedom;
     }
 
     /// Copies the other's sums into this room.

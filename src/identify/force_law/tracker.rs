@@ -3,7 +3,7 @@
 use super::changes::{Changes, Switch};
 use super::features::expect;
 use super::noise::{ChannelNoise, Smoothness};
-use super::segment::Segment;
+use super::segment::{COHERENT, Segment};
 use super::smoother::{Instant, LONGEST, Smoother};
 use super::sums::dot;
 use crate::identify::deviation::Deviation;
@@ -12,7 +12,7 @@ use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use serde::{Deserialize, Serialize};
 
-/// Samples from which the sensors' noise and the motion's smoothness are estimated first; again whenever their number has doubled.
+/// Samples from which the sensors' noise and the motion's smoothness are estimated first; again whenever there are a quarter more.
 const FIRST: usize = 64;
 
 /// Part by which a longer wait may still lower the variance of a residual.
@@ -139,7 +139,7 @@ impl ForceTracker {
             Some(Smoothness { variance: given.unwrap_or(found.variance), ..found })
         });
         self.smoother.believe(self.smoothness);
-        self.next_look *= 2;
+        self.next_look += self.next_look.div_ceil(4);
     }
 
     fn advance(&mut self, problem: &Problem, settings: &Settings, sample: Sample, output: &mut Output) {
@@ -162,7 +162,7 @@ impl ForceTracker {
         let variance = |lag: usize| self.smoother.at(lag).map_or(0.0, |instant| instant.covariance[2]);
         let (least, present) = (variance(LONGEST), variance(self.lag));
         let Some(white) = self.stage.white.filter(|_| present > 0.0) else { return LONGEST };
-        let by_motion = self.stage.of_motion / present;
+        let by_motion = COHERENT * self.stage.of_motion / present;
         let enough =
             |lag: &usize| white + by_motion * variance(*lag) <= (1.0 + GAIN_OF_WAITING) * (white + by_motion * least);
         (0..LONGEST).find(enough).unwrap_or(LONGEST)
@@ -203,6 +203,7 @@ impl ForceTracker {
         let evidence = self.changes.evidence();
         let level = (settings.false_alarm_interval / settings.sample_time).ln().max(0.0);
         if stage.established && evidence > level {
+            self.changes.look_at_all(stage.samples, &stage.sums, &stage.every, stage.inflation());
             if let Some(switch) = self.changes.switch() {
                 self.switch(switch, now, problem, output);
                 return;
