@@ -1,8 +1,6 @@
 //! Laws whose output is F: at the limit, honest, and their switches seen.
 
-use switchid::identify::{
-    Channels, Identification, Identifier, Recording, Settings, identify_recording, settings_for,
-};
+use switchid::identify::{Identification, Recording, Settings, identify_recording, settings_for};
 use switchid::law::{Given, Model, State, Term};
 use switchid::limits::{Bound, Imposed, Law, force_bound, force_detection, level};
 use switchid::simulate::{Excitation, ExcitationKind, Reading, Scenario, SensorNoise, Stage, record};

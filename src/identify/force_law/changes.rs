@@ -151,7 +151,7 @@ impl Changes {
     }
 
     /// Largest log Bayes factor of an instant.
-    pub fn largest(&self) -> f64 {
+    fn largest(&self) -> f64 {
         self.hypotheses[..self.count].iter().map(|hypothesis| hypothesis.evidence).fold(f64::NEG_INFINITY, f64::max)
     }
 

@@ -5,7 +5,7 @@
 //! Gauss–Hermite points, exact for powers up to the fifth of q and the ninth of q̇.
 
 use super::smoother::Instant;
-use crate::law::Term;
+use crate::law::{Model, Term};
 
 /// Points of the displacement in std, and their weights.
 const OF_Q: [(f64, f64); 3] =
@@ -20,22 +20,34 @@ const OF_QD: [(f64, f64); 5] = [
     (-2.856_970_013_872_805_6, 0.011_257_411_327_720_689),
 ];
 
-/// Writes E f_j of every term into `expected`; returns Var Σ θ_j f_j.
-pub fn expect(terms: &[Term], coefficients: &[f64], instant: &Instant, expected: &mut [f64]) -> f64 {
+/// What is known of a law's coefficients: value and variance of each.
+#[derive(Clone, Copy, Debug)]
+pub struct Known<'a> {
+    /// One per term.
+    pub values: &'a [f64],
+    /// One per term; 0 where the value is exact.
+    pub variances: &'a [f64],
+}
+
+/// Writes E f_j of every term into `expected`; returns Var Σ θ_j f_j by the motion's belief, the coefficients known as they are.
+pub fn expect(terms: &[Term], known: Known, instant: &Instant, expected: &mut [f64]) -> f64 {
     expected.fill(0.0);
-    let mut mean = 0.0;
-    let mut square = 0.0;
+    let mut squares = [0.0; Model::MAX_TERMS];
+    let (mut mean, mut square) = (0.0, 0.0);
     for (q, qd, weight) in points(instant) {
         let mut force = 0.0;
-        for ((term, coefficient), expected) in terms.iter().zip(coefficients).zip(expected.iter_mut()) {
+        for (index, term) in terms.iter().enumerate() {
             let feature = term.force(q, qd, 0.0);
-            *expected += weight * feature;
-            force += coefficient * feature;
+            expected[index] += weight * feature;
+            squares[index] += weight * feature * feature;
+            force += known.values[index] * feature;
         }
         square += weight * force * force;
         mean += weight * force;
     }
-    (square - mean * mean).max(0.0)
+    let features = squares.iter().zip(expected.iter()).zip(known.variances);
+    let unknown: f64 = features.map(|((square, mean), variance)| variance * (square - mean * mean).max(0.0)).sum();
+    (square - mean * mean).max(0.0) + unknown
 }
 
 /// (q, q̇, weight) of every point.

@@ -39,7 +39,7 @@ pub fn fit_force_law(model: &Model, recording: &Recording) -> Result<Option<Forc
     for _ in 0..ROUNDS {
         segment.restart();
         for instant in &instants {
-            let of_motion = expect(&problem.terms, segment.coefficients(), instant, &mut features);
+            let of_motion = expect(&problem.terms, segment.known(), instant, &mut features);
             segment.add(&problem, &mut features, instant, of_motion);
         }
         segment.solve(&problem, true);

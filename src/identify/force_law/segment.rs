@@ -1,6 +1,7 @@
 //! The regression of one stage: its coefficients, how well they are known, and whether they explain the force.
 
 use super::blocks::Blocks;
+use super::features::Known;
 use super::smoother::{Instant, LONGEST};
 use super::sums::{Sums, Weight, dot};
 use crate::evidence::System;
@@ -52,6 +53,8 @@ pub struct Segment {
     /// Free coefficients; all of them, with the known ones.
     free: Vec<f64>,
     pub all: Vec<f64>,
+    /// Variances of all coefficients, but no more than the law's own force allows.
+    variances: Vec<f64>,
     active: Vec<bool>,
     pub every: Vec<bool>,
     /// Whether the record determines the coefficient.
@@ -80,6 +83,7 @@ impl Segment {
             inverse: vec![0.0; n * n],
             free: vec![0.0; n],
             all: problem.known.clone(),
+            variances: vec![0.0; problem.terms.len()],
             active: vec![true; n],
             every: vec![true; n],
             determined: vec![false; n],
@@ -164,7 +168,8 @@ impl Segment {
     /// white (Brown, Durbin and Evans, J. Royal Statistical Society B 37, 1975).
     fn compare(&mut self, residual: f64, features: &[f64], weight: Weight, of_motion: f64) {
         let n = features.len();
-        let leverage: f64 = (0..n).map(|row| features[row] * dot(&self.inverse[row * n..(row + 1) * n], features)).sum();
+        let leverage: f64 =
+            (0..n).map(|row| features[row] * dot(&self.inverse[row * n..(row + 1) * n], features)).sum();
         let scaled = residual * (weight.value / weight.freedom / (1.0 + weight.value * leverage.max(0.0))).sqrt();
         let last = std::mem::replace(&mut self.last_residual, scaled);
         self.means = (self.means + 1.0).min(MEMORY);
@@ -188,6 +193,23 @@ impl Segment {
             self.blocks.judge(&self.free, &self.inverse, &self.active, variance);
         }
         problem.scatter(&self.free, &mut self.all);
+        self.renew_variances(problem);
+    }
+
+    /// A coefficient that the record does not determine is one whose force is within the force measured.
+    fn renew_variances(&mut self, problem: &Problem) {
+        let (n, variance) = (self.free.len(), self.variance());
+        for (row, index) in problem.free.iter().enumerate() {
+            let widest = self.sums.squares / self.sums.information[row * n + row];
+            let own = self.inverse[row * n + row];
+            let stated = if own > 0.0 && self.active[row] { variance * own } else { f64::INFINITY };
+            self.variances[*index] = if widest.is_finite() { stated.min(widest) } else { 0.0 };
+        }
+    }
+
+    /// The coefficients as they are known.
+    pub fn known(&self) -> Known<'_> {
+        Known { values: &self.all, variances: &self.variances }
     }
 
     fn regress(&mut self) {

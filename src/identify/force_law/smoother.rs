@@ -83,11 +83,11 @@ impl Smoother {
         self.count += 1;
     }
 
-    /// The motion `lag` samples ago; none where there was no sample.
+    /// The motion `lag` samples ago; none of the first sample, whose velocity the second one tells, and where there was no sample.
     pub fn at(&self, lag: usize) -> Option<Instant> {
         let number = self.count.checked_sub(1 + lag as u64)?;
         let length = self.past.len();
-        (lag < length).then(|| self.past[(number % length as u64) as usize].instant)
+        (number > 0 && lag < length).then(|| self.past[(number % length as u64) as usize].instant)
     }
 
     fn begin(&mut self, readings: [f64; 2]) {

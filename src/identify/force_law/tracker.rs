@@ -188,14 +188,14 @@ impl ForceTracker {
         if stage.white.is_none() || !stage.established {
             return false;
         }
-        let of_motion = expect(&problem.terms, &stage.all, instant, &mut self.features);
+        let of_motion = expect(&problem.terms, stage.known(), instant, &mut self.features);
         let residual = instant.force - dot(&self.features, &stage.all);
         residual * residual > FAR * FAR * (stage.variance() + of_motion)
     }
 
     fn use_instant(&mut self, problem: &Problem, settings: &Settings, instant: Instant, now: f64, output: &mut Output) {
         let stage = &mut self.stage;
-        let of_motion = expect(&problem.terms, &stage.all, &instant, &mut self.features);
+        let of_motion = expect(&problem.terms, stage.known(), &instant, &mut self.features);
         self.changes.suppose(stage.samples, [self.previous.max(stage.start), instant.t], &stage.sums);
         self.previous = instant.t;
         let block_is_full = stage.add(problem, &mut self.features, &instant, of_motion);
@@ -217,7 +217,8 @@ impl ForceTracker {
         if block_is_full || !suspended {
             stage.solve(problem, block_is_full);
         }
-        if self.changes.largest() < 0.0 {
+        // a switch at any instant of the record, each as likely, against none
+        if evidence < (stage.samples as f64).ln() {
             stage.establish();
         }
     }
@@ -266,7 +267,7 @@ impl ForceTracker {
     /// The force that the law gives for the last sample, and how far it is off on the mean.
     fn predict(&mut self, problem: &Problem, settings: &Settings, sample: Sample, output: &mut Output) {
         let Some(instant) = self.smoother.at(0).filter(|_| self.stage.white.is_some()) else { return };
-        let of_motion = expect(&problem.terms, &self.stage.all, &instant, &mut self.features);
+        let of_motion = expect(&problem.terms, self.stage.known(), &instant, &mut self.features);
         output.prediction_force = dot(&self.features, &self.stage.all);
         self.deviation.add(sample.t, (output.prediction_force - sample.excitation).abs());
         output.deviation = self.deviation.mean();
