@@ -5,8 +5,9 @@ use super::identify_report::Report;
 use super::input::is_noiseless;
 use super::output;
 use super::progress::{Progress, Waiting};
-use super::stage_limit::{StageLimit, stage_limits};
+use super::stage_limit::{StageLimit, force_limits, stage_limits};
 use super::trace::Trace;
+use super::words::percent;
 use crate::data::{self, DataError, Opened};
 use crate::identify::{self, BuildError, Gap, Identification, Method, Recording, Settings, Stage};
 use crate::law::{Hold, Model, Term, Units, unit_of};
@@ -82,6 +83,8 @@ pub(super) struct Run {
     pub(super) settings: Settings,
     /// Who chose the hold.
     hold_from: &'static str,
+    /// Whether F is what the law gives.
+    pub(super) gives_force: bool,
     pub(super) found: Identification,
     /// What any method could reach, stage by stage; none where a stage has no law or no limit.
     limits: Vec<Option<StageLimit>>,
@@ -94,8 +97,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let (settings, hold_from) = settings(arguments, &model, &opened.recording)?;
     let found = identify(arguments, &model, settings, &opened.recording)?;
     arguments.save_laws.as_deref().map_or(Ok(()), |path| save(path, &found))?;
-    let limits = Waiting::on("looking for the limits", || stage_limits(&found, &opened.recording, &settings));
-    let run = Run { opened, settings, hold_from, found, limits };
+    let limits = Waiting::on("looking for the limits", || match model.is_force_law() {
+        true => force_limits(&model, &found, &opened.recording),
+        false => stage_limits(&found, &opened.recording, &settings),
+    });
+    let gives_force = model.is_force_law();
+    let run = Run { opened, settings, hold_from, gives_force, found, limits };
     warnings(&run)
         .iter()
         .chain(&unsaved(arguments, &run.found))
@@ -176,7 +183,7 @@ fn settings(
     let (hold, from) = match (arguments.hold.as_deref().and_then(Hold::from_id), model.hold) {
         (Some(hold), _) => (hold, "as asked"),
         (None, Some(hold)) => (hold, "the model's"),
-        (None, None) if model.is_force_law() => (settings.hold, "no part of a law that gives F"),
+        (None, None) if model.is_force_law() => (settings.hold, "a law that gives F has no between"),
         (None, None) => (identify::choose_hold(model, recording, &settings), "chosen"),
     };
     Ok((Settings { hold, ..settings }, from))
@@ -267,7 +274,10 @@ fn head(run: &Run) -> String {
     for column in &run.opened.columns {
         let _ = writeln!(text, "  {column}");
     }
-    let _ = writeln!(text, "between samples: {} ({})", run.settings.hold, run.hold_from);
+    text += &match run.gives_force {
+        true => "F is the output: F = law(q, q̇)\n".into(),
+        false => format!("between samples: {} ({})\n", run.settings.hold, run.hold_from),
+    };
     let noise: Vec<String> = noise(&run.found).iter().map(|(channel, std)| format!("{channel} {std:.3e}")).collect();
     let noise = if noise.is_empty() { "not known".into() } else { noise.join(", ") };
     let _ = writeln!(text, "sensor noise (std): {noise}");
@@ -301,6 +311,7 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
         let _ = writeln!(text, "  not known: {}", open.join(", "));
     }
     text += &lacking(stage);
+    text += &explained(stage);
     if limit.is_some_and(|limit| !limit.explained()) {
         text += "  the law leaves more than sensor noise: no comparison with what any method could reach\n";
     }
@@ -308,6 +319,16 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
         let _ = writeln!(text, "  no data of this stage determine {combination}");
     }
     text
+}
+
+/// What share of the force the law explains; empty for a law of motion.
+fn explained(stage: &Stage) -> String {
+    let validated = match stage.identified {
+        Some(_) => "",
+        None => "; it is not validated: what it leaves is no white noise, or the record too short",
+    };
+    let line = |share: f64| format!("  the law explains {} of the variance of F{validated}\n", percent(share));
+    stage.explained.map_or_else(String::new, line)
 }
 
 /// `q^3: not known yet, about 1.4 s more of such motion`, a line for each coefficient that a law to vouch for needs better.

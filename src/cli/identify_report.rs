@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 /// The JSON document of `switchid identify`.
 #[derive(Serialize)]
 pub(super) struct Report {
+    /// What the law gives: `F`, or the motion.
+    output: &'static str,
     stages: Vec<StageReport>,
     noise: Pairs,
     hold: &'static str,
@@ -36,6 +38,8 @@ struct StageReport {
     needed: Pairs,
     /// By term, where known.
     units: BTreeMap<String, String>,
+    /// Share of the variance of F that a law which gives it explains; null for a law of motion.
+    explained: Option<f64>,
     /// Whether the coefficients were moving at the stage's end.
     drifting: bool,
     unidentifiable: Vec<String>,
@@ -59,6 +63,7 @@ impl Report {
         let Run { opened, settings, found, .. } = run;
         let forced = settings.channels.excitation;
         Report {
+            output: if run.gives_force { "F" } else { "motion" },
             stages: stages(run).map(|(stage, limit)| StageReport::of(stage, limit, forced, &opened.units)).collect(),
             noise: Pairs(noise(found)),
             hold: settings.hold.id(),
@@ -86,6 +91,7 @@ impl StageReport {
                 .known()
                 .filter_map(|(known, _)| Some((known.term.name(), unit_of(known.term, units)?)))
                 .collect(),
+            explained: stage.explained,
             drifting: stage.drifting,
             unidentifiable: stage.unidentifiable.clone(),
             limit: limit.map(|limit| LimitReport::of(stage, limit)),

@@ -43,7 +43,18 @@ A scenario file:
   start = 15.0
   coefficients = [1.0, 0.6, 4.0, 2.0]
   amplitude = 2.0
-  omega = 1.5"#;
+  omega = 1.5
+
+A law without inertia gives F for the q that a machine imposes (dampers, mounts, joints on a testing machine): the
+excitation is then q(t) less initial.q, its derivative q̇, and F the output, with its own noise. It must have a velocity:
+sine (of the stage at that instant), multisine or sweep.
+  terms = ["qd", "q", "coulomb_friction"]
+  duration = 20.0
+  noise = { q = 1e-5, qd = 1e-4, F = 0.5 }
+  excitation = { kind = "multisine", from = 1.0, to = 20.0, count = 10, rms = 0.01, sample_time = 1e-3 }
+  [[stage]]
+  start = 0.0
+  coefficients = [300.0, 2000.0, 15.0]"#;
 
 /// Make a record of a plant whose law is known, with its truth beside it
 #[derive(Args)]
@@ -162,7 +173,11 @@ fn truth(scenario: &Scenario) -> Truth {
     Truth {
         scenario: scenario.name.clone(),
         seed: scenario.seed,
-        noise: Pairs(vec![("q".into(), scenario.noise.q), ("qd".into(), scenario.noise.qd)]),
+        noise: Pairs(
+            [("q", scenario.noise.q), ("qd", scenario.noise.qd), ("F", scenario.noise.force)]
+                .map(|(channel, std)| (channel.into(), std))
+                .into(),
+        ),
         excitation: scenario.excitation,
         hidden: scenario.hidden.clone(),
         switch_times: scenario.switch_times().into_iter().filter(|t| *t < scenario.duration).collect(),

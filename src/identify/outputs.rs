@@ -78,7 +78,11 @@ type Scalar = (&'static str, OutputKind, &'static str);
 const OF_FORCE: [Scalar; 3] = [
     ("prediction.F", OutputKind::Real(None), "F that the present law gives for the last sample's q and qd"),
     ("noise_estimate.F", OutputKind::Real(None), "Estimated std of what F has besides the law; 1e30 while not known"),
-    ("explained", OutputKind::Real(None), "Share of the variance of F that the present law explains; 0 while not known"),
+    (
+        "explained",
+        OutputKind::Real(None),
+        "Share of the variance of F that the present law explains; 0 while not known",
+    ),
 ];
 
 const SCALARS: [Scalar; 17] = [

@@ -68,6 +68,8 @@ pub struct Segment {
     /// The force's own noise, variance; none before the first block.
     pub white: Option<f64>,
     pub established: bool,
+    /// Least variance of what the law leaves: that of the force's sensor, where it is given.
+    least: f64,
 }
 
 impl Segment {
@@ -94,6 +96,7 @@ impl Segment {
             means: 0.0,
             white: None,
             established: false,
+            least: f64::MIN_POSITIVE,
         }
     }
 
@@ -105,6 +108,11 @@ impl Segment {
         self.active.fill(true);
         (self.established, self.means) = (false, 0.0);
         self.solve(problem, false);
+    }
+
+    /// With a force sensor whose noise has at least that std.
+    pub fn with_noise(self, std: f64) -> Segment {
+        Segment { least: (std * std).max(f64::MIN_POSITIVE), ..self }
     }
 
     /// Forgets the record; the law and what is known of the force's noise stay.
@@ -240,7 +248,7 @@ impl Segment {
         let unknowns = self.active.iter().filter(|active| **active).count() as f64;
         let freedom = (self.sums.count - unknowns).max(1.0);
         let rounding = 1e-14 * self.sums.squares;
-        (self.sums.loss(&self.free).max(rounding) / freedom).max(f64::MIN_POSITIVE)
+        (self.sums.loss(&self.free).max(rounding) / freedom).max(self.least)
     }
 
     /// Terms that nothing tells apart from others have no value of their own.

@@ -67,7 +67,7 @@ impl ForceTracker {
             passed: 0,
             alone: [Instant::default(); ALONE],
             waiting: 0,
-            stage: Segment::new(problem),
+            stage: Segment::new(problem).with_noise(settings.noise_excitation),
             changes: Changes::new(n),
             features: vec![0.0; problem.terms.len()],
             deviation: Deviation::new(settings.deviation_interval, settings.sample_time),
