@@ -23,6 +23,15 @@ pub enum ScenarioError {
     /// Nothing to integrate.
     #[error("terms: there is no inertia: add \"qdd\"")]
     NoInertia,
+    /// A law that moves of itself where one is asked for that a machine moves.
+    #[error("terms: there is an inertia: nobody can impose the motion of this plant, leave \"qdd\" out")]
+    Inertia,
+    /// A term whose force one instant does not give.
+    #[error("terms: the force of \"{term}\" needs the past: simulate the scenario as a record, or leave the term out")]
+    Memory {
+        /// The term.
+        term: Term,
+    },
     /// F on both sides of a law that gives F.
     #[error("terms: \"{term}\" depends on F, which a law without inertia gives: leave it out, or add \"qdd\"")]
     OutputAmongTerms {

@@ -9,6 +9,7 @@ use super::noise::{Stream, standard_normal};
 use super::plant::Reading;
 use super::scenario::Scenario;
 use crate::law::{Hold, State, Term, Trajectory, term_series};
+use serde::{Deserialize, Serialize};
 
 /// Share of a sample interval by which the last sample may miss the duration.
 const TIME_JITTER: f64 = 1e-3;
@@ -75,4 +76,55 @@ fn forces(scenario: &Scenario, t: &[f64], states: &[State]) -> Vec<f64> {
         forces.iter_mut().zip(series(term)).for_each(|(force, feature)| *force += coefficient * feature);
     }
     forces
+}
+
+/// A specimen that somebody else moves: its force for a displacement and a velocity at one instant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Specimen {
+    scenario: Scenario,
+}
+
+impl Specimen {
+    /// The specimen of a scenario, whose excitation does not matter.
+    ///
+    /// # Errors
+    /// What [`Scenario::check`] refuses, [`ScenarioError::Inertia`] for a law that moves of itself, [`ScenarioError::Memory`] for a term whose
+    /// force needs the past.
+    pub fn new(scenario: Scenario) -> Result<Specimen, ScenarioError> {
+        scenario.check()?;
+        if !scenario.is_force_law() {
+            return Err(ScenarioError::Inertia);
+        }
+        let memory = scenario.terms.iter().copied().chain(scenario.hidden.terms()).find(|term| !term.is_pointwise());
+        match memory {
+            Some(term) => Err(ScenarioError::Memory { term }),
+            None => Ok(Specimen { scenario }),
+        }
+    }
+
+    /// The force at time t, s, without noise.
+    pub fn force(&self, t: f64, State { q, qd }: State) -> f64 {
+        let scenario = &self.scenario;
+        let own = scenario.terms.iter().copied().zip(self.coefficients(t).iter().copied());
+        let hidden = scenario.hidden.terms().zip(scenario.hidden.coefficients());
+        own.chain(hidden).map(|(term, value)| value * term.force(q, qd, 0.0)).sum()
+    }
+
+    /// Error of the force's sensor at sample `index`.
+    pub fn noise(&self, index: u64) -> f64 {
+        match self.scenario.noise.force {
+            0.0 => 0.0,
+            std => std * standard_normal(self.scenario.seed, Stream::Force, index),
+        }
+    }
+
+    /// Index of the stage at time t, s.
+    pub fn stage(&self, t: f64) -> usize {
+        stage_at(&self.scenario, t)
+    }
+
+    /// The coefficients at time t, s, in the order of the scenario's terms.
+    pub fn coefficients(&self, t: f64) -> &[f64] {
+        &self.scenario.stages[self.stage(t)].coefficients
+    }
 }

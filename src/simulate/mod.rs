@@ -20,6 +20,7 @@ pub use builtin::{Builtin, UnknownBuiltin};
 pub use check::ScenarioError;
 pub use excitation::{Excitation, ExcitationKind};
 pub use hidden::Hidden;
+pub use imposed::Specimen;
 pub use parametric::{LawParameter, ParametricLaw, ParametricLawError};
 pub use plant::{Plant, PlantError, Reading, SimulateError, Truth, record};
 pub use scenario::{Scenario, SensorNoise, Stage};
