@@ -112,10 +112,10 @@ impl Plant {
     /// # Errors
     /// What [`Scenario::check`] refuses, and a law without inertia, which moves nothing.
     pub fn new(scenario: Scenario) -> Result<Plant, ScenarioError> {
-        scenario.check()?;
         if scenario.is_force_law() {
             return Err(ScenarioError::NoInertia);
         }
+        scenario.check()?;
         let law = Law::of(&scenario);
         let initial = Dynamics::new(law.motion(0), scenario.hidden.expressions())?.rest(scenario.initial);
         let phases = scenario.excitation.phases(scenario.seed);

@@ -89,6 +89,9 @@ fn motions_that_no_machine_imposes_are_refused() {
     };
     refused(&scenario("excitation = { kind = \"white_noise\" }"), &["\"white_noise\" has no velocity", "multisine"]);
     refused(&scenario("excitation = { kind = \"none\" }"), &["\"none\" imposes no motion", "qdd"]);
-    refused(&(multisine().replace("duration", "initial = { qd = 1.0 }\nduration")), &["initial.qd = 1", "imposes q"]);
+    refused(
+        &(multisine().replace("duration", "initial = { q = 0.0, qd = 1.0 }\nduration")),
+        &["initial.qd = 1", "imposes q"],
+    );
     refused(&multisine().replace("\"q\"", "\"F\""), &["\"F\" depends on F"]);
 }

@@ -40,7 +40,7 @@ impl Asked {
             if (channel == FORCE) != model.is_force_law() {
                 let reason = match model.is_force_law() {
                     true => "the model has no inertia, so that F is its output and the motion counts as known",
-                    false => "the limits of a law of motion take F as exact",
+                    false => "there is no sensor \"F\" among those of a law of motion, whose F counts as exact",
                 };
                 return Err(named_error("noise", text, reason));
             }

@@ -21,6 +21,9 @@ const GAIN_OF_WAITING: f64 = 0.05;
 /// Std of a residual beyond which a reading stands alone until others confirm it.
 const FAR: f64 = 6.0;
 
+/// Numbers from which on sums of products of four overflow.
+const LARGEST: f64 = 1e60;
+
 /// Readings in a row that may stand alone; one more is no outlier.
 const ALONE: usize = 2;
 
@@ -85,6 +88,9 @@ impl ForceTracker {
         coefficients: &mut [Coefficient],
         output: &mut Output,
     ) {
+        if ![sample.q, sample.qd, sample.excitation].into_iter().all(is_weighable) {
+            return;
+        }
         self.listen(problem, sample);
         if self.has_begun {
             self.advance(problem, settings, sample, output);
@@ -196,6 +202,9 @@ impl ForceTracker {
     fn use_instant(&mut self, problem: &Problem, settings: &Settings, instant: Instant, now: f64, output: &mut Output) {
         let stage = &mut self.stage;
         let of_motion = expect(&problem.terms, stage.known(), &instant, &mut self.features);
+        if !(is_weighable(of_motion) && self.features.iter().copied().all(is_weighable)) {
+            return;
+        }
         self.changes.suppose(stage.samples, [self.previous.max(stage.start), instant.t], &stage.sums);
         self.previous = instant.t;
         let block_is_full = stage.add(problem, &mut self.features, &instant, of_motion);
@@ -268,7 +277,11 @@ impl ForceTracker {
     fn predict(&mut self, problem: &Problem, settings: &Settings, sample: Sample, output: &mut Output) {
         let Some(instant) = self.smoother.at(0).filter(|_| self.stage.white.is_some()) else { return };
         let of_motion = expect(&problem.terms, self.stage.known(), &instant, &mut self.features);
-        output.prediction_force = dot(&self.features, &self.stage.all);
+        let prediction = dot(&self.features, &self.stage.all);
+        if !(is_weighable(prediction) && is_weighable(of_motion)) {
+            return;
+        }
+        output.prediction_force = prediction;
         self.deviation.add(sample.t, (output.prediction_force - sample.excitation).abs());
         output.deviation = self.deviation.mean();
         output.threshold = match settings.deviation_threshold {
@@ -276,4 +289,9 @@ impl ForceTracker {
             threshold => threshold,
         };
     }
+}
+
+/// Whether products of the number with its like are numbers too.
+fn is_weighable(number: f64) -> bool {
+    number.abs() < LARGEST
 }
