@@ -92,7 +92,8 @@ fn coefficients_are_at_the_limit_and_their_std_honest() {
         }
         let (ratio, normalised) = (ratio / seeds as f64, normalised / seeds as f64);
         eprintln!("qd {measures_velocity}: e/limit {ratio:.3}, normalised {normalised:.3}, valid {valid}/{seeds}");
-        // a mean of 60 of χ²₄ ÷ 4 has std √(2 ÷ 240) = 0.09; that of e ÷ limit about twice as much, one direction being the worst known
+        // a mean of 60 of χ²₄ ÷ 4 has std √(2 ÷ 240) = 0.09; that of e ÷ limit about twice as much, one direction
+        // being the worst known
         assert!(ratio < 1.5, "velocity {measures_velocity}: e ÷ limit {ratio}");
         assert!((0.7..1.35).contains(&normalised), "velocity {measures_velocity}: {normalised}");
         assert!(valid >= seeds - 3, "only {valid} of {seeds} validated");

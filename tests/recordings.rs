@@ -185,8 +185,10 @@ fn silverbox_lacks_cubic_stiffness_and_no_friction_and_with_it_runs_free() {
     assert!(error["free_run_nrmse"].as_f64().unwrap() <= 0.05, "{error}");
 }
 
-/// Machines impose q on these, F is measured. What viscous damping, stiffness and offset leave is no white noise: no law of theirs is valid, no switch is
-/// in them, and the coefficients are those of plain least squares on locally fitted cubics (done apart from this project), within 3 std or 10 %.
+/// Machines impose q on these, F is measured. What viscous damping, stiffness and offset leave is no white noise: no
+/// law of theirs is valid, no switch is
+/// in them, and the coefficients are those of plain least squares on locally fitted cubics (done apart from this
+/// project), within 3 std or 10 %.
 #[test]
 fn forces_of_testing_machines_are_published_and_not_validated() {
     let linear = "[terms]\nlinear_damping = \"fit\"\nlinear_stiffness = \"fit\"\nconstant_force = \"fit\"\n";

@@ -103,7 +103,8 @@ fn known_law(stage: &Stage) -> Option<(Law, Vec<(Term, f64)>)> {
     Some((Law::new(&pairs, &sought).ok()?, pairs))
 }
 
-/// The limits of the stages of a law that gives F; none of one whose noise is not known, since the law leaves more than that.
+/// The limits of the stages of a law that gives F; none of one whose noise is not known, since the law leaves more
+/// than that.
 pub(super) fn force_limits(model: &Model, found: &Identification, recording: &Recording) -> Vec<Option<StageLimit>> {
     let fit = fit_force_law(model, recording).ok().flatten();
     let limit = |stage: &Stage| {

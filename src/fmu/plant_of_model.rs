@@ -10,7 +10,8 @@ use crate::law::{Given, Model, ModelTerm, SiUnit, Term, Units, equation};
 use crate::simulate::ParametricLaw;
 use switchid_fmu_slave::{Description, Kind};
 
-/// A plant of the model's law, still without binaries; it starts at rest under a sine of amplitude 1. Of a model without inertia it is a
+/// A plant of the model's law, still without binaries; it starts at rest under a sine of amplitude 1. Of a model
+/// without inertia it is a
 /// specimen: inputs q and qd, output F.
 ///
 /// # Errors

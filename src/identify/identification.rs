@@ -23,7 +23,8 @@ pub struct Stage {
     pub recognised: bool,
     /// The last published coefficients, in the order of the model's terms.
     pub coefficients: Vec<Coefficient>,
-    /// Share of the force's variance that a law which gives it explains; `None` while not known, and for a law of motion.
+    /// Share of the force's variance that a law which gives it explains; `None` while not known, and for a law of
+    /// motion.
     pub explained: Option<f64>,
     /// Whether its coefficients were moving at its end: those published are the last ones.
     pub drifting: bool,

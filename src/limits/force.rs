@@ -1,6 +1,7 @@
 //! Limits of a law whose output is F: readings F_k = Σ θ_j f_j(q_k, q̇_k) + noise, the motion known.
 //!
-//! The Fisher information is J = Σ φφᵀ/σ², φ the features; a known change is seen once Σ (old − new force)²/(2σ²) passes the level.
+//! The Fisher information is J = Σ φφᵀ/σ², φ the features; a known change is seen once Σ (old − new force)²/(2σ²)
+//! passes the level.
 
 use super::LimitsError;
 use super::bound::{Bound, SETTLED_ERROR};

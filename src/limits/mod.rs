@@ -10,7 +10,8 @@
 //! - a known change of the law is seen once Σ|old − new motion|²/(2σ²) passes ln(false alarm interval ÷ sample time), the state at the
 //!   switch known ([`detection()`]).
 //!
-//! Of a law that gives F for a motion that a machine imposes ([`force_bound`], [`force_detection`]) the readings of F are its force plus noise, and
+//! Of a law that gives F for a motion that a machine imposes ([`force_bound`], [`force_detection`]) the readings of F
+//! are its force plus noise, and
 //! the motion counts as known: what the sensors of q and q̇ leave open can only add.
 
 mod bound;

@@ -1,7 +1,9 @@
 //! A law whose output is F: a machine imposes q(t), and what the specimen answers is measured.
 //!
-//! q(t) = initial q + x(t), x the scenario's excitation as a function of time, not held, and q̇ = ẋ. The sine is that of the stage at t, so that a stage
-//! with another amplitude or frequency begins with a jump of q. F = Σ θ_j f_j; internal states begin with nothing stored and are integrated along the motion.
+//! q(t) = initial q + x(t), x the scenario's excitation as a function of time, not held, and q̇ = ẋ. The sine is that
+//! of the stage at t, so that a stage
+//! with another amplitude or frequency begins with a jump of q. F = Σ θ_j f_j; internal states begin with nothing
+//! stored and are integrated along the motion.
 
 use super::check::ScenarioError;
 use super::excitation::ExcitationKind;
@@ -88,7 +90,8 @@ impl Specimen {
     /// The specimen of a scenario, whose excitation does not matter.
     ///
     /// # Errors
-    /// What [`Scenario::check`] refuses, [`ScenarioError::Inertia`] for a law that moves of itself, [`ScenarioError::Memory`] for a term whose
+    /// What [`Scenario::check`] refuses, [`ScenarioError::Inertia`] for a law that moves of itself,
+    /// [`ScenarioError::Memory`] for a term whose
     /// force needs the past.
     pub fn new(scenario: Scenario) -> Result<Specimen, ScenarioError> {
         scenario.check()?;

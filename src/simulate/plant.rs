@@ -280,7 +280,8 @@ pub enum SimulateError {
     Plant(#[from] PlantError),
 }
 
-/// The readings of a whole scenario, of a plant that moves or of one that a machine moves, one per point of the excitation's grid, from 0 to its duration.
+/// The readings of a whole scenario, of a plant that moves or of one that a machine moves, one per point of the
+/// excitation's grid, from 0 to its duration.
 ///
 /// # Errors
 /// [`SimulateError`] for a scenario that [`Scenario::check`] refuses or whose motion has no bounds.

@@ -53,7 +53,8 @@ fn detection(
     force_detection(law, &law.changed(change)?, motion, std, level)
 }
 
-/// The law with the model's numbers where it has them, else with those of the fit; terms that the fit dropped are left out.
+/// The law with the model's numbers where it has them, else with those of the fit; terms that the fit dropped are left
+/// out.
 fn law(input: &Input, fit: &ForceFit, numbers_only: bool) -> Result<Law, LimitsError> {
     let entries = input.model.terms.iter().zip(&fit.coefficients);
     let kept: Vec<(Term, f64, bool)> = entries

@@ -1,8 +1,11 @@
 //! Whether what a law leaves is white, and the covariance of its coefficients where it is not.
 //!
-//! The scores g_b = b_b − Λ_b θ of separate blocks of a record have covariance σ² Λ_b where the law leaves white noise. Error that lasts makes them
-//! larger: Cov θ = Λ⁻¹ (Σ g_b g_bᵀ) Λ⁻¹ holds whatever its correlation within a block and, by Bartlett's weight ½, into the next one
-//! (Newey and West, *Econometrica* 55, 1987; Cameron and Miller, *J. Human Resources* 50, 2015, for the factor B ÷ (B − 1)).
+//! The scores g_b = b_b − Λ_b θ of separate blocks of a record have covariance σ² Λ_b where the law leaves white
+//! noise. Error that lasts makes them
+//! larger: Cov θ = Λ⁻¹ (Σ g_b g_bᵀ) Λ⁻¹ holds whatever its correlation within a block and, by Bartlett's weight ½,
+//! into the next one
+//! (Newey and West, *Econometrica* 55, 1987; Cameron and Miller, *J. Human Resources* 50, 2015, for the factor B ÷ (B
+//! − 1)).
 
 use super::sums::{Sums, Weight, dot};
 use serde::{Deserialize, Serialize};

@@ -1,10 +1,14 @@
 //! Hypotheses "the coefficients changed at sample k", and the log Bayes factor of each against "they did not".
 //!
-//! The sums before k tell θ, those since k tell θ + δ. With θ marginalised the record since k has information V = Λ₁ − Λ₁(Λ₀ + Λ₁)⁻¹Λ₁ on δ and
-//! score h = g − Λ₁(Λ₀ + Λ₁)⁻¹g, g = b₁ − Λ₁θ₀. Under δ ~ N(0, T) and an unknown variance of which the record before k has ν degrees of freedom (the normal
+//! The sums before k tell θ, those since k tell θ + δ. With θ marginalised the record since k has information V = Λ₁ −
+//! Λ₁(Λ₀ + Λ₁)⁻¹Λ₁ on δ and
+//! score h = g − Λ₁(Λ₀ + Λ₁)⁻¹g, g = b₁ − Λ₁θ₀. Under δ ~ N(0, T) and an unknown variance of which the record before k
+//! has ν degrees of freedom (the normal
 //! inverse-gamma pair; Bernardo and Smith, *Bayesian Theory*, 1994, 5.2) the factor is
-//! −½ ln det(1 + VT/σ²) + ½(ν + n₁) ln((νσ² + Q)/(νσ² + Q − hᵀ(V + σ²T⁻¹)⁻¹h)), Q what the law leaves since k. T is a switch of all coefficients, or of
-//! one alone, even chances each. Summed over the instants that each hypothesis stands for this is the Shiryaev–Roberts statistic: mean time
+//! −½ ln det(1 + VT/σ²) + ½(ν + n₁) ln((νσ² + Q)/(νσ² + Q − hᵀ(V + σ²T⁻¹)⁻¹h)), Q what the law leaves since k. T is a
+//! switch of all coefficients, or of
+//! one alone, even chances each. Summed over the instants that each hypothesis stands for this is the Shiryaev–Roberts
+//! statistic: mean time
 //! between false alarms at least its threshold, in samples (Pollak, *Annals of Statistics* 13, 1985).
 
 use super::sums::{Sums, dot};
@@ -94,7 +98,8 @@ impl Changes {
         self.count = 0;
     }
 
-    /// The law may have changed between two samples, at times `previous` and `t`; `before` are the sums without the latter.
+    /// The law may have changed between two samples, at times `previous` and `t`; `before` are the sums without the
+    /// latter.
     pub fn suppose(&mut self, sample: u64, [previous, t]: [f64; 2], before: &Sums) {
         if self.count == MOST {
             self.thin(sample);
@@ -123,7 +128,8 @@ impl Changes {
         all.max_by(|a, b| a.1.evidence.total_cmp(&b.1.evidence)).map_or(0, |(index, _)| index)
     }
 
-    /// Looks again at the likeliest hypothesis and at those that have waited longest for their age; `inflation` divides what the record says.
+    /// Looks again at the likeliest hypothesis and at those that have waited longest for their age; `inflation`
+    /// divides what the record says.
     pub fn look(&mut self, now: u64, total: &Sums, active: &[bool], inflation: f64) {
         if self.count == 0 {
             return;

@@ -1,7 +1,10 @@
-//! The features of a law where the motion is known as a Gaussian belief: their expectations, and what the belief leaves open of the force.
+//! The features of a law where the motion is known as a Gaussian belief: their expectations, and what the belief
+//! leaves open of the force.
 //!
-//! F = Σ θ_j f_j(q, q̇) with (q, q̇) ~ N(x̂, P) has expectation Σ θ_j E f_j and variance Var Σ θ_j f_j. Regressing on E f_j, not on f_j(x̂), leaves no
-//! bias by the sensors' noise (regression calibration; Carroll et al., *Measurement Error in Nonlinear Models*, 2006, ch. 4). Expectations are sums over
+//! F = Σ θ_j f_j(q, q̇) with (q, q̇) ~ N(x̂, P) has expectation Σ θ_j E f_j and variance Var Σ θ_j f_j. Regressing on
+//! E f_j, not on f_j(x̂), leaves no
+//! bias by the sensors' noise (regression calibration; Carroll et al., *Measurement Error in Nonlinear Models*, 2006,
+//! ch. 4). Expectations are sums over
 //! Gauss–Hermite points, exact for powers up to the fifth of q and the ninth of q̇.
 
 use super::smoother::Instant;
@@ -29,7 +32,8 @@ pub struct Known<'a> {
     pub variances: &'a [f64],
 }
 
-/// Writes E f_j of every term into `expected`; returns Var Σ θ_j f_j by the motion's belief, the coefficients known as they are.
+/// Writes E f_j of every term into `expected`; returns Var Σ θ_j f_j by the motion's belief, the coefficients known as
+/// they are.
 pub fn expect(terms: &[Term], known: Known, instant: &Instant, expected: &mut [f64]) -> f64 {
     expected.fill(0.0);
     let mut squares = [0.0; Model::MAX_TERMS];

@@ -1,7 +1,9 @@
 //! A motion that nothing is known of but its smoothness: (q, q̇, q̈) driven by a white jerk.
 //!
-//! q̈ is a Wiener process of intensity Q, (m/s³)² s (Bar-Shalom, Li and Kirubarajan, *Estimation with Applications to Tracking and
-//! Navigation*, 2001, 6.2.3); readings of q and q̇ have white noise of variance R. The filter's innovations e with variance s give the
+//! q̈ is a Wiener process of intensity Q, (m/s³)² s (Bar-Shalom, Li and Kirubarajan, *Estimation with Applications to
+//! Tracking and
+//! Navigation*, 2001, 6.2.3); readings of q and q̇ have white noise of variance R. The filter's innovations e with
+//! variance s give the
 //! likelihood of Q and R.
 
 use serde::{Deserialize, Serialize};
@@ -33,7 +35,8 @@ pub struct Reading {
 }
 
 impl Kinematics {
-    /// Begins at two successive values of a channel (0: q, 1: q̇), `dt` s apart, with noise of that variance, at the second one's time. What is
+    /// Begins at two successive values of a channel (0: q, 1: q̇), `dt` s apart, with noise of that variance, at the
+    /// second one's time. What is
     /// not measured is 0, and exact where nothing will tell it.
     pub fn begin(channel: usize, [before, now]: [f64; 2], dt: f64, variance: f64) -> Kinematics {
         let slope = (now - before) / dt;

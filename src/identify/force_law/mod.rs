@@ -1,6 +1,8 @@
-//! Laws in which the force is the output: a machine imposes q, and F = Σ θ_j f_j(q, q̇) is measured (dampers, mounts, joints).
+//! Laws in which the force is the output: a machine imposes q, and F = Σ θ_j f_j(q, q̇) is measured (dampers, mounts,
+//! joints).
 //!
-//! There is no motion to predict, so nothing is integrated: with the motion known, F is a linear regression on the features.
+//! There is no motion to predict, so nothing is integrated: with the motion known, F is a linear regression on the
+//! features.
 //!
 //! - `kinematics`, `noise`, `smoother`: what the motion was, as a Gaussian belief, from q, from q̇, or from both;
 //! - `features`: the regressors under that belief, and what it leaves open of the force;

@@ -1,13 +1,15 @@
 //! How smooth a measured motion is and how noisy its sensor: the largest likelihood of (R, Q) over a grid of Q ÷ R.
 //!
-//! Both variances scale with R, so that for each ratio R = mean e²/s is the maximum in closed form (concentrated likelihood, Harvey,
+//! Both variances scale with R, so that for each ratio R = mean e²/s is the maximum in closed form (concentrated
+//! likelihood, Harvey,
 //! *Forecasting, Structural Time Series Models and the Kalman Filter*, 1989, 3.4.1).
 
 use super::kinematics::Kinematics;
 use crate::evidence::LogSum;
 use serde::{Deserialize, Serialize};
 
-/// Ratios that are tried: the filter's corner frequency ω from a hundredth of a radian per sample, by factors of √10 … to beyond Nyquist.
+/// Ratios that are tried: the filter's corner frequency ω from a hundredth of a radian per sample, by factors of √10 …
+/// to beyond Nyquist.
 const RATIOS: usize = 12;
 const LOWEST: f64 = 3e-3;
 const FACTOR: f64 = 1.778_279_410_038_922_8;
@@ -18,7 +20,8 @@ const SETTLING: u32 = 8;
 /// Noise ÷ RMS of the readings below which it is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Log-likelihood below the largest, nats, up to which a ratio is not refuted: the profile's one-sided 95 % bound, χ²₁(0.9) ÷ 2.
+/// Log-likelihood below the largest, nats, up to which a ratio is not refuted: the profile's one-sided 95 % bound,
+/// χ²₁(0.9) ÷ 2.
 const PLAUSIBLE: f64 = 1.35;
 
 /// One ratio and how well it predicts.

@@ -16,7 +16,8 @@ const SETTLED: f64 = 0.05 * 0.05;
 /// … and the share of it that the stated covariance, an expectation, must stay below.
 const MARGIN: f64 = 0.5;
 
-/// Price of a term in twice the log-likelihood, ÷ ln of the number of samples (Schwarz's is 1; that of the tracker of motion).
+/// Price of a term in twice the log-likelihood, ÷ ln of the number of samples (Schwarz's is 1; that of the tracker of
+/// motion).
 const PRICE: f64 = 2.0;
 
 /// Part of a term that another one must be for both to count as not told apart.
@@ -59,7 +60,8 @@ pub struct Segment {
     pub every: Vec<bool>,
     /// Whether the record determines the coefficient.
     determined: Vec<bool>,
-    /// Mean square of the recursive residuals, their mean product with the one before, and mean variance by the motion's error.
+    /// Mean square of the recursive residuals, their mean product with the one before, and mean variance by the
+    /// motion's error.
     residual: f64,
     lagged: f64,
     pub of_motion: f64,
@@ -162,7 +164,8 @@ impl Segment {
         is_full
     }
 
-    /// What a sample counts. Where the motion hardly tells which side of a jump it is on, it does so for as long as that lasts: errors that the motion
+    /// What a sample counts. Where the motion hardly tells which side of a jump it is on, it does so for as long as
+    /// that lasts: errors that the motion
     /// makes are one error over [`COHERENT`] samples.
     fn weight(&self, of_motion: f64) -> Weight {
         let whole = Weight { value: 1.0, freedom: 1.0 };
@@ -172,7 +175,8 @@ impl Segment {
         })
     }
 
-    /// Takes the residual that the law of the samples before leaves: under the right law these recursive residuals, scaled to equal variance, are
+    /// Takes the residual that the law of the samples before leaves: under the right law these recursive residuals,
+    /// scaled to equal variance, are
     /// white (Brown, Durbin and Evans, J. Royal Statistical Society B 37, 1975).
     fn compare(&mut self, residual: f64, features: &[f64], weight: Weight, of_motion: f64) {
         let n = features.len();
@@ -305,7 +309,8 @@ impl Segment {
         if found * found * self.means > SURPRISE * SURPRISE { found.clamp(0.0, MOST_ALIKE) } else { 0.0 }
     }
 
-    /// Samples that say as much as one independent sample: residuals that follow from one another say less, as those of an autoregression do
+    /// Samples that say as much as one independent sample: residuals that follow from one another say less, as those
+    /// of an autoregression do
     /// (Bartlett, J. Royal Statistical Society 8 Suppl., 1946).
     pub fn inflation(&self) -> f64 {
         let correlation = self.correlation();

@@ -1,6 +1,7 @@
 //! What a machine's motion was, a few samples ago: (q, q̇) given all readings up to now, with its covariance.
 //!
-//! Fixed-lag smoothing by the covariance of each past state with the present one, M = Cov(x_j, x_k): it travels with the motion, M ← M Aᵀ, and
+//! Fixed-lag smoothing by the covariance of each past state with the present one, M = Cov(x_j, x_k): it travels with
+//! the motion, M ← M Aᵀ, and
 //! every reading corrects x_j by M h e/s (Anderson and Moore, *Optimal Filtering*, 1979, 7.3).
 
 use super::kinematics::{Kinematics, Reading, Vector, carried};
@@ -56,7 +57,8 @@ impl Smoother {
         }
     }
 
-    /// Takes what the sensors' noise and the motion's smoothness are from now on; a channel without noise is not measured.
+    /// Takes what the sensors' noise and the motion's smoothness are from now on; a channel without noise is not
+    /// measured.
     pub fn believe(&mut self, channels: [Option<Smoothness>; 2]) {
         self.noise = channels.map(|channel| channel.map(|channel| channel.variance));
         // the smoother of two beliefs would round off what the other channel resolves
@@ -83,7 +85,8 @@ impl Smoother {
         self.count += 1;
     }
 
-    /// The motion `lag` samples ago; none of the first sample, whose velocity the second one tells, and where there was no sample.
+    /// The motion `lag` samples ago; none of the first sample, whose velocity the second one tells, and where there
+    /// was no sample.
     pub fn at(&self, lag: usize) -> Option<Instant> {
         let number = self.count.checked_sub(1 + lag as u64)?;
         let length = self.past.len();

@@ -103,7 +103,8 @@ impl Sums {
         if self.weight > 0.0 { (self.squares - self.force * self.force / self.weight).max(0.0) } else { 0.0 }
     }
 
-    /// Eliminates Λ with b; unknowns that `active` leaves out, and those of which nothing is known beside the others, are fixed to 0.
+    /// Eliminates Λ with b; unknowns that `active` leaves out, and those of which nothing is known beside the others,
+    /// are fixed to 0.
     pub fn eliminate(&self, active: &[bool], system: &mut System) {
         let n = self.n();
         for row in 0..n {

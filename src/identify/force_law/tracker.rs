@@ -12,7 +12,8 @@ use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use serde::{Deserialize, Serialize};
 
-/// Samples from which the sensors' noise and the motion's smoothness are estimated first; again whenever there are a quarter more.
+/// Samples from which the sensors' noise and the motion's smoothness are estimated first; again whenever there are a
+/// quarter more.
 const FIRST: usize = 64;
 
 /// Part by which a longer wait may still lower the variance of a residual.
