@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use switchid::identify::{Identifier, Sample, Settings, Status};
 use switchid::law::{Given, Model, Term};
-use switchid::simulate::{Builtin, record};
+use switchid::simulate::{Builtin, Scenario, SensorNoise, Stage, record};
 
 /// The system's allocator, counting by thread, so that tests beside this one do not count.
 struct Counting;
@@ -101,6 +101,25 @@ fn a_law_is_recognised_without_allocating() {
         allocating += CALLS.get() - before;
     }
     assert!(identifier.output().recognised, "the law was not recognised");
+    assert_eq!(allocating, 0);
+}
+
+#[test]
+fn a_law_that_gives_the_force_is_followed_through_a_switch_without_allocating() {
+    let terms = ["qd", "q", "coulomb_friction"].map(|name| Term::parse(name).unwrap());
+    let stage = |start, damping| Stage { start, coefficients: vec![damping, 20.0, 2.0], amplitude: 0.2, omega: 5.0 };
+    let mut scenario = Scenario::new("damper", terms.to_vec(), vec![stage(0.0, 3.0), stage(5.0, 5.0)], 8.0);
+    scenario.noise = SensorNoise { q: 1e-4, qd: 1e-3, force: 0.2 };
+    let model = Model::of("damper", terms.map(|term| (term, Given::Fit)));
+    let mut identifier = Identifier::new(&model, Settings::default()).unwrap();
+    let mut allocating = 0;
+    for row in record(&scenario).unwrap() {
+        let sample = Sample { t: row.t, q: row.q, qd: row.qd, excitation: row.excitation };
+        let before = CALLS.get();
+        identifier.step(sample).unwrap();
+        allocating += CALLS.get() - before;
+    }
+    assert_eq!((identifier.output().switch_count, identifier.output().valid), (1, true));
     assert_eq!(allocating, 0);
 }
 

@@ -270,3 +270,39 @@ fn silverbox_lacks_cubic_stiffness_and_no_friction_and_with_it_runs_free() {
     let error = &json(folder, &["compare", "arrow.csv", "--model", "cubic.toml"])["error"];
     assert!(error["free_run_nrmse"].as_f64().unwrap() <= 0.05, "{error}");
 }
+
+/// Machines impose q on these, F is measured. What viscous damping, stiffness and offset leave is no white noise: no
+/// law of theirs is valid, no switch is
+/// in them, and the coefficients are those of plain least squares on locally fitted cubics (done apart from this
+/// project), within 3 std or 10 %.
+#[test]
+fn forces_of_testing_machines_are_published_and_not_validated() {
+    let linear = "[terms]\nlinear_damping = \"fit\"\nlinear_stiffness = \"fit\"\nconstant_force = \"fit\"\n";
+    for (name, damping, stiffness, explained) in [
+        ("real/mr_10_2.csv", 5217.0, 3751.0, 0.885),
+        ("real/mr_A1.csv", 19132.0, 10043.0, 0.912),
+        ("real/brfd2_36lb_05hz.csv", 158_210.0, 256_800.0, 0.777),
+        ("real/pneu_oring_3bar.csv", 638.0, 30.7, 0.979),
+    ] {
+        let Some(data) = recording(name) else { return };
+        let found = identify(&data, linear);
+        let stages = found["stages"].as_array().unwrap();
+        assert!(stages.iter().all(|stage| stage["detected"].is_null() && stage["identified"].is_null()), "{found:#}");
+        let last = stages.last().unwrap();
+        for (term, reference) in [("qd", damping), ("q", stiffness)] {
+            let [value, std] = ["coefficients", "std"].map(|key| last[key][term].as_f64().unwrap());
+            let far = (value - reference).abs();
+            assert!(far < (3.0 * std).max(0.1 * reference) && std < 0.2 * reference, "{name}, {term}: {value} ± {std}");
+        }
+        let share = last["explained"].as_f64().unwrap();
+        assert!((share - explained).abs() < 0.02, "{name}: {share}");
+        let friction = identify(&data, &format!("{linear}coulomb_friction = \"fit\"\n"));
+        let stages = friction["stages"].as_array().unwrap();
+        assert!(
+            stages.iter().all(|stage| stage["detected"].is_null() && stage["identified"].is_null()),
+            "{friction:#}"
+        );
+        let last = stages.last().unwrap();
+        assert!(last["explained"].as_f64().unwrap() > share && last["coefficients"]["coulomb_friction"].is_number());
+    }
+}

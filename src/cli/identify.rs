@@ -5,8 +5,9 @@ use super::identify_report::Report;
 use super::input::is_noiseless;
 use super::output;
 use super::progress::{Progress, Waiting};
-use super::stage_limit::{StageLimit, stage_limits};
+use super::stage_limit::{StageLimit, force_limits, stage_limits};
 use super::trace::Trace;
+use super::words::percent;
 use crate::data::{self, DataError, Opened};
 use crate::identify::{self, BuildError, Gap, Identification, Method, Recording, Settings, Stage};
 use crate::law::{Hold, Model, Term, Units, unit_of};
@@ -82,6 +83,8 @@ pub(super) struct Run {
     pub(super) settings: Settings,
     /// Who chose the hold.
     hold_from: &'static str,
+    /// Whether F is what the law gives.
+    pub(super) gives_force: bool,
     pub(super) found: Identification,
     /// What any method could reach, stage by stage; none where a stage has no law or no limit.
     limits: Vec<Option<StageLimit>>,
@@ -94,8 +97,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let (settings, hold_from) = settings(arguments, &model, &opened.recording)?;
     let found = identify(arguments, &model, settings, &opened.recording)?;
     arguments.save_laws.as_deref().map_or(Ok(()), |path| save(path, &found))?;
-    let limits = Waiting::on("looking for the limits", || stage_limits(&found, &opened.recording, &settings));
-    let run = Run { opened, settings, hold_from, found, limits };
+    let limits = Waiting::on("looking for the limits", || match model.is_force_law() {
+        true => force_limits(&model, &found, &opened.recording),
+        false => stage_limits(&found, &opened.recording, &settings),
+    });
+    let gives_force = model.is_force_law();
+    let run = Run { opened, settings, hold_from, gives_force, found, limits };
     warnings(&run)
         .iter()
         .chain(&unsaved(arguments, &run.found))
@@ -176,6 +183,7 @@ fn settings(
     let (hold, from) = match (arguments.hold.as_deref().and_then(Hold::from_id), model.hold) {
         (Some(hold), _) => (hold, "as asked"),
         (None, Some(hold)) => (hold, "the model's"),
+        (None, None) if model.is_force_law() => (settings.hold, "a law that gives F has no between"),
         (None, None) => (identify::choose_hold(model, recording, &settings), "chosen"),
     };
     Ok((Settings { hold, ..settings }, from))
@@ -226,7 +234,7 @@ pub(super) fn stages(run: &Run) -> impl Iterator<Item = (&Stage, Option<&StageLi
 
 /// Estimated std of the sensors' noise by channel.
 pub(super) fn noise(found: &Identification) -> Vec<(String, f64)> {
-    let channels = [("q", found.noise_q), ("qd", found.noise_qd)];
+    let channels = [("q", found.noise_q), ("qd", found.noise_qd), ("F", found.noise_force)];
     channels.into_iter().filter_map(|(channel, std)| Some((channel.to_string(), std?))).collect()
 }
 
@@ -266,7 +274,10 @@ fn head(run: &Run) -> String {
     for column in &run.opened.columns {
         let _ = writeln!(text, "  {column}");
     }
-    let _ = writeln!(text, "between samples: {} ({})", run.settings.hold, run.hold_from);
+    text += &match run.gives_force {
+        true => "F is the output: F = law(q, q̇)\n".into(),
+        false => format!("between samples: {} ({})\n", run.settings.hold, run.hold_from),
+    };
     let noise: Vec<String> = noise(&run.found).iter().map(|(channel, std)| format!("{channel} {std:.3e}")).collect();
     let noise = if noise.is_empty() { "not known".into() } else { noise.join(", ") };
     let _ = writeln!(text, "sensor noise (std): {noise}");
@@ -299,8 +310,8 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
     if !open.is_empty() {
         let _ = writeln!(text, "  not known: {}", open.join(", "));
     }
-    text += &stage.explained.map_or_else(String::new, explained);
     text += &lacking(stage);
+    text += &explained(stage);
     if limit.is_some_and(|limit| !limit.explained()) {
         text += "  the law leaves more than sensor noise: no comparison with what any method could reach\n";
     }
@@ -310,13 +321,17 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
     text
 }
 
-/// What is to be said of coefficients that are not validated.
-fn explained(share: f64) -> String {
-    format!(
-        "  not validated: it explains {:.1} % of the force, and what is left is no white sensor noise; the std are those between parts of the \
-         record and between lengths of variation\n",
-        100.0 * share
-    )
+/// What share of the force the law explains, and whether it is validated; empty where that is not told.
+fn explained(stage: &Stage) -> String {
+    let validated = match stage.identified.filter(|_| stage.valid) {
+        Some(_) => "",
+        None => {
+            "; it is not validated: what it leaves is no white noise, or the record too short; the std are those between parts of \
+             the record"
+        }
+    };
+    let line = |share: f64| format!("  the law explains {} of the variance of the force{validated}\n", percent(share));
+    stage.explained.map_or_else(String::new, line)
 }
 
 /// `q^3: not known yet, about 1.4 s more of such motion`, a line for each coefficient that a law to vouch for needs better.

@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 /// The JSON document of `switchid identify`.
 #[derive(Serialize)]
 pub(super) struct Report {
+    /// What the law gives: `F`, or the motion.
+    output: &'static str,
     stages: Vec<StageReport>,
     noise: Pairs,
     hold: &'static str,
@@ -31,8 +33,6 @@ struct StageReport {
     recognised: bool,
     /// Whether the law was validated at the stage's end.
     valid: bool,
-    /// Share of the force's variance that the coefficients explain; null where they are not those of the weak form.
-    explained: Option<f64>,
     law: Option<String>,
     coefficients: Pairs,
     std: Pairs,
@@ -40,6 +40,8 @@ struct StageReport {
     needed: Pairs,
     /// By term, where known.
     units: BTreeMap<String, String>,
+    /// Share of the force's variance that the coefficients explain; null for a law of motion that states its own std.
+    explained: Option<f64>,
     /// Whether the coefficients were moving at the stage's end.
     drifting: bool,
     unidentifiable: Vec<String>,
@@ -63,6 +65,7 @@ impl Report {
         let Run { opened, settings, found, .. } = run;
         let forced = settings.channels.excitation;
         Report {
+            output: if run.gives_force { "F" } else { "motion" },
             stages: stages(run).map(|(stage, limit)| StageReport::of(stage, limit, forced, &opened.units)).collect(),
             noise: Pairs(noise(found)),
             hold: settings.hold.id(),
@@ -83,7 +86,6 @@ impl StageReport {
             law_number: stage.law_number,
             recognised: stage.recognised,
             valid: stage.valid,
-            explained: stage.explained,
             law: stage.law(forced),
             coefficients: Pairs(stage.known().map(|(known, _)| (known.term.name(), known.value)).collect()),
             std: Pairs(stage.known().map(|(known, std)| (known.term.name(), std)).collect()),
@@ -92,6 +94,7 @@ impl StageReport {
                 .known()
                 .filter_map(|(known, _)| Some((known.term.name(), unit_of(known.term, units)?)))
                 .collect(),
+            explained: stage.explained,
             drifting: stage.drifting,
             unidentifiable: stage.unidentifiable.clone(),
             limit: limit.map(|limit| LimitReport::of(stage, limit)),

@@ -21,6 +21,17 @@ Excitations besides that of the example (angular frequencies in rad/s, sweep tim
   { kind = "multisine", from = 1.0, to = 20.0, count = 20, rms = 2.0 }
   { kind = "sweep", from = 1.0, to = 20.0, period = 30.0, rms = 2.0 }
 
+A law without inertia gives F for the q that a machine imposes (dampers, mounts, joints on a testing machine): the
+excitation is then q(t) less initial.q, its derivative q̇, and F the output, with its own noise. It must have a velocity:
+sine (of the stage at that instant), multisine or sweep.
+  terms = ["qd", "q", "coulomb_friction"]
+  duration = 20.0
+  noise = { q = 1e-5, qd = 1e-4, F = 0.5 }
+  excitation = { kind = "multisine", from = 1.0, to = 20.0, count = 10, rms = 0.01, sample_time = 1e-3 }
+  [[stage]]
+  start = 0.0
+  coefficients = [300.0, 2000.0, 15.0]
+
 A scenario file:
   terms = ["qdd", "qd", "q", "q^3"]
   duration = 30.0                     # s
@@ -162,7 +173,11 @@ fn truth(scenario: &Scenario) -> Truth {
     Truth {
         scenario: scenario.name.clone(),
         seed: scenario.seed,
-        noise: Pairs(vec![("q".into(), scenario.noise.q), ("qd".into(), scenario.noise.qd)]),
+        noise: Pairs(
+            [("q", scenario.noise.q), ("qd", scenario.noise.qd), ("F", scenario.noise.force)]
+                .map(|(channel, std)| (channel.into(), std))
+                .into(),
+        ),
         excitation: scenario.excitation,
         hidden: scenario.hidden.clone(),
         switch_times: scenario.switch_times().into_iter().filter(|t| *t < scenario.duration).collect(),

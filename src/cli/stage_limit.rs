@@ -3,9 +3,9 @@
 use super::input::is_noiseless;
 use crate::diagnose::{Evidence, Fit, Form, is_evident, refit};
 use crate::evidence::Noise;
-use crate::identify::{Identification, Recording, Settings, Stage};
-use crate::law::Term;
-use crate::limits::{Bound, Course, Law, Sensors, Start, bound};
+use crate::identify::{Identification, Recording, Settings, Stage, fit_force_law};
+use crate::law::{Model, Term};
+use crate::limits::{Bound, Course, Imposed, Law, Sensors, Start, bound, force_bound};
 
 /// Process noise, (m/s²)² s, ÷ variance of the sensors' noise from which its search begins.
 const LEAST: f64 = 1e-6;
@@ -68,17 +68,7 @@ fn samples(stage: &Stage, recording: &Recording, is_last: bool) -> std::ops::Ran
 }
 
 fn stage_limit(stage: &Stage, noise: Noise, section: &Recording, settings: &Settings) -> Option<StageLimit> {
-    let kept: Vec<(Term, f64, f64)> = stage
-        .known()
-        .map(|(known, std)| (known.term, known.value, std))
-        .filter(|(_, value, std)| *value != 0.0 || *std > 0.0)
-        .collect();
-    let pairs: Vec<(Term, f64)> = kept.iter().map(|(term, value, _)| (*term, *value)).collect();
-    let sought: Vec<usize> = (0..kept.len()).filter(|index| kept[*index].2 > 0.0).collect();
-    if sought.is_empty() {
-        return None;
-    }
-    let law = Law::new(&pairs, &sought).ok()?;
+    let (law, pairs) = known_law(stage)?;
     let (courses, motion) = motion(&pairs, section, settings, noise)?;
     let measured = [section.channels().q, section.channels().qd];
     let sensors = Sensors([0, 1].map(|channel| measured[channel].then_some(motion.noise.sensor[channel].sqrt())));
@@ -96,4 +86,34 @@ fn motion(pairs: &[(Term, f64)], section: &Recording, settings: &Settings, noise
     let pairs = evidence.pieces.iter().zip(&motion.states);
     let courses = pairs.map(|(piece, states)| piece.course(states)).collect();
     Some((courses, motion))
+}
+
+/// The law of a stage with its terms' coefficients; none where nothing was estimated.
+fn known_law(stage: &Stage) -> Option<(Law, Vec<(Term, f64)>)> {
+    let kept: Vec<(Term, f64, f64)> = stage
+        .known()
+        .map(|(known, std)| (known.term, known.value, std))
+        .filter(|(_, value, std)| *value != 0.0 || *std > 0.0)
+        .collect();
+    let pairs: Vec<(Term, f64)> = kept.iter().map(|(term, value, _)| (*term, *value)).collect();
+    let sought: Vec<usize> = (0..kept.len()).filter(|index| kept[*index].2 > 0.0).collect();
+    if sought.is_empty() {
+        return None;
+    }
+    Some((Law::new(&pairs, &sought).ok()?, pairs))
+}
+
+/// The limits of the stages of a law that gives F; none of one whose noise is not known, since the law leaves more
+/// than that.
+pub(super) fn force_limits(model: &Model, found: &Identification, recording: &Recording) -> Vec<Option<StageLimit>> {
+    let fit = fit_force_law(model, recording).ok().flatten();
+    let limit = |stage: &Stage| {
+        let (fit, std) = (fit.as_ref()?, found.noise_force.filter(|_| stage.identified.is_some())?);
+        let during = fit.motion.iter().filter(|(t, _)| (stage.start..=stage.end).contains(t));
+        let motion: Vec<Imposed> = during.map(|(t, state)| Imposed { t: *t, state: *state }).collect();
+        let (law, _) = known_law(stage)?;
+        let bound = force_bound(&law, &motion, std).ok()?;
+        Some(StageLimit { law, bound, explained: true })
+    };
+    found.stages.iter().map(limit).collect()
 }

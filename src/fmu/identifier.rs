@@ -23,7 +23,10 @@ pub fn identifier(name: &str, model: &Model) -> Result<Fmu, FmuError> {
 /// [`FmuError`], also where the laws are not the model's.
 pub fn identifier_knowing(name: &str, model: &Model, known: &SavedLaws) -> Result<Fmu, FmuError> {
     model.check()?;
-    model.check_inertia()?;
+    match model.is_force_law() {
+        true => model.check_force_law()?,
+        false => model.check_inertia()?,
+    }
     model.check_streaming()?;
     model.check_free(true)?;
     let mut resources = vec![("model.toml".into(), model.to_toml().into_bytes())];
@@ -128,6 +131,7 @@ fn initial_dependencies(name: &str) -> &'static [&'static str] {
         "threshold" => &["deviation.threshold", "method"],
         "noise_estimate.q" => &["noise.q"],
         "noise_estimate.qd" => &["noise.qd"],
+        "noise_estimate.F" => &["noise.F"],
         name if name.starts_with("coef.") || name.starts_with("std.") => &["terms"],
         _ => &[],
     }

@@ -8,6 +8,7 @@ mod identifier;
 mod plant;
 mod plant_of_model;
 mod ports;
+mod specimen;
 
 pub use identifier::{identifier, identifier_description, identifier_knowing};
 pub use plant::{DUFFING, STAGES, VAN_DER_POL, plant, plant_description};
@@ -42,6 +43,15 @@ pub enum FmuError {
         "[terms]: \"{key}\" is an effect of your own, which a plant FMU cannot carry: take it out, or `switchid simulate` the model"
     )]
     Expression {
+        /// The key.
+        key: String,
+    },
+    /// A term of a law without inertia that needs the past.
+    #[error(
+        "[terms]: the force of \"{key}\" needs the past, which the plant FMU of a law without inertia does not keep: take it out, or \
+         `switchid simulate` the model"
+    )]
+    Memory {
         /// The key.
         key: String,
     },

@@ -17,7 +17,7 @@ pub const VAN_DER_POL: &str = include_str!("laws/van_der_pol.toml");
 pub const STAGES: usize = 16;
 
 /// Start of a stage that does not occur, s.
-const NEVER: f64 = 1e30;
+pub(super) const NEVER: f64 = 1e30;
 
 /// A plant whose law is that file's, still without binaries.
 ///
@@ -104,7 +104,7 @@ fn drive() -> [Variable; 5] {
 }
 
 /// An effect besides the law's terms: its coefficient, 0 where the plant does not have it, and its inner parameters.
-fn hidden(entry: &'static Entry) -> impl Iterator<Item = Variable> {
+pub(super) fn hidden(entry: &'static Entry) -> impl Iterator<Item = Variable> {
     let name = format!("hidden.{}", entry.id);
     let text =
         format!("Hidden effect in every stage: coefficient of {} on the left-hand side; 0 = absent", entry.equation);
@@ -173,12 +173,17 @@ fn truth(law: &ParametricLaw) -> Vec<Variable> {
         continuous(output(real("true.qd", 0.0, None, "Velocity without noise"), &["qd0"])),
         output(stage, &[]),
     ];
-    variables.extend(law.terms().into_iter().map(|term| {
+    variables.extend(true_coefficients(law));
+    variables
+}
+
+/// The coefficients of the present stage.
+pub(super) fn true_coefficients(law: &ParametricLaw) -> impl Iterator<Item = Variable> {
+    law.terms().into_iter().map(|term| {
         let depends: Vec<String> = law.depends_on(term).map(|name| format!("stage[1].{name}")).collect();
         let text = format!("Coefficient of {term} on the left-hand side in the present stage");
         Variable { depends_on: depends, ..output(real(format!("true.coef.{}", term.fmu_name()), 0.0, None, text), &[]) }
-    }));
-    variables
+    })
 }
 
 fn continuous(variable: Variable) -> Variable {

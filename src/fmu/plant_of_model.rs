@@ -4,22 +4,30 @@
 //! start values are then the model's: the law file has no place for a gap.
 
 use super::plant::{pack, plant_description};
+use super::specimen::{pack_specimen, specimen_description};
 use super::{Fmu, FmuError, ports};
 use crate::law::{Given, Model, ModelTerm, SiUnit, Term, Units, equation};
 use crate::simulate::ParametricLaw;
 use switchid_fmu_slave::{Description, Kind};
 
-/// A plant of the model's law, still without binaries; it starts at rest under a sine of amplitude 1.
+/// A plant of the model's law, still without binaries; it starts at rest under a sine of amplitude 1. Of a model
+/// without inertia it is a
+/// specimen: inputs q and qd, output F.
 ///
 /// # Errors
 /// [`FmuError::NoNumbers`] where a coefficient or an inner parameter has no number, [`FmuError::Expression`] for a user's own
-/// effect, and what packing refuses.
+/// effect, [`FmuError::Memory`] for a specimen that needs the past, and what packing refuses.
 pub fn plant_of_model(name: &str, model: &Model) -> Result<Fmu, FmuError> {
     model.check()?;
-    model.check_inertia()?;
+    let moves = !model.is_force_law();
+    match moves {
+        true => model.check_inertia()?,
+        false => check_specimen(model)?,
+    }
     let numbers = numbers(model)?;
     let law_file = law_file(name, model, &numbers);
-    let mut description = plant_description(&ParametricLaw::from_toml(&law_file)?);
+    let law = ParametricLaw::from_toml(&law_file)?;
+    let mut description = if moves { plant_description(&law) } else { specimen_description(&law) };
     start(&mut description, "q0", 0.0);
     for (entry, value) in numbers.iter().filter(|(entry, _)| has_inner(entry)) {
         let effect = format!("hidden.{}", entry.term.name());
@@ -30,7 +38,17 @@ pub fn plant_of_model(name: &str, model: &Model) -> Result<Fmu, FmuError> {
     }
     let units = model.units.units();
     ports::declare(&mut description, &units, |name| coefficient_unit(name, model, &units));
-    pack(description, &law_file)
+    if moves { pack(description, &law_file) } else { pack_specimen(description, &law_file) }
+}
+
+/// A specimen's force is a function of q and qd at one instant.
+fn check_specimen(model: &Model) -> Result<(), FmuError> {
+    model.check_force_law()?;
+    let memory = |entry: &&ModelTerm| !entry.term.is_pointwise() && !matches!(entry.term, Term::Expression(_));
+    match model.terms.iter().find(memory) {
+        Some(entry) => Err(FmuError::Memory { key: entry.key.clone() }),
+        None => Ok(()),
+    }
 }
 
 /// Every term with its coefficient.

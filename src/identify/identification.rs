@@ -27,7 +27,8 @@ pub struct Stage {
     pub drifting: bool,
     /// Whether its law was validated at its end.
     pub valid: bool,
-    /// Share of the force's variance that the coefficients explain where they are those of the weak form, which are not validated.
+    /// Share of the force's variance that the coefficients explain: of a law without inertia, and of one of motion where they are those of
+    /// the weak form, which are not validated.
     pub explained: Option<f64>,
     /// What its data could not determine.
     pub unidentifiable: Vec<String>,
@@ -67,6 +68,8 @@ pub struct Identification {
     pub noise_q: Option<f64>,
     /// Estimated std of the velocity's sensor noise.
     pub noise_qd: Option<f64>,
+    /// Estimated std of what the force has besides a law that gives it; `None` for a law of motion.
+    pub noise_force: Option<f64>,
     /// The laws that were vouched for, to be recognised in other recordings.
     pub known_laws: SavedLaws,
     /// The samples that were not used, and why.
@@ -161,6 +164,7 @@ pub fn identify_knowing(
         stages: Vec::new(),
         noise_q: None,
         noise_qd: None,
+        noise_force: None,
         known_laws: known.clone(),
         skipped: Vec::new(),
     };
@@ -199,6 +203,7 @@ fn follow(
     found.stages.push(present);
     found.known_laws = identifier.known_laws();
     found.noise_q = identifier.output().noise_q.or(found.noise_q);
+    found.noise_force = identifier.output().noise_force.or(found.noise_force);
     found.noise_qd = identifier.output().noise_qd.or(found.noise_qd);
 }
 

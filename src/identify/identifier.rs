@@ -1,9 +1,10 @@
 //! The identifier's face to its callers.
 
+use super::force_law::ForceTracker;
 use super::problem::Problem;
 use super::publication::Publication;
 use super::saved::{SavedLaws, SavedLawsError};
-use super::settings::{Method, Settings, SettingsError};
+use super::settings::{Channels, Method, Settings, SettingsError};
 use super::tracker::Tracker;
 use crate::evidence::Missing;
 use crate::law::{Model, ModelError, Term};
@@ -119,19 +120,23 @@ pub struct Output {
     pub deviation: f64,
     /// The deviation that is out of the ordinary.
     pub threshold: f64,
+    /// Force that the law predicts for this instant; 0 for a law of motion.
+    pub prediction_force: f64,
     /// Displacement that the law predicts for this instant.
     pub prediction_q: f64,
     /// Velocity that the law predicts for this instant.
     pub prediction_qd: f64,
     /// The effect of the catalogue that the present law lacks most; `None` where none stands out.
     pub missing: Option<Missing>,
-    /// Share of the force's variance that the published coefficients explain where they are those of the weak form; `None` where they are
-    /// those of a law that states its own std, and while nothing is known.
+    /// Share of the force's variance that the published coefficients explain: of a law without inertia, and of one of motion where they are
+    /// those of the weak form; `None` for a law of motion that states its own std, and while nothing is known.
     pub explained: Option<f64>,
     /// Estimated std of the displacement's sensor noise; `None` while not known or not measured.
     pub noise_q: Option<f64>,
     /// Estimated std of the velocity's sensor noise; `None` while not known or not measured.
     pub noise_qd: Option<f64>,
+    /// Estimated std of what the force has besides the law; `None` while not known, and for a law of motion.
+    pub noise_force: Option<f64>,
 }
 
 /// Why an identifier cannot be built.
@@ -146,6 +151,26 @@ pub enum BuildError {
     /// The known laws are refused.
     #[error(transparent)]
     Laws(#[from] SavedLawsError),
+    /// A law whose output nobody measured.
+    #[error(
+        "[terms] has no inertia, so that F is what the law gives, but F is not measured: name its column ([columns] F = \"…\"), or add \
+         inertia = \"fit\" for a law of motion"
+    )]
+    NoForce,
+    /// A term of q where q is not measured.
+    #[error(
+        "[terms]: \"{key}\" depends on q, which is not measured: with F as the output nothing else tells where q began; leave the term out, or \
+         measure q"
+    )]
+    NoDisplacement {
+        /// The key of the term.
+        key: String,
+    },
+    /// The publication's method has laws of motion only.
+    #[error(
+        "[terms] has no inertia: the publication's method identifies laws of motion; leave --method out, or add inertia = \"fit\""
+    )]
+    PublishedForceLaw,
 }
 
 /// The procedure at work.
@@ -153,11 +178,13 @@ pub enum BuildError {
 enum Engine {
     Default(Box<Tracker>),
     Publication(Box<Publication>),
+    Force(Box<ForceTracker>),
 }
 
 impl Engine {
     fn new(problem: &Problem, settings: &Settings) -> Engine {
         match settings.method {
+            _ if problem.is_force_law() => Engine::Force(Box::new(ForceTracker::new(problem, settings))),
             Method::Default => Engine::Default(Box::new(Tracker::new(problem, settings))),
             Method::Publication => Engine::Publication(Box::new(Publication::new(problem, settings))),
         }
@@ -184,11 +211,7 @@ impl Identifier {
     /// # Errors
     /// [`BuildError`] when settings or model are refused.
     pub fn new(model: &Model, settings: Settings) -> Result<Identifier, BuildError> {
-        settings.check()?;
-        model.check()?;
-        model.check_inertia()?;
-        model.check_streaming()?;
-        model.check_free(settings.channels.excitation)?;
+        check(model, &settings)?;
         let coefficients: Vec<Coefficient> = model
             .terms
             .iter()
@@ -210,11 +233,13 @@ impl Identifier {
             drifting: false,
             deviation: 0.0,
             threshold: 0.0,
+            prediction_force: 0.0,
             prediction_q: 0.0,
             prediction_qd: 0.0,
             explained: None,
             noise_q: None,
             noise_qd: None,
+            noise_force: None,
             missing: None,
         };
         let shown = (coefficients.clone(), output);
@@ -233,6 +258,7 @@ impl Identifier {
         match engine {
             Engine::Default(tracker) => tracker.step(problem, settings, sample, coefficients, output),
             Engine::Publication(publication) => publication.step(problem, settings, sample, coefficients, output),
+            Engine::Force(tracker) => tracker.step(problem, settings, sample, coefficients, output),
         }
         shown.0.copy_from_slice(coefficients);
         shown.1 = *output;
@@ -277,7 +303,7 @@ impl Identifier {
     pub fn known_laws(&self) -> SavedLaws {
         match &self.engine {
             Engine::Default(tracker) => tracker.known_laws(&self.problem, &self.output),
-            Engine::Publication(_) => SavedLaws::default(),
+            Engine::Publication(_) | Engine::Force(_) => SavedLaws::default(),
         }
     }
 
@@ -312,7 +338,7 @@ impl Identifier {
     pub fn likelihood(&self) -> Option<f64> {
         match &self.engine {
             Engine::Default(tracker) => tracker.likelihood(),
-            Engine::Publication(_) => None,
+            Engine::Publication(_) | Engine::Force(_) => None,
         }
     }
 
@@ -322,8 +348,37 @@ impl Identifier {
         let from_data = match &self.engine {
             Engine::Default(tracker) => tracker.unidentifiable(&self.problem),
             Engine::Publication(publication) => publication.unidentifiable(&self.problem),
+            Engine::Force(tracker) => tracker.unidentifiable(&self.problem),
         };
         let always = self.potential.iter().map(|term| format!("{term} in [potential]"));
         from_data.into_iter().chain(always).collect()
+    }
+}
+
+/// Checks that the model can be identified sample by sample from what is measured.
+pub(super) fn check(model: &Model, settings: &Settings) -> Result<(), BuildError> {
+    settings.check()?;
+    model.check()?;
+    match model.is_force_law() {
+        true => check_force_law(model, settings)?,
+        false => model.check_inertia()?,
+    }
+    model.check_streaming()?;
+    Ok(model.check_free(settings.channels.excitation)?)
+}
+
+/// Checks that a law whose output is F can be identified from what is measured.
+fn check_force_law(model: &Model, settings: &Settings) -> Result<(), BuildError> {
+    model.check_force_law()?;
+    let Channels { q, excitation, .. } = settings.channels;
+    if settings.method == Method::Publication {
+        return Err(BuildError::PublishedForceLaw);
+    }
+    if !excitation {
+        return Err(BuildError::NoForce);
+    }
+    match model.terms.iter().find(|entry| !q && entry.term.uses_displacement()) {
+        Some(entry) => Err(BuildError::NoDisplacement { key: entry.key.clone() }),
+        None => Ok(()),
     }
 }

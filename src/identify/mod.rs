@@ -8,6 +8,7 @@ mod capture;
 mod deviation;
 mod drift;
 mod equations;
+mod force_law;
 mod forecast;
 mod functional;
 mod identification;
@@ -32,6 +33,7 @@ mod trials;
 mod usual;
 mod window;
 
+pub use force_law::{ForceFit, fit_force_law};
 pub use identification::{Identification, Stage, choose_hold, identify_knowing, identify_recording, settings_for};
 pub use identifier::{BuildError, Coefficient, Identifier, Output, Sample, Skipped, Status};
 pub use outputs::{OutputDescription, OutputKind, OutputValue, Outputs, UNKNOWN};

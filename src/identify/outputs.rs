@@ -67,9 +67,25 @@ impl OutputValue {
 pub struct Outputs {
     /// For every listed term, its place among the identifier's coefficients.
     places: Vec<Option<usize>>,
+    /// Whether F is what the law gives.
+    of_force: bool,
 }
 
-const SCALARS: [(&str, OutputKind, &str); 17] = [
+/// Name, kind and description.
+type Scalar = (&'static str, OutputKind, &'static str);
+
+/// What a law that gives F has in place of the predictions of a motion, and besides.
+const OF_FORCE: [Scalar; 3] = [
+    ("prediction.F", OutputKind::Real(None), "F that the present law gives for the last sample's q and qd"),
+    ("noise_estimate.F", OutputKind::Real(None), "Estimated std of what F has besides the law; 1e30 while not known"),
+    (
+        "explained",
+        OutputKind::Real(None),
+        "Share of the variance of F that the present law explains; 0 while not known",
+    ),
+];
+
+const SCALARS: [Scalar; 17] = [
     ("switch.count", OutputKind::Count, "Switches detected so far"),
     ("switch.time", OutputKind::Real(Some("s")), "Estimated instant at which the present stage began"),
     (
@@ -135,8 +151,9 @@ impl Outputs {
                  nothing can be said"
             ),
         });
+        let scalars = scalars_of(is_force_law(terms));
         let scalars =
-            SCALARS.map(|(name, kind, text)| OutputDescription { name: name.into(), kind, description: text.into() });
+            scalars.map(|(name, kind, text)| OutputDescription { name: name.into(), kind, description: text.into() });
         coefficients.chain(stds).chain(needed).chain(scalars).collect()
     }
 
@@ -144,7 +161,7 @@ impl Outputs {
     pub fn new(terms: &[Term], identifier: &Identifier) -> Outputs {
         let coefficients = identifier.coefficients();
         let place = |term: &Term| coefficients.iter().position(|coefficient| coefficient.term == *term);
-        Outputs { places: terms.iter().map(place).collect() }
+        Outputs { places: terms.iter().map(place).collect(), of_force: is_force_law(terms) }
     }
 
     /// Every value, in the order of [`Outputs::describe`].
@@ -154,8 +171,30 @@ impl Outputs {
         let values = self.places.iter().map(move |place| at(place).map_or(0.0, |found| found.value));
         let stds = self.places.iter().map(move |place| at(place).and_then(|found| found.std).unwrap_or(UNKNOWN));
         let needed = self.places.iter().map(move |place| at(place).and_then(|found| found.needed).unwrap_or(UNKNOWN));
-        values.chain(stds).chain(needed).map(OutputValue::Real).chain(scalars(identifier))
+        let scalars = SCALARS.iter().zip(scalars(identifier)).map(|((name, ..), value)| (*name, value));
+        let kept = scalars.filter(|(name, _)| !self.of_force || !PREDICTIONS.contains(name)).map(|(_, value)| value);
+        let of_force = of_force(identifier).into_iter().filter(|_| self.of_force);
+        values.chain(stds).chain(needed).map(OutputValue::Real).chain(kept).chain(of_force)
     }
+}
+
+/// Predictions that a law which gives F does not make.
+const PREDICTIONS: [&str; 2] = ["prediction.q", "prediction.qd"];
+
+fn is_force_law(terms: &[Term]) -> bool {
+    terms.iter().all(|term| !term.is_inertial())
+}
+
+fn scalars_of(force_law: bool) -> impl Iterator<Item = Scalar> {
+    let kept = SCALARS.into_iter().filter(move |(name, ..)| !force_law || !PREDICTIONS.contains(name));
+    kept.chain(OF_FORCE.into_iter().filter(move |_| force_law))
+}
+
+/// In the order of [`OF_FORCE`].
+fn of_force(identifier: &Identifier) -> [OutputValue; OF_FORCE.len()] {
+    let output = identifier.output();
+    let (noise, explained) = (output.noise_force.unwrap_or(UNKNOWN), output.explained.unwrap_or(0.0));
+    [output.prediction_force, noise, explained].map(OutputValue::Real)
 }
 
 fn scalars(identifier: &Identifier) -> [OutputValue; SCALARS.len()] {

@@ -58,6 +58,11 @@ impl Problem {
         self.free.len()
     }
 
+    /// Whether F is what the law gives: no term multiplies q̈.
+    pub fn is_force_law(&self) -> bool {
+        self.terms.iter().all(|term| !term.is_inertial())
+    }
+
     /// Position of the inertia among the free coefficients, where it is one.
     pub fn free_inertia(&self) -> Option<usize> {
         self.free.iter().position(|index| *index == self.inertia)

@@ -242,6 +242,22 @@ impl Model {
         }
     }
 
+    /// Whether F is what the law gives, F = Σ θ_j f_j(q, q̇): no term multiplies q̈.
+    pub fn is_force_law(&self) -> bool {
+        self.terms.iter().all(|entry| !entry.term.is_inertial())
+    }
+
+    /// Checks that F stands on one side of a law that gives it.
+    ///
+    /// # Errors
+    /// [`ModelError::OutputAmongTerms`].
+    pub fn check_force_law(&self) -> Result<(), ModelError> {
+        match self.terms.iter().find(|entry| self.uses_excitation(entry.term)) {
+            Some(entry) => Err(ModelError::OutputAmongTerms { key: entry.key.clone() }),
+            None => Ok(()),
+        }
+    }
+
     /// Refuses the excitation as a term where no known coefficient gives forces a scale: F = F then solves every equation.
     fn check_scale(&self) -> Result<(), ModelError> {
         let scales = |entry: &ModelTerm| matches!(entry.given, Given::Known(value) if value != 0.0);

@@ -52,6 +52,15 @@ pub enum ModelError {
     /// Without inertia there is no equation of motion to integrate.
     #[error("[terms] has no inertia: add inertia = \"fit\" (or its known value)")]
     NoInertia,
+    /// F on both sides of a law that gives F.
+    #[error(
+        "[terms]: \"{key}\" depends on F, which a law without inertia gives: F = law(q, qd); leave it out, or add inertia = \"fit\" for a law \
+         of motion"
+    )]
+    OutputAmongTerms {
+        /// The key of the term.
+        key: String,
+    },
     /// An inertia that no body has.
     #[error("[terms]: \"{key}\" = {value}: the inertia must be positive: write its value, or \"fit\"")]
     Inertia {

@@ -183,6 +183,21 @@ impl Term {
         }
     }
 
+    /// Whether the term multiplies q̈, so that its law is one of motion.
+    pub fn is_inertial(self) -> bool {
+        self.mass(1.0) != 0.0
+    }
+
+    /// Whether the term depends on the displacement, as far as it alone determines its feature.
+    pub fn uses_displacement(self) -> bool {
+        match self {
+            Term::Inertia => false,
+            Term::Monomial(powers) => powers.q > 0,
+            Term::Effect(Effect::CoulombFriction | Effect::QuadraticDamping | Effect::StribeckFriction { .. }) => false,
+            Term::Effect(_) | Term::Expression(_) => true,
+        }
+    }
+
     /// ∂/∂q of [`Term::mass`].
     #[inline]
     pub fn mass_gradient(self, q: f64) -> f64 {

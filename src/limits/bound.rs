@@ -60,7 +60,7 @@ pub fn bound(law: &Law, courses: &[Course], sensors: Sensors, start: Start) -> R
 }
 
 impl Bound {
-    fn of(law: &Law, information: &DMatrix<f64>) -> Bound {
+    pub(super) fn of(law: &Law, information: &DMatrix<f64>) -> Bound {
         let n = law.sought().len();
         let terms = |rows: Vec<usize>| rows.into_iter().map(|row| law.terms()[law.sought()[row]]).collect();
         let Some(directions) = Directions::of(information) else {

@@ -9,10 +9,10 @@ use super::course::{Course, Sensors};
 use super::law::Law;
 
 /// Instants at which the switch is tried.
-const STARTS: usize = 200;
+pub(super) const STARTS: usize = 200;
 
 /// Share of the record over which these lie: what follows is left for seeing the switch.
-const SHARE: f64 = 0.5;
+pub(super) const SHARE: f64 = 0.5;
 
 /// Delays of a change, s; `None` where the record ends before it is seen.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,7 +64,7 @@ fn starts(courses: &[Course]) -> impl Iterator<Item = (&Course, usize)> {
 }
 
 impl Detection {
-    fn of(delays: &[Option<f64>]) -> Detection {
+    pub(super) fn of(delays: &[Option<f64>]) -> Detection {
         let mut sorted: Vec<f64> = delays.iter().map(|delay| delay.unwrap_or(f64::INFINITY)).collect();
         sorted.sort_by(f64::total_cmp);
         let finite = |delay: Option<&f64>| delay.copied().filter(|delay| delay.is_finite());

@@ -9,11 +9,16 @@
 //! - std of θ_j ≥ √(J⁻¹)_jj; the mean of e, eq. (8), ≥ trace J⁻¹ ÷ Σθ².
 //! - a known change of the law is seen once Σ|old − new motion|²/(2σ²) passes ln(false alarm interval ÷ sample time), the state at the
 //!   switch known ([`detection()`]).
+//!
+//! Of a law that gives F for a motion that a machine imposes ([`force_bound`], [`force_detection`]) the readings of F
+//! are its force plus noise, and
+//! the motion counts as known: what the sensors of q and q̇ leave open can only add.
 
 mod bound;
 mod course;
 mod detection;
 mod error;
+mod force;
 mod law;
 mod marginal;
 mod sensitivity;
@@ -22,5 +27,6 @@ pub use bound::{Bound, SETTLED_ERROR, bound};
 pub use course::{Course, Sensors};
 pub use detection::{Detection, detection, level};
 pub use error::LimitsError;
+pub use force::{Imposed, force_bound, force_detection};
 pub use law::Law;
 pub use marginal::Start;

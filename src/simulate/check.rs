@@ -1,6 +1,6 @@
 //! What makes a scenario impossible, found before the plant moves.
 
-use super::excitation::Excitation;
+use super::excitation::{Excitation, ExcitationKind};
 use super::scenario::{Scenario, Stage};
 use crate::law::{Dynamics, DynamicsError, ModelError, Motion, Term};
 use thiserror::Error;
@@ -23,6 +23,32 @@ pub enum ScenarioError {
     /// Nothing to integrate.
     #[error("terms: there is no inertia: add \"qdd\"")]
     NoInertia,
+    /// A law that moves of itself where one is asked for that a machine moves.
+    #[error("terms: there is an inertia: nobody can impose the motion of this plant, leave \"qdd\" out")]
+    Inertia,
+    /// A term whose force one instant does not give.
+    #[error("terms: the force of \"{term}\" needs the past: simulate the scenario as a record, or leave the term out")]
+    Memory {
+        /// The term.
+        term: Term,
+    },
+    /// F on both sides of a law that gives F.
+    #[error("terms: \"{term}\" depends on F, which a law without inertia gives: leave it out, or add \"qdd\"")]
+    OutputAmongTerms {
+        /// The term.
+        term: Term,
+    },
+    /// An excitation that no machine imposes as a motion.
+    #[error(
+        "excitation.kind = \"{kind}\" {why}: a law without inertia gives F for the q that the excitation imposes; choose \"sine\", \"multisine\" \
+         or \"sweep\", or add \"qdd\" to the terms"
+    )]
+    NothingMoves {
+        /// The kind.
+        kind: &'static str,
+        /// What is wrong with it.
+        why: &'static str,
+    },
     /// No stage at all.
     #[error("there is no stage: write at least one [[stage]] with start = 0")]
     NoStages,
@@ -116,7 +142,29 @@ impl Scenario {
                 return Err(ScenarioError::Twice { term });
             }
         }
-        if self.terms.contains(&Term::Inertia) { Ok(()) } else { Err(ScenarioError::NoInertia) }
+        match (self.is_force_law(), self.terms.contains(&Term::Inertia)) {
+            (true, _) => self.check_imposed(),
+            (false, true) => Ok(()),
+            (false, false) => Err(ScenarioError::NoInertia),
+        }
+    }
+
+    /// Checks what a law that gives F needs of the machine and of its terms.
+    fn check_imposed(&self) -> Result<(), ScenarioError> {
+        let mut terms = self.terms.iter().copied().chain(self.hidden.terms());
+        if let Some(term) = terms.find(|term| term.uses_excitation()) {
+            return Err(ScenarioError::OutputAmongTerms { term });
+        }
+        match self.excitation.kind {
+            ExcitationKind::None => Err(ScenarioError::NothingMoves { kind: "none", why: "imposes no motion" }),
+            ExcitationKind::WhiteNoise => {
+                Err(ScenarioError::NothingMoves { kind: "white_noise", why: "has no velocity" })
+            }
+            _ => {
+                let velocity = self.initial.qd;
+                within("initial.qd", velocity, velocity == 0.0, "0 where a machine imposes q: the excitation gives it")
+            }
+        }
     }
 
     fn check_numbers(&self) -> Result<(), ScenarioError> {
@@ -132,6 +180,7 @@ impl Scenario {
             ("excitation.intensity", self.excitation.intensity),
             ("noise.q", self.noise.q),
             ("noise.qd", self.noise.qd),
+            ("noise.F", self.noise.force),
         ];
         for (name, value) in not_negative {
             within(name, value, value >= 0.0, "0 or a positive number")?;

@@ -70,14 +70,29 @@ impl Excitation {
 
     /// The multisine at t, s.
     pub(super) fn multisine(&self, phases: &[f64], t: f64) -> f64 {
+        self.multisine_with_slope(phases, t)[0]
+    }
+
+    /// The multisine at t, s, and its derivative.
+    pub(super) fn multisine_with_slope(&self, phases: &[f64], t: f64) -> [f64; 2] {
         let count = phases.len().max(1) as f64;
         let spacing = (self.to - self.from) / (count - 1.0).max(1.0);
-        let sine = |(index, phase): (usize, &f64)| ((self.from + spacing * index as f64) * t + phase).sin();
-        self.rms * (2.0 / count).sqrt() * phases.iter().enumerate().map(sine).sum::<f64>()
+        let scale = self.rms * (2.0 / count).sqrt();
+        let frequencies = (0..phases.len()).map(|index| self.from + spacing * index as f64);
+        let sums = frequencies.zip(phases).fold([0.0; 2], |[value, slope], (omega, phase)| {
+            let angle = omega * t + phase;
+            [value + angle.sin(), slope + omega * angle.cos()]
+        });
+        sums.map(|sum| scale * sum)
     }
 
     /// The sweep at t, s.
     pub(super) fn sweep(&self, t: f64) -> f64 {
+        self.sweep_with_slope(t)[0]
+    }
+
+    /// The sweep at t, s, and its derivative.
+    pub(super) fn sweep_with_slope(&self, t: f64) -> [f64; 2] {
         let (period, rate) = (self.period, (self.to - self.from) / self.period);
         let rounds = (t / (2.0 * period)).floor();
         let within = t - rounds * 2.0 * period;
@@ -86,7 +101,9 @@ impl Excitation {
         let phase = rounds * (self.from + self.to) * period
             + (self.from + 0.5 * rate * up) * up
             + (self.to - 0.5 * rate * down) * down;
-        2.0_f64.sqrt() * self.rms * phase.sin()
+        let omega = if down > 0.0 { self.to - rate * down } else { self.from + rate * up };
+        let amplitude = 2.0_f64.sqrt() * self.rms;
+        [amplitude * phase.sin(), amplitude * omega * phase.cos()]
     }
 }
 

@@ -18,6 +18,8 @@ pub(super) enum Stream {
     Velocity = 3,
     /// The phases of a multisine.
     Phase = 4,
+    /// The force's sensor.
+    Force = 5,
 }
 
 /// Words of key stream that one number may use: the ziggurat takes two, rarely a few more.

@@ -6,6 +6,7 @@
 
 use super::check::ScenarioError;
 use super::excitation::ExcitationKind;
+use super::imposed;
 use super::noise::{Stream, standard_normal};
 use super::scenario::Scenario;
 use crate::law::{Dynamics, Effect, History, MAX_MEMORY, Motion, Phase, State, Term};
@@ -21,7 +22,7 @@ pub struct Reading {
     pub q: f64,
     /// Velocity with its sensor noise.
     pub qd: f64,
-    /// The excitation that is held from this instant on.
+    /// The excitation that is held from this instant on, with its sensor noise.
     pub excitation: f64,
 }
 
@@ -109,8 +110,11 @@ impl Plant {
     /// A plant at t = 0.
     ///
     /// # Errors
-    /// What [`Scenario::check`] refuses.
+    /// What [`Scenario::check`] refuses, and a law without inertia, which moves nothing.
     pub fn new(scenario: Scenario) -> Result<Plant, ScenarioError> {
+        if scenario.is_force_law() {
+            return Err(ScenarioError::NoInertia);
+        }
         scenario.check()?;
         let law = Law::of(&scenario);
         let initial = Dynamics::new(law.motion(0), scenario.hidden.expressions())?.rest(scenario.initial);
@@ -153,7 +157,7 @@ impl Plant {
             t: self.t,
             q: self.phase.state.q + noise(self.scenario.noise.q, Stream::Displacement),
             qd: self.phase.state.qd + noise(self.scenario.noise.qd, Stream::Velocity),
-            excitation: self.held(index),
+            excitation: self.held(index) + noise(self.scenario.noise.force, Stream::Force),
         }
     }
 
@@ -276,11 +280,15 @@ pub enum SimulateError {
     Plant(#[from] PlantError),
 }
 
-/// The readings of a whole scenario, one per point of the excitation's grid, from 0 to its duration.
+/// The readings of a whole scenario, of a plant that moves or of one that a machine moves, one per point of the
+/// excitation's grid, from 0 to its duration.
 ///
 /// # Errors
 /// [`SimulateError`] for a scenario that [`Scenario::check`] refuses or whose motion has no bounds.
 pub fn record(scenario: &Scenario) -> Result<Vec<Reading>, SimulateError> {
+    if scenario.is_force_law() {
+        return Ok(imposed::record(scenario)?);
+    }
     let mut plant = Plant::new(scenario.clone())?;
     let sample_time = scenario.excitation.sample_time;
     let last = (scenario.duration / sample_time + TIME_JITTER).floor() as u64;

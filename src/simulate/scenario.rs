@@ -30,6 +30,9 @@ pub struct SensorNoise {
     pub q: f64,
     /// On the velocity, m/s.
     pub qd: f64,
+    /// On the excitation, or on the force where that is what the law gives, N.
+    #[serde(rename = "F")]
+    pub force: f64,
 }
 
 /// A plant and what happens to it.
@@ -50,7 +53,7 @@ pub struct Scenario {
     /// Longest step of the inner integration, s.
     #[serde(default = "default_inner_step")]
     pub inner_step: f64,
-    /// The excitation.
+    /// The excitation; of a law without inertia the motion that a machine imposes, q(t) less its initial value.
     #[serde(default)]
     pub excitation: Excitation,
     /// The sensors.
@@ -94,7 +97,7 @@ impl Scenario {
 
     /// The same scenario with sensor noise of this std on q and on q̇.
     pub fn with_noise(self, std: f64) -> Scenario {
-        Scenario { noise: SensorNoise { q: std, qd: std }, ..self }
+        Scenario { noise: SensorNoise { q: std, qd: std, ..self.noise }, ..self }
     }
 
     /// The same scenario with another seed of its excitation and sensor noise.
@@ -119,6 +122,11 @@ impl Scenario {
     /// [`ScenarioError::Syntax`] where TOML cannot hold a number (a seed above 2⁶³).
     pub fn to_toml(&self) -> Result<String, ScenarioError> {
         toml::to_string(self).map_err(|error| ScenarioError::Syntax { message: error.to_string() })
+    }
+
+    /// Whether the law has no inertia: a machine imposes q, which the excitation gives, and F is the output.
+    pub fn is_force_law(&self) -> bool {
+        self.terms.iter().chain(&self.hidden.terms().collect::<Vec<_>>()).all(|term| !term.is_inertial())
     }
 
     /// Number of inner steps in one interval of the excitation's grid.

@@ -132,7 +132,12 @@ fn models_are_refused_with_file_and_key() {
     let cases = [
         ("[terms]\ninertia = \"fit\"\nq4 = \"fit\"\n", vec!["\"q4\"", "unknown term", "cubic_stiffness"]),
         ("[terms]\ninertia = \"fit\"\nq = \"fitted\"\n", vec!["\"q\"", "fitted", "maybe"]),
-        ("[terms]\nq = \"fit\"\n", vec!["no inertia"]),
+        ("[terms]\nq = \"fit\"\n\"F*q\" = \"fit\"\n", vec!["\"F*q\"", "F = law(q, qd)", "inertia"]),
+        ("[terms]\nq = \"fit\"\nposition_dependent_inertia = \"fit\"\n", vec!["no inertia"]),
+        (
+            "[terms]\nq = \"fit\"\nhysteresis = { coefficient = \"fit\", yield_displacement = 0.1, share = 0.6, exponent = 2.0 }\n",
+            vec!["\"hysteresis\" cannot be identified sample by sample", "needs the past"],
+        ),
         ("[terms]\ninertia = -1.0\nq = \"fit\"\n", vec!["[terms]: \"inertia\" = -1", "positive"]),
         ("[terms]\nqdd = 0\nq = \"fit\"\n", vec!["[terms]: \"qdd\" = 0", "positive"]),
         ("[terms]\ninertia = \"fit\"\nF = \"maybe\"\n", vec!["\"F\"", "F = F", "inertia as a number"]),

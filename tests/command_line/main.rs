@@ -5,6 +5,7 @@ mod bench;
 mod compare;
 mod diagnose;
 mod fmu;
+mod force_law;
 mod good_input;
 mod known_laws;
 mod limits;

@@ -37,7 +37,18 @@ pub fn all() -> Vec<Configuration> {
             }
         }
     }
+    for (measured, channels) in &CHANNELS[..2] {
+        let (hold, method) = (Hold::Zero, Method::Default);
+        let settings = Settings { method, channels: *channels, hold, sample_time: SAMPLE_TIME, ..Settings::default() };
+        all.push(Configuration { name: format!("F is the output, {measured}"), model: force_law(), settings });
+    }
     all
+}
+
+/// c q̇ + k q + k₃ q³ + 1 = F, of the same record: what it leaves is the inertia's force.
+fn force_law() -> Model {
+    let terms = ["qd", "q", "q^3", "1"].map(|name| Term::parse(name).unwrap());
+    Model::of("force law", terms.into_iter().zip([Given::Fit, Given::Fit, Given::Maybe, Given::Fit]))
 }
 
 /// m q̈ + c q̇ + k₁ q + k₃ q³, each "fit".

@@ -81,7 +81,12 @@ impl Parameters {
                 return Err(TermsError::NoOutput { term, known: known.join(" ") });
             }
         }
-        Ok(library.with_terms(names)?)
+        let model = library.with_terms(names)?;
+        if !library.is_force_law() {
+            // the outputs of this FMU are those of a law of motion
+            model.check_inertia()?;
+        }
+        Ok(model)
     }
 }
 

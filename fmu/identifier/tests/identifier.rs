@@ -6,8 +6,8 @@ mod laws;
 use contract::{Drive, OK, Subject};
 use switchid::fmu::identifier;
 use switchid::identify::{Identifier, Outputs, Sample, Settings};
-use switchid::law::{Model, Term};
-use switchid::simulate::{Builtin, Reading, Stage, record};
+use switchid::law::{Given, Model, Term};
+use switchid::simulate::{Builtin, Reading, Scenario, SensorNoise, Stage, record};
 use switchid_fmu_identifier::functions;
 use switchid_fmu_slave::host::Instance;
 use switchid_fmu_slave::linked_functions;
@@ -178,4 +178,36 @@ fn missing_resources_are_named() {
         let refusal = subject.refusal_without(resource);
         assert!(refusal.contains(resource), "{refusal}");
     }
+}
+
+/// A damper on a testing machine, its law given to library and FMU.
+#[test]
+fn a_law_that_gives_the_force_is_identified_as_in_the_library() {
+    let terms = ["qd", "q", "coulomb_friction"].map(|name| Term::parse(name).unwrap());
+    let model = Model::of("damper", terms.map(|term| (term, Given::Fit)));
+    let stage = |start, damping| Stage { start, coefficients: vec![damping, 20.0, 2.0], amplitude: 0.2, omega: 5.0 };
+    let mut scenario = Scenario::new("damper", terms.to_vec(), vec![stage(0.0, 3.0), stage(4.0, 5.0)], 7.0);
+    scenario.noise = SensorNoise { q: 1e-4, qd: 1e-3, force: 0.2 };
+    let readings = record(&scenario).unwrap();
+    let subject = Subject::new(linked_functions!(functions), &identifier("Damper", &model).unwrap());
+    let instance = subject.instance();
+    assert_eq!(instance.initialize(0.0), OK, "{:?}", instance.messages());
+    feed(&subject, &instance, &readings);
+    let mut library = Identifier::new(&model, Settings::default()).unwrap();
+    for reading in &readings {
+        let (q, qd, excitation) = (reading.q, reading.qd, reading.excitation);
+        library.step(Sample { t: reading.t, q, qd, excitation }).unwrap();
+    }
+    let output = library.output();
+    assert_eq!(instance.integer(subject.reference("switch.count")), Ok(1));
+    assert_eq!(instance.boolean(subject.reference("valid")), Ok(1));
+    let read = |name: &str| instance.reals(&[subject.reference(name)]).unwrap()[0];
+    assert_eq!(read("prediction.F"), output.prediction_force);
+    assert_eq!(read("deviation"), output.deviation);
+    assert!(output.deviation > 0.0 && output.deviation < output.threshold, "{output:?}");
+    for coefficient in library.coefficients() {
+        assert_eq!(read(&format!("coef.{}", coefficient.term.fmu_name())), coefficient.value);
+    }
+    assert!((read("coef.qd") - 5.0).abs() < 5.0 * read("std.qd"));
+    assert!((read("noise_estimate.F") / 0.2 - 1.0).abs() < 0.1);
 }

@@ -6,5 +6,6 @@
 
 mod places;
 mod slave;
+mod specimen;
 
 switchid_fmu_slave::export!(slave::PlantSlave);

@@ -1,7 +1,7 @@
 //! Where a plant's variables stand, and the scenario that its parameters describe.
 
 use serde::{Deserialize, Serialize};
-use switchid::law::{Catalogue, InnerError, InnerParameter, State, Term};
+use switchid::law::{Catalogue, Entry, InnerError, InnerParameter, State, Term};
 use switchid::simulate::{Excitation, ExcitationKind, Hidden, ParametricLaw, Scenario, SensorNoise, Stage};
 use switchid_fmu_slave::{Description, ValueError, Values};
 use thiserror::Error;
@@ -57,11 +57,11 @@ struct DrivePlaces {
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct StagePlaces {
+pub struct StagePlaces {
     time: usize,
     parameters: Vec<usize>,
-    amplitude: usize,
-    omega: usize,
+    /// Amplitude and angular frequency of the sine, where there is an excitation.
+    sine: Option<[usize; 2]>,
 }
 
 impl Places {
@@ -82,7 +82,7 @@ impl Places {
             seed: find("seed")?,
             initial: [find("q0")?, find("qd0")?],
             stages: (1..=count).map(|number| find_stage(description, law, number)).collect::<Result<_, _>>()?,
-            hidden: find_hidden(description)?,
+            hidden: find_hidden_of(description, Catalogue::ENTRIES.iter())?,
             motion: [find("q")?, find("qd")?, find("F")?, find("true.q")?, find("true.qd")?],
             stage: find("true.stage")?,
             coefficients: coefficients.collect::<Result<_, _>>()?,
@@ -97,12 +97,12 @@ impl Places {
         let [q, qd] = self.initial.map(|reference| values.real(reference));
         let [noise_q, noise_qd] = self.noise.map(|reference| values.real(reference));
         // A plant has no end: the duration is only there to be positive.
-        let mut scenario = Scenario::new(&law.name, law.terms(), self.schedule(law, values)?, NEVER);
+        let mut scenario = Scenario::new(&law.name, law.terms(), schedule(&self.stages, law, values)?, NEVER);
         scenario.seed = values.integer(self.seed).max(0) as u64;
         scenario.initial = State { q, qd };
-        scenario.noise = SensorNoise { q: noise_q, qd: noise_qd };
+        scenario.noise = SensorNoise { q: noise_q, qd: noise_qd, ..SensorNoise::default() };
         scenario.excitation = self.excitation(values);
-        scenario.hidden = self.hidden_effects(values)?;
+        scenario.hidden = hidden_effects(Catalogue::ENTRIES.iter(), &self.hidden, values)?;
         Ok(scenario)
     }
 
@@ -125,45 +125,51 @@ impl Places {
             period: values.real(drive.period),
         }
     }
+}
 
-    /// The effects whose coefficient is not 0.
-    fn hidden_effects(&self, values: &Values) -> Result<Hidden, InnerError> {
-        let mut hidden = Hidden::default();
-        for (entry, (coefficient, inner)) in Catalogue::ENTRIES.iter().zip(&self.hidden) {
-            let coefficient = values.real(*coefficient);
-            if coefficient == 0.0 {
-                continue;
-            }
-            let inner: Vec<f64> = inner.iter().map(|reference| values.real(*reference)).collect();
-            let term = match entry.term {
-                Term::Effect(effect) => Term::Effect(effect.with_inner(&inner)?),
-                term => term,
-            };
-            hidden.push(term, coefficient);
+/// The effects whose coefficient is not 0, of those at these places.
+///
+/// # Errors
+/// [`InnerError`] for an impossible inner parameter.
+pub fn hidden_effects(
+    entries: impl Iterator<Item = &'static Entry>,
+    places: &[(usize, Vec<usize>)],
+    values: &Values,
+) -> Result<Hidden, InnerError> {
+    let mut hidden = Hidden::default();
+    for (entry, (coefficient, inner)) in entries.zip(places) {
+        let coefficient = values.real(*coefficient);
+        if coefficient == 0.0 {
+            continue;
         }
-        Ok(hidden)
+        let inner: Vec<f64> = inner.iter().map(|reference| values.real(*reference)).collect();
+        let term = match entry.term {
+            Term::Effect(effect) => Term::Effect(effect.with_inner(&inner)?),
+            term => term,
+        };
+        hidden.push(term, coefficient);
     }
+    Ok(hidden)
+}
 
-    /// All stages that occur.
-    fn schedule(&self, law: &ParametricLaw, values: &Values) -> Result<Vec<Stage>, PlaceError> {
-        let occurs = |places: &StagePlaces| values.real(places.time) < NEVER;
-        let count = self.stages.iter().take_while(|places| occurs(places)).count();
-        if let Some(next) = self.stages[count..].iter().position(occurs) {
-            return Err(PlaceError::Gap { missing: count + 1, set: count + 1 + next });
-        }
-        Ok(self.stages[..count].iter().map(|places| places.stage(law, values)).collect())
+/// All stages that occur.
+///
+/// # Errors
+/// [`PlaceError::Gap`].
+pub fn schedule(stages: &[StagePlaces], law: &ParametricLaw, values: &Values) -> Result<Vec<Stage>, PlaceError> {
+    let occurs = |places: &StagePlaces| values.real(places.time) < NEVER;
+    let count = stages.iter().take_while(|places| occurs(places)).count();
+    if let Some(next) = stages[count..].iter().position(occurs) {
+        return Err(PlaceError::Gap { missing: count + 1, set: count + 1 + next });
     }
+    Ok(stages[..count].iter().map(|places| places.stage(law, values)).collect())
 }
 
 impl StagePlaces {
     fn stage(&self, law: &ParametricLaw, values: &Values) -> Stage {
+        let [amplitude, omega] = self.sine.map_or([0.0; 2], |sine| sine.map(|reference| values.real(reference)));
         let parameters: Vec<f64> = self.parameters.iter().map(|reference| values.real(*reference)).collect();
-        Stage {
-            start: values.real(self.time),
-            coefficients: law.coefficients(&parameters),
-            amplitude: values.real(self.amplitude),
-            omega: values.real(self.omega),
-        }
+        Stage { start: values.real(self.time), coefficients: law.coefficients(&parameters), amplitude, omega }
     }
 }
 
@@ -173,25 +179,46 @@ fn find_drive(description: &Description) -> Result<DrivePlaces, ValueError> {
     Ok(DrivePlaces { from, to, count, rms: find("rms")?, period: find("period")? })
 }
 
-fn find_hidden(description: &Description) -> Result<Vec<(usize, Vec<usize>)>, ValueError> {
+/// Coefficient and inner parameters of each of these effects.
+///
+/// # Errors
+/// [`ValueError::NoSuchName`].
+pub fn find_hidden_of(
+    description: &Description,
+    entries: impl Iterator<Item = &'static Entry>,
+) -> Result<Vec<(usize, Vec<usize>)>, ValueError> {
     let places = |id: &str, inner: &[InnerParameter]| {
         let name = format!("hidden.{id}");
         let inner = inner.iter().map(|inner| position(description, &format!("{name}.{}", inner.name)));
         Ok((position(description, &name)?, inner.collect::<Result<_, _>>()?))
     };
-    Catalogue::ENTRIES.iter().map(|entry| places(entry.id, entry.inner())).collect()
+    entries.map(|entry| places(entry.id, entry.inner())).collect()
 }
 
 fn find_stage(description: &Description, law: &ParametricLaw, number: usize) -> Result<StagePlaces, ValueError> {
     let find = |field: &str| position(description, &format!("stage[{number}].{field}"));
-    Ok(StagePlaces {
-        time: find("time")?,
-        parameters: law.parameters.iter().map(|parameter| find(&parameter.name)).collect::<Result<_, _>>()?,
-        amplitude: find("P")?,
-        omega: find("omega")?,
-    })
+    let sine = Some([find("P")?, find("omega")?]);
+    Ok(StagePlaces { sine, ..find_time_and_parameters(description, law, number)? })
 }
 
-fn position(description: &Description, name: &str) -> Result<usize, ValueError> {
+/// A stage without excitation.
+///
+/// # Errors
+/// [`ValueError::NoSuchName`].
+pub fn find_time_and_parameters(
+    description: &Description,
+    law: &ParametricLaw,
+    number: usize,
+) -> Result<StagePlaces, ValueError> {
+    let find = |field: &str| position(description, &format!("stage[{number}].{field}"));
+    let parameters = law.parameters.iter().map(|parameter| find(&parameter.name));
+    Ok(StagePlaces { time: find("time")?, parameters: parameters.collect::<Result<_, _>>()?, sine: None })
+}
+
+/// Where the variable of that name stands.
+///
+/// # Errors
+/// [`ValueError::NoSuchName`].
+pub fn position(description: &Description, name: &str) -> Result<usize, ValueError> {
     description.position(name).ok_or_else(|| ValueError::NoSuchName { name: name.into() })
 }

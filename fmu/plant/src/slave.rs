@@ -1,9 +1,10 @@
 //! The plant behind the slave's trait.
 
 use crate::places::Places;
+use crate::specimen::SpecimenPlaces;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use switchid::simulate::{ParametricLaw, ParametricLawError, Plant};
+use switchid::simulate::{ParametricLaw, ParametricLawError, Plant, Specimen};
 use switchid_fmu_slave::{Category, Description, Log, Slave, SlaveError, Value, Values};
 use thiserror::Error;
 
@@ -31,38 +32,73 @@ pub enum ResourceError {
     },
 }
 
-/// The plant with the places of its variables.
+/// A law with the places of its variables.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct PlantSlave {
     law: ParametricLaw,
-    places: Places,
     start_time: f64,
-    plant: Option<Plant>,
+    kind: Kind,
+}
+
+/// Which way round the law is.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+enum Kind {
+    /// With inertia: F moves the plant.
+    Plant { places: Box<Places>, plant: Option<Box<Plant>> },
+    /// Without: q and qd are imposed, F answers; the readings so far.
+    Specimen { places: SpecimenPlaces, specimen: Option<Box<Specimen>>, readings: u64 },
 }
 
 impl Slave for PlantSlave {
     fn instantiate(resources: &Path, description: &Description) -> Result<PlantSlave, SlaveError> {
         let law = read_law(&resources.join(LAW_FILE))?;
-        let places = Places::find(description, &law)?;
-        Ok(PlantSlave { law, places, start_time: 0.0, plant: None })
+        // the plant of a law without inertia can have none besides, which its description says
+        let kind = match description.position("true.F") {
+            Some(_) => {
+                let places = SpecimenPlaces::find(description, &law)?;
+                Kind::Specimen { places, specimen: None, readings: 0 }
+            }
+            None => Kind::Plant { places: Box::new(Places::find(description, &law)?), plant: None },
+        };
+        Ok(PlantSlave { law, start_time: 0.0, kind })
     }
 
     fn start(&mut self, time: f64, values: &mut Values, _log: &mut Log) -> Result<(), SlaveError> {
-        let plant = Plant::new(self.places.scenario(&self.law, values)?)?;
-        show(&self.places, &plant, values);
         self.start_time = time;
-        self.plant = Some(plant);
+        match &mut self.kind {
+            Kind::Plant { places, plant } => {
+                let begun = Plant::new(places.scenario(&self.law, values)?)?;
+                show(places, &begun, values);
+                *plant = Some(Box::new(begun));
+            }
+            Kind::Specimen { places, specimen, readings } => {
+                let begun = places.specimen(&self.law, values)?;
+                places.show(&begun, 0.0, 0, values);
+                (*specimen, *readings) = (Some(Box::new(begun)), 0);
+            }
+        }
         Ok(())
     }
 
     fn step(&mut self, time: f64, step: f64, values: &mut Values, log: &mut Log) -> Result<(), SlaveError> {
-        let Some(plant) = self.plant.as_mut() else { return Ok(()) };
-        let before = plant.truth().stage;
-        plant.advance_to(time + step - self.start_time)?;
-        show(&self.places, plant, values);
-        let stage = plant.truth().stage;
-        if stage != before {
-            log.say(Category::Event, &format!("stage {} began before t = {} s", stage + 1, time + step));
+        let [from, to] = [time, time + step].map(|t| t - self.start_time);
+        let [before, after] = match &mut self.kind {
+            Kind::Plant { places, plant: Some(plant) } => {
+                let before = plant.truth().stage;
+                plant.advance_to(to)?;
+                show(places, plant, values);
+                [before, plant.truth().stage]
+            }
+            Kind::Specimen { places, specimen: Some(specimen), readings } => {
+                let before = places.stage(values);
+                places.show(specimen, from, *readings, values);
+                *readings += 1;
+                [before, specimen.stage(from)]
+            }
+            _ => return Ok(()),
+        };
+        if after != before {
+            log.say(Category::Event, &format!("stage {} began before t = {} s", after + 1, time + step));
         }
         Ok(())
     }

@@ -4,8 +4,8 @@
 mod contract;
 
 use contract::{Drive, OK, Subject};
-use switchid::fmu::{DUFFING, VAN_DER_POL, plant};
-use switchid::law::{Catalogue, Term};
+use switchid::fmu::{DUFFING, VAN_DER_POL, plant, plant_of_model};
+use switchid::law::{Catalogue, Model, Term};
 use switchid::simulate::{Builtin, Excitation, ExcitationKind, Plant, Scenario};
 use switchid_fmu_plant::functions;
 use switchid_fmu_slave::host::Instance;
@@ -203,4 +203,56 @@ fn missing_resources_are_named() {
     let subject = subject(DUFFING);
     let refusal = subject.refusal_without("plant.toml");
     assert!(refusal.contains("plant.toml"), "{refusal}");
+}
+
+/// A damper whose friction has a Stribeck part.
+fn specimen() -> Subject {
+    let text = "[terms]\nqd = 3.0\nq = 20.0\nstribeck_friction = { coefficient = 2.0, speed = 0.1 }\n";
+    let model = Model::from_toml(text).unwrap();
+    Subject::new(linked_functions!(functions), &plant_of_model("Damper", &model).unwrap())
+}
+
+fn impose(subject: &Subject, instance: &Instance, k: u32) -> [f64; 2] {
+    let (sin, cos) = (5e-3 * f64::from(k)).sin_cos();
+    let imposed = [0.1 * sin, 0.5 * cos];
+    assert_eq!(instance.set_reals(&["q", "qd"].map(|name| subject.reference(name)), &imposed), OK);
+    assert_eq!(instance.step(f64::from(k) * 1e-3, 1e-3), OK, "{:?}", instance.messages());
+    imposed
+}
+
+#[test]
+fn a_specimen_holds_the_contract() {
+    let subject = specimen();
+    let prepare = |instance: &Instance| {
+        set(&subject, instance, &[("stage[2].time", 0.15), ("stage[2].q", 30.0), ("noise.F", 0.1)]);
+        assert_eq!(instance.initialize(0.0), OK, "{:?}", instance.messages());
+    };
+    let step = |instance: &Instance, k: u32| {
+        impose(&subject, instance, k);
+    };
+    contract::check(&subject, &Drive { prepare: &prepare, step: &step, steps: 200 });
+}
+
+#[test]
+fn a_specimen_answers_what_is_imposed() {
+    let subject = specimen();
+    let instance = subject.instance();
+    set(
+        &subject,
+        &instance,
+        &[("stage[2].time", 0.15), ("stage[2].qd", 6.0), ("noise.F", 0.1), ("hidden.coulomb_friction", 1.0)],
+    );
+    assert_eq!(instance.initialize(0.0), OK, "{:?}", instance.messages());
+    let (mut noise, steps) = (0.0, 300);
+    for k in 0..steps {
+        let [q, qd] = impose(&subject, &instance, k);
+        let damping = if k < 150 { 3.0 } else { 6.0 };
+        let friction = qd.signum() * (1.0 + 2.0 * (-qd.abs() / 0.1).exp());
+        let truth = real(&subject, &instance, "true.F");
+        assert!((truth - (damping * qd + 20.0 * q + friction)).abs() < 1e-12, "step {k}: {truth}");
+        noise += (real(&subject, &instance, "F") - truth).powi(2);
+    }
+    let std = (noise / f64::from(steps)).sqrt();
+    assert!((std / 0.1 - 1.0).abs() < 0.15, "{std}");
+    assert_eq!(instance.integer(subject.reference("true.stage")), Ok(2));
 }

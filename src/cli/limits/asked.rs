@@ -8,10 +8,13 @@ use crate::identify::Recording;
 use crate::law::{Model, ModelError, Term};
 use crate::limits::{LimitsError, Sensors};
 
+/// Place of F among the channels.
+const FORCE: usize = 2;
+
 /// Options, read.
 pub(super) struct Asked {
-    /// Std of the noise of q and q̇ where named.
-    noise: [Option<f64>; 2],
+    /// Std of the noise of q, q̇ and F where named.
+    noise: [Option<f64>; 3],
     /// New coefficients.
     pub(super) change: Vec<(Term, f64)>,
     /// The same as it was written.
@@ -31,13 +34,25 @@ impl Asked {
             let (option, range) = ("false-alarm-interval", "a positive number of seconds");
             return Err(CommandError::Option { option, value: interval, range });
         }
-        let mut noise = [None; 2];
+        let mut noise = [None; 3];
         for text in &arguments.noise {
             let (channel, std) = std_of(text)?;
+            if (channel == FORCE) != model.is_force_law() {
+                let reason = match model.is_force_law() {
+                    true => "the model has no inertia, so that F is its output and the motion counts as known",
+                    false => "there is no sensor \"F\" among those of a law of motion, whose F counts as exact",
+                };
+                return Err(named_error("noise", text, reason));
+            }
             noise[channel] = Some(std);
         }
         let change_text = arguments.change.join(" --change ");
         Ok(Asked { noise, change: changes(&arguments.change, model)?, change_text, false_alarm_interval: interval })
+    }
+
+    /// Std of the noise of F, where it is named.
+    pub(super) fn noise_of_force(&self) -> Option<f64> {
+        self.noise[FORCE]
     }
 
     /// The sensors of a recording: as named, else as estimated.
@@ -75,7 +90,7 @@ impl Asked {
 fn std_of(text: &str) -> Result<(usize, f64), CommandError> {
     let refuse = |reason: &str| named_error("noise", text, reason);
     let (name, value) = text.split_once('=').ok_or_else(|| refuse("there is no \"=\""))?;
-    let channel = ["q", "qd"].iter().position(|channel| *channel == name.trim());
+    let channel = ["q", "qd", "F"].iter().position(|channel| *channel == name.trim());
     let channel = channel.ok_or_else(|| refuse(&format!("there is no sensor \"{}\"", name.trim())))?;
     let std = value.trim().parse().ok().filter(|std: &f64| *std > 0.0 && std.is_finite());
     Ok((channel, std.ok_or_else(|| refuse("the std must be a positive number"))?))
@@ -127,7 +142,9 @@ fn quoted(model: &Model, term: Term) -> String {
 
 fn named_error(option: &'static str, text: &str, reason: &str) -> CommandError {
     let example = match option {
-        "noise" => "--noise q=0.001,qd=0.01 with the std of what is measured",
+        "noise" => {
+            "--noise q=0.001,qd=0.01 with the std of what is measured, --noise F=0.5 for a model without inertia"
+        }
         _ => "--change TERM=VALUE, as in --change linear_damping=0.6 or --change q^3=4",
     };
     CommandError::Named { option, text: text.into(), reason: reason.into(), example }

@@ -1,6 +1,7 @@
 //! `switchid limits`: what any method could reach on a recording.
 
 mod asked;
+mod force;
 mod report;
 
 use super::error::CommandError;
@@ -10,7 +11,7 @@ use super::progress::Waiting;
 use crate::diagnose::{Evidence, Fit, best_as_given, is_evident};
 use crate::identify::{Recording, Settings};
 use crate::law::{Given, Hold, ModelError, Term};
-use crate::limits::{Bound, Course, Detection, Law, LimitsError, Sensors, Start, bound, detection, level};
+use crate::limits::{Bound, Course, Detection, Law, LimitsError, Start, bound, detection, level};
 use asked::Asked;
 use clap::Args;
 
@@ -18,9 +19,11 @@ const EXAMPLE: &str = r#"Examples:
   switchid limits recording.csv --model model.toml
   switchid limits recording.csv@0:12 --model model.toml --noise q=0.001,qd=0.01 --json
   switchid limits recording.csv --model model.toml --change linear_damping=0.6 --change q^3=4
+  switchid limits damper.csv --model damper.toml --noise F=0.5
 
 The limit is the Cramér–Rao bound: no unbiased method errs less, on average over records like this one, under independent Gaussian
 sensor noise of the given std. A term that the model gives as a number counts as known; where all are numbers, all are sought.
+Of a model without inertia F is the output: its noise counts, and the motion as known.
 Everything else comes from a fit: coefficients, the motion, and the sensors' noise where --noise does not name it."#;
 
 /// Say what any method could reach on a recording: std of the coefficients, shortest record, earliest sight of a switch
@@ -50,14 +53,17 @@ struct Limits<'a> {
     input: &'a Input,
     asked: &'a Asked,
     recording: &'a Recording,
-    hold: Hold,
-    fit: Fit,
+    /// What the excitation did between samples; none where F is what the law gives.
+    hold: Option<Hold>,
     law: Law,
-    sensors: Sensors,
+    /// Std of the sensors' noise by channel.
+    noise: Vec<(&'static str, f64)>,
+    /// What the user should know of these limits.
+    warnings: Vec<String>,
     /// Whether all coefficients are the model's numbers.
     numbers_only: bool,
     bound: Bound,
-    /// Shortest record where the state at its start is known, s.
+    /// Shortest record where the state at its start is known, s; none where F is what the law gives.
     after_switch: Option<f64>,
     /// Log-likelihood ratio at which a change is seen, nats.
     level: f64,
@@ -68,8 +74,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let data = std::slice::from_ref(&arguments.data);
     let input = Input::open(data, &arguments.model)?;
     let asked = Asked::read(arguments, &input.model)?;
-    let found = Waiting::on("looking for the limits", || limits(&input, &asked))?;
-    found.warnings().iter().for_each(|warning| output::complain("warning", warning));
+    let found = Waiting::on("looking for the limits", || match input.model.is_force_law() {
+        true => force::limits(&input, &asked),
+        false => limits(&input, &asked),
+    })?;
+    found.warnings.iter().for_each(|warning| output::complain("warning", warning));
     if arguments.json { output::print_json(&report::Report::of(&found)) } else { output::print(&report::text(&found)) }
 }
 
@@ -98,7 +107,23 @@ fn limits<'a>(input: &'a Input, asked: &'a Asked) -> Result<Limits<'a>, CommandE
             Some(seen.map_err(|source| asked.change_refused(&source))?)
         }
     };
-    Ok(Limits { input, asked, recording, hold, fit, law, sensors, numbers_only, bound, after_switch, level, detection })
+    let noise = ["q", "qd"].into_iter().zip(sensors.0).filter_map(|(channel, std)| Some((channel, std?))).collect();
+    let warnings = warnings(recording, is_evident(&fit), asked.noise_is_too_small(&sensors, recording));
+    let hold = Some(hold);
+    Ok(Limits {
+        input,
+        asked,
+        recording,
+        hold,
+        law,
+        noise,
+        warnings,
+        numbers_only,
+        bound,
+        after_switch,
+        level,
+        detection,
+    })
 }
 
 /// Refuses a model with a term that one instant does not give, before anything is fitted.
@@ -121,25 +146,26 @@ fn law(fit: &Fit, numbers_only: bool, forced: bool) -> Result<Law, LimitsError> 
     Law::new(&pairs, &sought)
 }
 
-impl Limits<'_> {
-    fn warnings(&self) -> Vec<String> {
-        let source = self.recording.source();
-        let mut warnings = Vec::new();
-        if is_evident(&self.fit) {
-            warnings.push(format!(
-                "{source}: the law leaves more than sensor noise: it lacks something, or switches within the record \
-                 (`switchid diagnose` tells); the limits are those of a record that it explained"
-            ));
-        }
-        if self.asked.noise_is_too_small(&self.sensors, self.recording) {
-            warnings.push(format!(
-                "{source}: hardly any sensor noise is to be seen, and the limits are small accordingly: \
-                 name it by --noise q=STD,qd=STD where you know it"
-            ));
-        }
-        warnings
+/// What is to be said of limits of a law that leaves more than noise, or of sensors without any.
+fn warnings(recording: &Recording, leaves_more: bool, is_noiseless: bool) -> Vec<String> {
+    let source = recording.source();
+    let mut warnings = Vec::new();
+    if leaves_more {
+        warnings.push(format!(
+            "{source}: the law leaves more than sensor noise: it lacks something, or switches within the record \
+             (`switchid diagnose` tells); the limits are those of a record that it explained"
+        ));
     }
+    if is_noiseless {
+        warnings.push(format!(
+            "{source}: hardly any sensor noise is to be seen, and the limits are small accordingly: \
+             name it by --noise q=STD,qd=STD where you know it"
+        ));
+    }
+    warnings
+}
 
+impl Limits<'_> {
     /// "maybe" terms that the fit dropped.
     fn dropped(&self) -> Vec<Term> {
         let terms = self.input.model.terms.iter().map(|entry| entry.term);

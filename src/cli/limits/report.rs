@@ -3,7 +3,7 @@
 use super::super::output::Pairs;
 use super::super::words::{number, percent};
 use super::Limits;
-use crate::law::{Term, equation};
+use crate::law::{Hold, Term, equation};
 use crate::limits::Detection;
 use serde::Serialize;
 use std::fmt::Write;
@@ -21,7 +21,8 @@ pub(super) struct Report {
     unidentifiable: Vec<String>,
     dropped: Vec<String>,
     noise: Pairs,
-    hold: &'static str,
+    /// null where F is what the law gives.
+    hold: Option<&'static str>,
     record: f64,
 }
 
@@ -40,7 +41,6 @@ impl Report {
     pub(super) fn of(found: &Limits) -> Report {
         let names = |terms: Vec<Term>| terms.into_iter().map(|term| term.name()).collect();
         let law = found.law.terms().iter().zip(found.law.coefficients());
-        let channels = ["q", "qd"].into_iter().zip(found.sensors.0);
         Report {
             coefficients: Pairs(law.map(|(term, value)| (term.name(), *value)).collect()),
             coefficient_std: Pairs(std(found).filter_map(|(term, _, std)| Some((term.name(), std?))).collect()),
@@ -51,8 +51,8 @@ impl Report {
             detection: found.detection.as_ref().map(|detection| DetectionReport::of(found, detection)),
             unidentifiable: found.bound.open.iter().map(|terms| together(terms)).collect(),
             dropped: names(found.dropped()),
-            noise: Pairs(channels.filter_map(|(channel, std)| Some((channel.into(), std?))).collect()),
-            hold: found.hold.id(),
+            noise: Pairs(found.noise.iter().map(|(channel, std)| ((*channel).into(), *std)).collect()),
+            hold: found.hold.map(Hold::id),
             record: duration(found),
         }
     }
@@ -114,11 +114,14 @@ fn coefficients(found: &Limits) -> String {
 fn shortest(found: &Limits) -> String {
     let time =
         |time: Option<f64>| time.map_or_else(|| "never on this record".into(), |time| format!("from {time:.3} s on"));
-    format!(
-        "known to 5 % rms: {}; with the state at the start known, as after a switch, {}",
-        time(found.bound.shortest_record),
-        time(found.after_switch)
-    )
+    let from = time(found.bound.shortest_record);
+    match found.hold {
+        None => format!("known to 5 % rms: {from}"),
+        Some(_) => format!(
+            "known to 5 % rms: {from}; with the state at the start known, as after a switch, {}",
+            time(found.after_switch)
+        ),
+    }
 }
 
 /// The third line.
@@ -174,9 +177,12 @@ fn table(found: &Limits) -> String {
 
 /// What the limits rest on, and what was left out.
 fn notes(found: &Limits) -> String {
-    let channels = ["q", "qd"].into_iter().zip(found.sensors.0);
-    let noise: Vec<String> = channels.filter_map(|(channel, std)| Some(format!("{channel} {:.3e}", std?))).collect();
-    let mut text = format!("sensor noise (std): {}; between samples: {}\n", noise.join(", "), found.hold);
+    let noise: Vec<String> = found.noise.iter().map(|(channel, std)| format!("{channel} {std:.3e}")).collect();
+    let between = match found.hold {
+        None => "F is the output, the motion counts as known".into(),
+        Some(hold) => format!("between samples: {hold}"),
+    };
+    let mut text = format!("sensor noise (std): {}; {between}\n", noise.join(", "));
     for open in &found.bound.open {
         let _ = writeln!(text, "nothing on this record determines {}", together(open));
     }

@@ -46,8 +46,6 @@ const UNREAD: f64 = 1e12;
 /// The motion of one piece.
 #[derive(Clone, Debug)]
 pub(super) struct Track {
-    /// The gains that smooth its readings.
-    pub(super) spline: Spline,
     /// Which of q and q̇ are read.
     pub(super) read: [bool; 2],
     /// Factor on the variance of every reading by channel; empty where none is wild.
@@ -189,7 +187,7 @@ fn follow(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> Vec<Track> {
 fn track(piece: &Piece, sensors: Sensors, read: [bool; 2], doubt: [Vec<f64>; 2]) -> Track {
     let spline = Spline::new(&piece.t, sensors, read, [&doubt[0], &doubt[1]]);
     let states = spline.smooth(readings(piece, read));
-    Track { spline, read, doubt, share: 1.0, states }
+    Track { read, doubt, share: 1.0, states }
 }
 
 /// By what factor the variance of each reading is larger than usual; empty where no reading is wild.

@@ -1,0 +1,88 @@
+//! One law over a whole recording: the regression that the stream comes to, with the motion as all readings tell it.
+
+use super::features::expect;
+use super::noise::ChannelNoise;
+use super::segment::Segment;
+use super::smoother::{Instant, LONGEST, Smoother};
+use crate::identify::identifier::check;
+use crate::identify::problem::Problem;
+use crate::identify::{BuildError, Recording, Settings, settings_for};
+use crate::law::{Model, State};
+
+/// Times that the weights of the samples are renewed with the law that they gave.
+const ROUNDS: usize = 3;
+
+/// A force law with numbers, and the motion that it was found on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ForceFit {
+    /// Coefficients in the order of the model's terms; 0 of a "maybe" term that the law does not have.
+    pub coefficients: Vec<f64>,
+    /// Std of what the law leaves.
+    pub residual: f64,
+    /// Whether that is white, as far as the recording tells.
+    pub is_white: bool,
+    /// Time, s, and motion at every sample but the few after a gap that tell none.
+    pub motion: Vec<(f64, State)>,
+}
+
+/// Fits the model to a recording, `None` where that does not determine it.
+///
+/// # Errors
+/// [`BuildError`] for a model or a recording that [`crate::identify::Identifier::new`] refuses.
+pub fn fit_force_law(model: &Model, recording: &Recording) -> Result<Option<ForceFit>, BuildError> {
+    let settings = settings_for(recording, Settings::default());
+    check(model, &settings)?;
+    let problem = Problem::new(model, &settings);
+    let instants = believed(&problem, &settings, recording);
+    let mut segment = Segment::new(&problem);
+    let mut features = vec![0.0; problem.terms.len()];
+    for _ in 0..ROUNDS {
+        segment.restart();
+        for instant in &instants {
+            let of_motion = expect(&problem.terms, segment.known(), instant, &mut features);
+            segment.add(&problem, &mut features, instant, of_motion);
+        }
+        segment.solve(&problem, true);
+    }
+    let motion =
+        instants.iter().map(|instant| (instant.t, State { q: instant.state[0], qd: instant.state[1] })).collect();
+    Ok(segment.is_determined().then(|| ForceFit {
+        coefficients: segment.coefficients().to_vec(),
+        residual: segment.variance().sqrt(),
+        is_white: !segment.is_coloured(),
+        motion,
+    }))
+}
+
+/// The motion of every piece between gaps.
+fn believed(problem: &Problem, settings: &Settings, recording: &Recording) -> Vec<Instant> {
+    let measured = [problem.channels.q, problem.channels.qd];
+    let mut noises = [0, 1].map(|channel| ChannelNoise::new(channel, settings.sample_time));
+    let mut instants = Vec::with_capacity(recording.count());
+    for piece in recording.pieces() {
+        noises.iter_mut().for_each(ChannelNoise::interrupt);
+        for index in piece.clone() {
+            let sample = recording.sample(index);
+            let readings = [sample.q, sample.qd];
+            for channel in (0..2).filter(|channel| measured[*channel]) {
+                noises[channel].add(sample.t, readings[channel]);
+            }
+        }
+    }
+    let beliefs = [0, 1].map(|channel| noises[channel].likeliest().filter(|_| measured[channel]));
+    if (0..2).any(|channel| measured[channel] && beliefs[channel].is_none()) {
+        return instants;
+    }
+    for piece in recording.pieces() {
+        let mut smoother = Smoother::new();
+        smoother.believe(beliefs);
+        let count = piece.len();
+        for index in piece {
+            let sample = recording.sample(index);
+            smoother.add(sample.t, [sample.q, sample.qd], sample.excitation);
+            instants.extend(smoother.at(LONGEST));
+        }
+        instants.extend((0..LONGEST.min(count)).rev().filter_map(|lag| smoother.at(lag)));
+    }
+    instants
+}

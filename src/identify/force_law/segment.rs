@@ -1,0 +1,362 @@
+//! The regression of one stage: its coefficients, how well they are known, and whether they explain the force.
+
+use super::blocks::Blocks;
+use super::features::Known;
+use super::smoother::{Instant, LONGEST};
+use super::sums::{Sums, Weight, dot};
+use crate::evidence::System;
+use crate::identify::identifier::Coefficient;
+use crate::identify::problem::Problem;
+use crate::identify::settings::Settings;
+use serde::{Deserialize, Serialize};
+
+/// e of eq. (8) below which a law counts as known …
+const SETTLED: f64 = 0.05 * 0.05;
+
+/// … and the share of it that the stated covariance, an expectation, must stay below.
+const MARGIN: f64 = 0.5;
+
+/// Price of a term in twice the log-likelihood, ÷ ln of the number of samples (Schwarz's is 1; that of the tracker of
+/// motion).
+const PRICE: f64 = 2.0;
+
+/// Part of a term that another one must be for both to count as not told apart.
+const TOUCHED: f64 = 1e-3;
+
+/// Std by which neighbouring residuals may be correlated by chance: one in a thousand.
+const SURPRISE: f64 = 3.1;
+
+/// Largest correlation that is told from 1.
+const MOST_ALIKE: f64 = 1.0 - 1e-6;
+
+/// Samples over which the motion's error is one and the same: as far as the smoother looks.
+pub const COHERENT: f64 = LONGEST as f64;
+
+/// Samples over which mean squares are taken.
+const MEMORY: f64 = 4000.0;
+
+/// Std of a mean deviation by which it is out of the ordinary.
+const UNUSUAL: f64 = 5.0;
+
+/// Samples per unknown, at least, of a law in which a switch can be seen.
+const RECORD: f64 = 8.0;
+
+/// The regression of one stage.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Segment {
+    pub sums: Sums,
+    blocks: Blocks,
+    pub samples: u64,
+    pub start: f64,
+    system: System,
+    /// Λ⁻¹ over the active terms.
+    inverse: Vec<f64>,
+    /// Free coefficients; all of them, with the known ones.
+    free: Vec<f64>,
+    pub all: Vec<f64>,
+    /// Variances of all coefficients, but no more than the law's own force allows.
+    variances: Vec<f64>,
+    active: Vec<bool>,
+    pub every: Vec<bool>,
+    /// Whether the record determines the coefficient.
+    determined: Vec<bool>,
+    /// Mean square of the recursive residuals, their mean product with the one before, and mean variance by the
+    /// motion's error.
+    residual: f64,
+    lagged: f64,
+    pub of_motion: f64,
+    means: f64,
+    last_residual: f64,
+    /// The force's own noise, variance; none before the first block.
+    pub white: Option<f64>,
+    pub established: bool,
+    /// Least variance of what the law leaves: that of the force's sensor, where it is given.
+    least: f64,
+}
+
+impl Segment {
+    /// Of no record.
+    pub fn new(problem: &Problem) -> Segment {
+        let n = problem.n();
+        Segment {
+            sums: Sums::none(n),
+            blocks: Blocks::new(n),
+            samples: 0,
+            start: 0.0,
+            system: System::new(n),
+            inverse: vec![0.0; n * n],
+            free: vec![0.0; n],
+            all: problem.known.clone(),
+            variances: vec![0.0; problem.terms.len()],
+            active: vec![true; n],
+            every: vec![true; n],
+            determined: vec![false; n],
+            residual: 0.0,
+            lagged: 0.0,
+            last_residual: 0.0,
+            of_motion: 0.0,
+            means: 0.0,
+            white: None,
+            established: false,
+            least: f64::MIN_POSITIVE,
+        }
+    }
+
+    /// Goes on with the sums as they are, since sample `first`; what is known of the sensors stays.
+    pub fn begin_anew(&mut self, start: f64, first: u64, problem: &Problem) {
+        self.samples -= first;
+        self.start = start;
+        self.blocks.begin(&self.sums);
+        self.active.fill(true);
+        (self.established, self.means) = (false, 0.0);
+        self.solve(problem, false);
+    }
+
+    /// With a force sensor whose noise has at least that std.
+    pub fn with_noise(self, std: f64) -> Segment {
+        Segment { least: (std * std).max(f64::MIN_POSITIVE), ..self }
+    }
+
+    /// Forgets the record; the law and what is known of the force's noise stay.
+    pub fn restart(&mut self) {
+        self.sums.clear();
+        self.blocks.begin(&self.sums);
+        (self.samples, self.means) = (0, 0.0);
+    }
+
+    /// All coefficients, the known ones among them.
+    pub fn coefficients(&self) -> &[f64] {
+        &self.all
+    }
+
+    /// Whether the record determines every coefficient that the law has.
+    pub fn is_determined(&self) -> bool {
+        (0..self.free.len()).all(|row| self.std(row).is_some())
+    }
+
+    /// Takes the law for one in which a switch can be seen, where its record is long enough.
+    pub fn establish(&mut self) {
+        self.established |= self.is_long() && self.blocks.verdict().is_known;
+    }
+
+    fn is_long(&self) -> bool {
+        self.sums.count >= RECORD * self.free.len() as f64
+    }
+
+    /// Takes one instant, whose features stand in `features`; true where that filled a block.
+    pub fn add(&mut self, problem: &Problem, features: &mut [f64], instant: &Instant, of_motion: f64) -> bool {
+        let residual = instant.force - dot(features, &self.all);
+        let held: f64 = dot(features, &problem.known);
+        for (place, index) in problem.free.iter().enumerate() {
+            features[place] = features[*index];
+        }
+        let (features, force) = (&features[..problem.n()], instant.force - held);
+        let weight = self.weight(of_motion);
+        if self.is_long() {
+            self.compare(residual, features, weight, of_motion);
+        }
+        self.sums.add(features, force, &weight);
+        self.samples += 1;
+        let is_full = self.blocks.add(features, force, &weight);
+        if is_full && self.is_long() {
+            self.white = Some(self.variance());
+        }
+        is_full
+    }
+
+    /// What a sample counts. Where the motion hardly tells which side of a jump it is on, it does so for as long as
+    /// that lasts: errors that the motion
+    /// makes are one error over [`COHERENT`] samples.
+    fn weight(&self, of_motion: f64) -> Weight {
+        let whole = Weight { value: 1.0, freedom: 1.0 };
+        self.white.map_or(whole, |white| {
+            let value = white / (white + COHERENT * of_motion);
+            Weight { value, freedom: value * (white + of_motion) / white }
+        })
+    }
+
+    /// Takes the residual that the law of the samples before leaves: under the right law these recursive residuals,
+    /// scaled to equal variance, are
+    /// white (Brown, Durbin and Evans, J. Royal Statistical Society B 37, 1975).
+    fn compare(&mut self, residual: f64, features: &[f64], weight: Weight, of_motion: f64) {
+        let n = features.len();
+        let leverage: f64 =
+            (0..n).map(|row| features[row] * dot(&self.inverse[row * n..(row + 1) * n], features)).sum();
+        let scaled = residual * (weight.value / weight.freedom / (1.0 + weight.value * leverage.max(0.0))).sqrt();
+        let last = std::mem::replace(&mut self.last_residual, scaled);
+        self.means = (self.means + 1.0).min(MEMORY);
+        self.residual += (scaled * scaled - self.residual) / self.means;
+        self.lagged += (scaled * last - self.lagged) / self.means;
+        self.of_motion += (of_motion - self.of_motion) / self.means;
+    }
+
+    /// Solves for the coefficients; where `choose`, for the terms that the law has, and what the blocks say of it.
+    pub fn solve(&mut self, problem: &Problem, choose: bool) {
+        if choose {
+            self.active.fill(true);
+        }
+        self.regress();
+        while choose && self.drop_one(problem) {
+            self.regress();
+        }
+        if choose {
+            self.find_determined();
+            let variance = self.variance();
+            self.blocks.judge(&self.free, &self.inverse, &self.active, variance);
+        }
+        problem.scatter(&self.free, &mut self.all);
+        self.renew_variances(problem);
+    }
+
+    /// A coefficient that the record does not determine is one whose force is within the force measured.
+    fn renew_variances(&mut self, problem: &Problem) {
+        let (n, variance) = (self.free.len(), self.variance());
+        for (row, index) in problem.free.iter().enumerate() {
+            let widest = self.sums.squares / self.sums.information[row * n + row];
+            let own = self.inverse[row * n + row];
+            let stated = if own > 0.0 && self.active[row] { variance * own } else { f64::INFINITY };
+            self.variances[*index] = if widest.is_finite() { stated.min(widest) } else { 0.0 };
+        }
+    }
+
+    /// The coefficients as they are known.
+    pub fn known(&self) -> Known<'_> {
+        Known { values: &self.all, variances: &self.variances }
+    }
+
+    fn regress(&mut self) {
+        self.sums.eliminate(&self.active, &mut self.system);
+        self.system.solve(&mut self.free);
+        self.system.invert(&mut self.inverse);
+    }
+
+    /// Drops the "maybe" term that is worth least, where it is not worth its price.
+    fn drop_one(&mut self, problem: &Problem) -> bool {
+        let n = self.free.len();
+        let scale = self.variance() * self.inflation();
+        let price = PRICE * self.sums.count.max(2.0).ln();
+        let worth = |row: &usize| self.free[*row].powi(2) / (scale * self.inverse[row * n + row]);
+        let candidates = (0..n).filter(|row| self.active[*row] && problem.maybe[*row]);
+        let least = candidates.min_by(|a, b| worth(a).total_cmp(&worth(b)));
+        match least.filter(|row| worth(row).is_nan() || worth(row) < price) {
+            Some(row) => {
+                self.active[row] = false;
+                true
+            }
+            None => false,
+        }
+    }
+
+    /// Variance of what the law leaves, at full weight.
+    pub fn variance(&self) -> f64 {
+        let unknowns = self.active.iter().filter(|active| **active).count() as f64;
+        let freedom = (self.sums.count - unknowns).max(1.0);
+        let rounding = 1e-14 * self.sums.squares;
+        (self.sums.loss(&self.free).max(rounding) / freedom).max(self.least)
+    }
+
+    /// Terms that nothing tells apart from others have no value of their own.
+    fn find_determined(&mut self) {
+        let n = self.free.len();
+        self.determined.fill(true);
+        let information = &self.sums.information;
+        for unknown in (0..n).filter(|unknown| self.active[*unknown] && !self.system.is_solved(*unknown)) {
+            let column = &information[unknown * n..(unknown + 1) * n];
+            for other in (0..n).filter(|other| self.active[*other]) {
+                // what the other solved term takes of this one, in units of their features
+                let share = dot(&self.inverse[other * n..(other + 1) * n], column);
+                let touched = share * share * information[other * n + other] > TOUCHED * TOUCHED * column[unknown];
+                self.determined[other] &= other != unknown && !touched;
+            }
+        }
+    }
+
+    /// Combinations of terms that the record does not tell apart.
+    pub fn open(&self, problem: &Problem) -> Vec<String> {
+        if !self.is_long() {
+            return Vec::new();
+        }
+        let open = (0..self.free.len()).filter(|row| self.active[*row] && !self.determined[*row]);
+        let open: Vec<usize> = open.collect();
+        if open.is_empty() { Vec::new() } else { vec![problem.together(&open)] }
+    }
+
+    /// Std of a free coefficient: the sandwich where the rest is not white.
+    fn std(&self, row: usize) -> Option<f64> {
+        let n = self.free.len();
+        let verdict = self.blocks.verdict();
+        if !(verdict.is_known && self.determined[row]) {
+            return None;
+        }
+        if !self.active[row] {
+            return Some(0.0);
+        }
+        let white = self.variance() * self.inverse[row * n + row];
+        let variance = if self.is_coloured() { verdict.covariance[row * n + row].max(white) } else { white };
+        Some(variance.sqrt()).filter(|std| std.is_finite())
+    }
+
+    /// e of eq. (8) by the stated covariance.
+    fn error(&self) -> Option<f64> {
+        let squares = (0..self.free.len()).map(|row| self.std(row).map(|std| std * std)).sum::<Option<f64>>()?;
+        let size: f64 = self.all.iter().map(|value| value * value).sum();
+        (size > 0.0).then_some(squares / size)
+    }
+
+    /// Correlation of neighbouring residuals, where it is no chance.
+    fn correlation(&self) -> f64 {
+        let found = if self.residual > 0.0 { self.lagged / self.residual } else { 0.0 };
+        if found * found * self.means > SURPRISE * SURPRISE { found.clamp(0.0, MOST_ALIKE) } else { 0.0 }
+    }
+
+    /// Samples that say as much as one independent sample: residuals that follow from one another say less, as those
+    /// of an autoregression do
+    /// (Bartlett, J. Royal Statistical Society 8 Suppl., 1946).
+    pub fn inflation(&self) -> f64 {
+        let correlation = self.correlation();
+        self.blocks.verdict().inflation.max((1.0 + correlation) / (1.0 - correlation))
+    }
+
+    /// Whether what the law leaves is no white noise.
+    pub fn is_coloured(&self) -> bool {
+        self.blocks.verdict().is_coloured || self.correlation() > 0.0
+    }
+
+    /// Whether the law explains its record down to white noise, holds throughout it, and is known.
+    pub fn is_valid(&self) -> bool {
+        let is_known = self.error().is_some_and(|error| error < MARGIN * SETTLED);
+        self.established && self.blocks.verdict().is_known && !self.is_coloured() && is_known
+    }
+
+    /// Share of the force's variance that the law explains.
+    pub fn explained(&self, problem: &Problem) -> Option<f64> {
+        let spread = self.sums.spread();
+        let is_known = self.blocks.verdict().is_known && problem.n() > 0 && spread > 0.0;
+        is_known.then(|| (1.0 - self.sums.loss(&self.free) / spread).max(0.0))
+    }
+
+    /// Writes the coefficients that are known, with their std.
+    pub fn publish(&self, problem: &Problem, coefficients: &mut [Coefficient], is_valid: bool) {
+        for (row, index) in problem.free.iter().enumerate() {
+            let std = self.std(row).filter(|std| is_valid || *std < self.free[row].abs() || !self.active[row]);
+            let coefficient = &mut coefficients[*index];
+            if std.is_some() {
+                coefficient.value = self.free[row];
+            }
+            coefficient.std = std;
+            coefficient.needed = if is_valid { Some(0.0) } else { None };
+        }
+        for index in (0..coefficients.len()).filter(|index| !problem.free.contains(index)) {
+            coefficients[index].value = problem.known[index];
+            coefficients[index].std = Some(0.0);
+        }
+    }
+
+    /// A mean deviation that noise alone hardly gives.
+    pub fn unusual_deviation(&self, of_motion: f64, settings: &Settings) -> f64 {
+        let std = (self.variance() + of_motion).sqrt();
+        let samples = (settings.deviation_interval / settings.sample_time / self.inflation()).max(1.0);
+        let [mean, spread] = [std::f64::consts::FRAC_2_PI.sqrt(), (1.0 - std::f64::consts::FRAC_2_PI).sqrt()];
+        std * (mean + UNUSUAL * spread / samples.sqrt())
+    }
+}
