@@ -6,7 +6,7 @@
 //! std swallows.
 
 use super::case::{Case, Standing};
-use super::errors::{WindowError, are_adequate, errors};
+use super::errors::{ADEQUATE, WindowError, are_adequate, errors};
 use super::law::Law;
 use super::remainder;
 use crate::diagnose::candidates::{Contender, contest};
@@ -178,7 +178,7 @@ fn weigh(case: &Case, standing: &Standing, entries: &mut [Entry]) {
     let values = standing.blocks.p_values(&left.iter().map(gains).collect::<Vec<_>>());
     for (index, entry) in left.iter_mut().enumerate() {
         entry.p_value = values.as_ref().map(|values| values[index]);
-        entry.doubt = entry.doubted();
+        entry.doubt = entry.doubted(&standing.floor);
     }
 }
 
@@ -189,11 +189,17 @@ fn delay(case: &Case, terms: &[Term], others: &[Entry]) -> Option<Entry> {
     if !moves || terms.iter().any(|term| delay_of(*term).is_some()) {
         return None;
     }
-    let late = case.delayed(terms).filter(|late| *late > 0.5 * case.record.sample_time)?;
+    let late = case.delayed(terms)?;
     let before = case.folds.judge(&case.punctual(terms));
     let term = Term::Effect(Effect::ExcitationDelay { delay: Inner::new(late) });
     let law: Vec<Term> = terms.iter().copied().chain([term]).collect();
     let standing = case.stand(&law)?;
+    // the column beside it may take any delay back, and find the record late instead
+    let [step, std] = standing.estimate.delay?;
+    let whole = standing.equation.timing.delay + step;
+    if whole <= (0.5 * case.record.sample_time).max(SURE * std) {
+        return None;
+    }
     let score = standing.held.score(&before);
     let taken = |other: &Entry| other.doubt.is_none() && other.contender.held.score(&before) <= score;
     if others.iter().any(taken) {
@@ -237,15 +243,24 @@ impl Entry {
     }
 
     /// What its gain leaves to doubt.
-    fn doubted(&self) -> Option<Doubt> {
+    fn doubted(&self, floor: &[f64; COUNT]) -> Option<Doubt> {
         let ratios = self.contender.held.ratios(&self.contender.before);
         if ratios.iter().any(|ratio| *ratio > WORSE) || self.contender.held.errors.iter().any(|error| *error >= 1.0) {
             return Some(Doubt::Worse);
         }
         let mean = self.contender.score / ratios.len().max(1) as f64;
-        let large = !ratios.is_empty() && ratios.iter().all(|ratio| *ratio <= LARGE);
+        let large = self.is_large(floor);
         let significant = self.p_value.is_some_and(|p| p < LEVEL) && mean.exp() <= WORTH;
         (!(large || significant)).then_some(Doubt::Chance)
+    }
+
+    /// Whether it takes a third of the error's energy in every window that leaves more than the sensors do, of two at least.
+    fn is_large(&self, floor: &[f64; COUNT]) -> bool {
+        let errors = self.contender.before.errors.iter().zip(&self.contender.held.errors).zip(floor);
+        let beyond = errors.filter(|((before, _), floor)| **before > ADEQUATE * **floor);
+        let ratios: Vec<f64> = beyond.map(|((before, after), _)| after / before).collect();
+        let told = self.contender.held.ratios(&self.contender.before).len();
+        ratios.len() >= told.min(2) && !ratios.is_empty() && ratios.iter().all(|ratio| *ratio <= LARGE)
     }
 
     fn describe(&self, case: &Case, standing: &Standing) -> Candidate {
