@@ -2,7 +2,7 @@
 
 use crate::evidence::Observation;
 use crate::identify::Recording;
-use crate::law::{BandLimited, Drive, Hold, REACH, State};
+use crate::law::{BandLimited, Drive, Hold, NODES, REACH, State};
 use crate::limits::Course;
 use std::ops::Range;
 
@@ -102,6 +102,16 @@ impl Piece {
             measured: self.measured().map(|signal| signal.map(|values| values[k + 1])),
         };
         (0..self.len() - 1).map(observation).collect()
+    }
+
+    /// The band-limited excitation at equidistant nodes of every interval.
+    pub(super) fn band_limited(&self) -> Vec<[f64; NODES + 1]> {
+        let interpolation = BandLimited::new();
+        let nodes = |k: usize| match interpolation.interpolate(&self.taps(k)) {
+            Drive::Nodes(nodes) => nodes,
+            Drive::Held(value) | Drive::Line(value, _) => [value; NODES + 1],
+        };
+        (0..self.len() - 1).map(nodes).collect()
     }
 
     /// Samples around interval k; beyond the ends the last value stays.

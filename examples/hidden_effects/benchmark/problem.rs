@@ -42,8 +42,6 @@ pub struct Problem {
     pub model: Vec<Term>,
     /// The terms that it lacks, inner parameters as they are.
     pub lacking: Vec<Term>,
-    /// Coefficients of the model's terms, then of the lacking ones.
-    pub coefficients: Vec<f64>,
     /// The record less the force that no term gives, where there is one.
     pub relieved: Option<Recording>,
     /// Excitation, channels and scales in words.
@@ -217,7 +215,6 @@ fn measured(
         hold: rig.hold(),
         model: law.terms[..split].to_vec(),
         lacking: law.terms[split..].to_vec(),
-        coefficients: law.coefficients.clone(),
         relieved: matches!(setting.secret, Secret::Outside(_)).then(|| record(relieved)).and_then(Result::ok),
         words: words(rig, law, qd.is_some(), period),
     })

@@ -47,8 +47,18 @@ pub(in crate::cli) fn answer(diagnosis: &Diagnosis, clock: Option<&Clock>, input
     let mut lines = vec![what(diagnosis, input), sure(diagnosis), format!("decides: {}", decides(diagnosis))];
     let way = if diagnosis.base.terms.contains(&crate::law::Term::Inertia) { None } else { Some(OUTPUT) };
     lines.extend(way.map(String::from));
+    lines.extend(biased(diagnosis.improved.as_ref().unwrap_or(&diagnosis.base)));
     lines.extend(clock.into_iter().flat_map(Clock::sentences).map(|sentence| format!("sensors: {sentence}")));
     lines
+}
+
+/// Which coefficients least squares would bias.
+fn biased(law: &Law) -> Option<String> {
+    let names: Vec<String> = law.biased.iter().map(|term| law.effect_name(*term)).collect();
+    (!names.is_empty()).then(|| {
+        let names = names.join(", ");
+        format!("sensors: noise in the readings biases least squares in {names}: the values are those with even and odd readings as instruments")
+    })
 }
 
 const OUTPUT: &str = "the model has no inertia: F = law(q, qd), F is the output";

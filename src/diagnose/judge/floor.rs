@@ -40,12 +40,23 @@ fn noisy(record: &Record, force: f64, seed: u64) -> Vec<Motion> {
     motions
 }
 
-/// RMS of what the noise adds to a law's residual ÷ std of its target, by window length.
+/// RMS of what the noise adds to a law's residual ÷ std of its target, by window length; `errors` are the law's.
+///
+/// No sensor leaves more than is left: where the floor would be above an error, the noise was taken for louder than it is (a coarsely
+/// sampled motion looks so), and all of it is lowered.
 pub(in crate::diagnose) fn floor(
     equation: &Equation,
     solutions: &[Vec<f64>; COUNT],
     others: &[Equation],
+    errors: &[f64; COUNT],
 ) -> [f64; COUNT] {
+    let floors = propagated(equation, solutions, others);
+    let ratios = errors.iter().zip(floors).map(|(error, floor)| error / floor).filter(|ratio| ratio.is_finite());
+    let loudness = ratios.fold(1.0, f64::min);
+    floors.map(|floor| loudness * floor)
+}
+
+fn propagated(equation: &Equation, solutions: &[Vec<f64>; COUNT], others: &[Equation]) -> [f64; COUNT] {
     [0, 1, 2].map(|which| {
         let residual = |equation: &Equation| {
             let columns = equation.columns(which);

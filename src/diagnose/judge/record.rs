@@ -1,9 +1,10 @@
 //! Recordings as weak equations: a column for every term, with three lengths of windows.
 
 use super::windows::{self, COUNT, Cells, Windows};
-use crate::diagnose::motion::{self, Motion, Nodes, rounding, sensor_noise};
+use crate::diagnose::motion::{self, Impulse, Motion, Nodes, rounding, sensor_noise};
 use crate::identify::Recording;
 use crate::law::{Effect, Expression, Hold, Term, term_series};
+use std::cell::OnceCell;
 
 /// What a term is in every equation, by window length.
 pub(in crate::diagnose) type Column = [Vec<f64>; COUNT];
@@ -34,6 +35,8 @@ pub(in crate::diagnose) struct Record {
     pub(in crate::diagnose) forced: bool,
     /// The user's effects.
     pub(in crate::diagnose) expressions: Vec<Expression>,
+    /// By hold and piece, the excitation's integral, once it was asked for.
+    impulses: [OnceCell<Vec<OnceCell<Impulse>>>; 3],
 }
 
 impl Record {
@@ -65,7 +68,8 @@ impl Record {
         let cells: Vec<usize> = nodes.iter().map(|(.., nodes)| nodes.cells()).collect();
         let windows = [0, 1, 2].map(|which| Windows::new(which, &cells, cell, sample_time));
         let duration = cells.iter().sum::<usize>() as f64 * cell;
-        let record = Record { motions, nodes, windows, period, sample_time, duration, forced, expressions };
+        let impulses = Default::default();
+        let record = Record { motions, nodes, windows, period, sample_time, duration, forced, expressions, impulses };
         record.windows.iter().any(|windows| windows.rows() > 0).then_some(record)
     }
 
@@ -106,7 +110,11 @@ impl Record {
     }
 
     fn excitation(&self, (index, number, nodes): &(usize, usize, Nodes), timing: Timing) -> Vec<f64> {
-        nodes.excitation(&self.motions[*index].pieces[*number], timing.hold, timing.delay)
+        let piece = &self.motions[*index].pieces[*number];
+        let place = self.nodes.iter().position(|(own, other, _)| (own, other) == (index, number)).unwrap_or(0);
+        let impulses = self.impulses[timing.hold as usize].get_or_init(|| vec![OnceCell::new(); self.nodes.len()]);
+        let impulse = impulses[place].get_or_init(|| Impulse::new(piece, timing.hold));
+        nodes.excitation(impulse, timing.delay)
     }
 
     /// ∫ φ F dt.

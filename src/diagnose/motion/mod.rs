@@ -9,7 +9,7 @@ mod noise;
 mod spline;
 
 pub use kinematics::Kinematics;
-pub(super) use nodes::Nodes;
+pub(super) use nodes::{Impulse, Nodes};
 pub(super) use noise::{rounding, sensor_noise};
 pub use spline::Sensors;
 pub(super) use spline::{Spline, States};

@@ -4,7 +4,7 @@
 
 use super::{Motion, readings};
 use crate::diagnose::Piece;
-use crate::law::{Hold, Trajectory};
+use crate::law::{Hold, NODES, Trajectory};
 
 /// A piece on a uniform grid; a value stands for the middle of its node.
 #[derive(Clone, Debug)]
@@ -66,9 +66,10 @@ impl Nodes {
     }
 
     /// The mean over each node of the excitation `delay` s ago.
-    pub(in crate::diagnose) fn excitation(&self, piece: &Piece, hold: Hold, delay: f64) -> Vec<f64> {
-        let mut force = Impulse::new(piece, hold);
-        let mut edges = (0..=self.t.len()).map(|index| force.until(self.start + index as f64 * self.width - delay));
+    pub(in crate::diagnose) fn excitation(&self, force: &Impulse, delay: f64) -> Vec<f64> {
+        let mut place = 0;
+        let edge = |index: usize| self.start + index as f64 * self.width - delay;
+        let mut edges = (0..=self.t.len()).map(|index| force.until(edge(index), &mut place));
         let mut before = edges.next().unwrap_or_default();
         let mean = |after: f64| (after - std::mem::replace(&mut before, after)) / self.width;
         edges.map(mean).collect()
@@ -97,18 +98,24 @@ impl Nodes {
     }
 }
 
-/// ∫ F dt from the first reading on. Before it and after the last one the excitation counts as they are.
-struct Impulse<'a> {
-    piece: &'a Piece,
+/// ∫ F dt from the first reading of a piece on. Before it and after the last one the excitation counts as they are.
+#[derive(Clone, Debug)]
+pub(in crate::diagnose) struct Impulse {
+    t: Vec<f64>,
+    value: Vec<f64>,
     hold: Hold,
+    /// At every reading.
     sums: Vec<f64>,
-    /// The interval in which the last instant was.
-    place: usize,
+    /// Of a band-limited excitation, its values at equidistant nodes of every interval.
+    nodes: Vec<[f64; NODES + 1]>,
 }
 
-impl<'a> Impulse<'a> {
-    fn new(piece: &'a Piece, hold: Hold) -> Impulse<'a> {
-        let mut impulse = Impulse { piece, hold, sums: vec![0.0], place: 0 };
+impl Impulse {
+    /// Of a piece whose excitation did that between readings.
+    pub(in crate::diagnose) fn new(piece: &Piece, hold: Hold) -> Impulse {
+        let nodes = if hold == Hold::BandLimited { piece.band_limited() } else { Vec::new() };
+        let (t, value) = (piece.t.clone(), piece.excitation.clone());
+        let mut impulse = Impulse { t, value, hold, sums: vec![0.0], nodes };
         for k in 0..piece.len() - 1 {
             let next = impulse.sums[k] + impulse.within(k, piece.t[k + 1] - piece.t[k]);
             impulse.sums.push(next);
@@ -116,29 +123,28 @@ impl<'a> Impulse<'a> {
         impulse
     }
 
-    /// Over the first part, s, of an interval. A band-limited excitation is the cubic through the four nearest readings.
+    /// Over the first part, s, of an interval.
     fn within(&self, k: usize, x: f64) -> f64 {
-        let (t, value) = (&self.piece.t, &self.piece.excitation);
+        let (t, value) = (&self.t, &self.value);
         let dt = t[k + 1] - t[k];
-        let rise = value[k + 1] - value[k];
-        let straight = x * (value[k] + 0.5 * rise * x / dt);
-        let inner = k > 0 && k + 2 < t.len();
         match self.hold {
             Hold::Zero => x * value[k],
-            Hold::BandLimited if inner => {
-                let slope = |a: usize| dt * (value[a + 1] - value[a - 1]) / (t[a + 1] - t[a - 1]);
-                let [from, to] = [slope(k) - rise, slope(k + 1) - rise];
-                let s = x / dt;
-                let bend = from * (1.0 / 2.0 - s * (2.0 / 3.0 - s / 4.0)) + to * (s / 4.0 - 1.0 / 3.0) * s;
-                straight + dt * s * s * bend
+            Hold::Linear => x * (value[k] + 0.5 * (value[k + 1] - value[k]) * x / dt),
+            Hold::BandLimited => {
+                let nodes = &self.nodes[k];
+                let place = (x / dt * NODES as f64).clamp(0.0, NODES as f64);
+                let whole = (place as usize).min(NODES - 1);
+                let trapezoids = nodes[..=whole].windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).sum::<f64>();
+                let share = place - whole as f64;
+                let last = share * (nodes[whole] + 0.5 * share * (nodes[whole + 1] - nodes[whole]));
+                (trapezoids + last) * dt / NODES as f64
             }
-            _ => straight,
         }
     }
 
-    /// ∫ F dt up to an instant; fast where instants come in their order.
-    fn until(&mut self, t: f64) -> f64 {
-        let (times, values) = (&self.piece.t, &self.piece.excitation);
+    /// ∫ F dt up to an instant; `place` is where the one before was found, fast where instants come in their order.
+    fn until(&self, t: f64, place: &mut usize) -> f64 {
+        let (times, values) = (&self.t, &self.value);
         let last = times.len() - 1;
         if t <= times[0] {
             return (t - times[0]) * values[0];
@@ -146,13 +152,13 @@ impl<'a> Impulse<'a> {
         if t >= times[last] {
             return self.sums[last] + (t - times[last]) * values[last];
         }
-        while times[self.place] > t {
-            self.place -= 1;
+        while times[*place] > t {
+            *place -= 1;
         }
-        while times[self.place + 1] <= t {
-            self.place += 1;
+        while times[*place + 1] <= t {
+            *place += 1;
         }
-        self.sums[self.place] + self.within(self.place, t - times[self.place])
+        self.sums[*place] + self.within(*place, t - times[*place])
     }
 }
 

@@ -4,10 +4,14 @@ use super::errors::{WindowError, are_adequate, errors};
 use super::law::Law;
 use crate::diagnose::judge::{
     Blocks, COUNT, Equation, Estimate, Folds, HeldOut, Record, Target, Timing, delay_of, disturbed, estimate, floor,
-    noise_share,
+    instrumented, noise_share,
 };
 use crate::identify::Recording;
 use crate::law::{Expression, Hold, Term};
+use std::cell::OnceCell;
+
+/// Std by which the instruments' value must differ for least squares to be biased.
+const BIASED: f64 = 2.0;
 
 /// Ratio between the delays that are tried, and steps in which the best is refined.
 const GROWTH: f64 = 1.6;
@@ -38,6 +42,8 @@ pub(in crate::diagnose) struct Case {
     hold: Option<Hold>,
     /// The inertia of a free motion.
     inertia: f64,
+    /// The record as its even and as its odd readings show it, once it was asked for.
+    halves: OnceCell<Option<[Record; 2]>>,
 }
 
 /// A law on a record.
@@ -64,7 +70,8 @@ impl Case {
         let is_output = !terms.contains(&Term::Inertia);
         let disturbed = disturbed(&record, record.force_noise(is_output));
         let folds = Folds::new(&record);
-        let mut case = Case { record, folds, disturbed, target: Target::Inertia, hold, inertia };
+        let mut case =
+            Case { record, folds, disturbed, target: Target::Inertia, hold, inertia, halves: OnceCell::new() };
         if is_output {
             case.target = Target::Force;
         } else if case.record.forced {
@@ -167,7 +174,7 @@ impl Case {
         let estimate = estimate(&self.record, &equation, &blocks, self.inertia)?;
         let same = |other: &Record| Equation::new(other, &equation.terms, self.target, equation.timing, true);
         let others: Vec<Equation> = self.disturbed.iter().map(same).collect();
-        let floor = floor(&equation, &estimate.solutions, &others);
+        let floor = floor(&equation, &estimate.solutions, &others, &held.errors);
         Some(Standing { equation, held, estimate, floor, blocks })
     }
 
@@ -179,7 +186,7 @@ impl Case {
         let held = HeldOut::as_given(&equation, &solutions);
         let same = |other: &Record| Equation::new(other, &equation.terms, self.target, equation.timing, false);
         let others: Vec<Equation> = self.disturbed.iter().map(same).collect();
-        let floor = floor(&equation, &solutions, &others);
+        let floor = floor(&equation, &solutions, &others, &held.errors);
         let errors = errors(&self.record, &held, &held, &floor);
         Some((errors, are_adequate(&errors)))
     }
@@ -189,8 +196,27 @@ impl Case {
         errors(&self.record, &standing.held, &standing.held, &standing.floor)
     }
 
-    /// A law with its numbers.
+    /// A law with its numbers: those of the robust regression, or where even and odd readings as instruments differ from them by more than two
+    /// std, the instruments'.
     pub(in crate::diagnose) fn law(&self, standing: &Standing) -> Law {
-        Law::of(&self.record, &standing.equation, &standing.estimate)
+        let law = Law::of(&self.record, &standing.equation, &standing.estimate);
+        self.unbiased(standing, &law).unwrap_or(law)
+    }
+
+    /// The law with the coefficients that its instruments give, where least squares is biased.
+    fn unbiased(&self, standing: &Standing, law: &Law) -> Option<Law> {
+        let equation = &standing.equation;
+        let halves = self.halves.get_or_init(|| self.record.halves()).as_ref()?;
+        let same = |other: &Record| Equation::new(other, &equation.terms, self.target, equation.timing, true);
+        let found = instrumented(&self.record, &[same(&halves[0]), same(&halves[1])], &standing.blocks)?;
+        let (coefficients, slopes) = equation.coefficients(&found.solution, self.record.forced, self.inertia);
+        let spread = |slope: &Vec<f64>| {
+            slope.iter().zip(&found.std).map(|(slope, std)| (slope * std).powi(2)).sum::<f64>().sqrt()
+        };
+        let std: Vec<f64> = slopes.iter().map(spread).collect();
+        let differs = |index: &usize| (coefficients[*index] - law.coefficients[*index]).abs() > BIASED * std[*index];
+        let biased: Vec<Term> =
+            (0..std.len()).filter(|index| std[*index] > 0.0).filter(differs).map(|i| law.terms[i]).collect();
+        (!biased.is_empty()).then(|| Law { coefficients, std, biased, ..law.clone() })
     }
 }

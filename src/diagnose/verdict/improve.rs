@@ -82,7 +82,10 @@ fn without_superfluous(
 ) -> Option<(Vec<Term>, Standing, Vec<String>)> {
     let mut removed = Vec::new();
     loop {
-        let added = |term: &Term| *term != newest && !original.iter().any(|own| same_effect(*own, *term));
+        let added = |term: &Term| {
+            let own = original.iter().any(|own| same_effect(*own, *term));
+            *term != newest && !own && delay_of(*term).is_none()
+        };
         let weakest = (0..terms.len()).filter(|index| added(&terms[*index])).find_map(|index| {
             let equation = standing.equation.without(index);
             let held = case.folds.judge(&equation);

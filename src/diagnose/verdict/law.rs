@@ -12,6 +12,9 @@ pub struct Law {
     pub coefficients: Vec<f64>,
     /// Their std; 0 where held.
     pub std: Vec<f64>,
+    /// Terms whose coefficients by least squares are biased by noise in the readings: these are those with even and odd readings as
+    /// instruments.
+    pub biased: Vec<Term>,
     /// What [`Term::Expression`] names.
     pub expressions: Vec<Expression>,
     /// When the recorded excitation acted.
@@ -29,6 +32,7 @@ impl Law {
             terms: equation.terms.clone(),
             coefficients: estimate.coefficients.clone(),
             std: estimate.std.clone(),
+            biased: Vec::new(),
             expressions: record.expressions.clone(),
             timing: equation.timing,
             delay: estimate.delay.map(delayed),
