@@ -1,9 +1,11 @@
 //! What the readings of q̇ are of the motion that q shows: how late, how large, and whether a measurement of their own.
 //!
-//! q̇ read at t is s ẋ(t − τ) + b: its regression on the smoothed ẋ, ẍ, x⃛ gives s, τ and b. A q̇ that is computed from q, by differences
-//! and whatever filter, has the noise of q in it: what is left of q̇ is then a linear function of what is left of q.
+//! q̇ read at t is s ẋ(t − τ) + b: its regression on the smoothed ẋ, ẍ, x⃛ gives s, τ and b. What smoothing takes of the motion it must take
+//! of q̇ too, else s comes out too large: the integral of q̇ goes through the same smoother as q. A q̇ that is computed from q, by
+//! differences and whatever filter, has the noise of q in it: what is left of q̇ is then a linear function of what is left of q.
 
 use super::Track;
+use super::spline::{Sensors, Spline};
 use crate::diagnose::Piece;
 use nalgebra::{DMatrix, DVector};
 
@@ -37,18 +39,21 @@ pub struct Kinematics {
 }
 
 impl Kinematics {
-    /// Of pieces that have both, and the motion that q alone shows. None where nothing moves.
-    pub(super) fn of(pieces: &[Piece], tracks: &[Track]) -> Option<Kinematics> {
-        let (mut rows, mut right) = (Vec::new(), Vec::new());
+    /// Of pieces that have both, and the motion that q alone, taken by these sensors, shows. None where nothing moves.
+    pub(super) fn of(pieces: &[Piece], tracks: &[Track], sensors: Sensors) -> Option<Kinematics> {
+        let (mut rows, mut right, mut smooth) = (Vec::new(), Vec::new(), Vec::new());
         for (piece, track) in pieces.iter().zip(tracks) {
             right.extend(piece.measured()[1]?);
             rows.extend(track.states.iter().map(|state| [state[1], -state[2], 0.5 * state[3], 1.0]));
+            smooth.extend(smoothed(piece, track, sensors)?);
         }
-        let found = Regression::of(&rows, &right)?;
+        let found = Regression::of(&rows, &smooth)?;
+        let residuals = found.residuals(&rows, &right);
+        let left: f64 = residuals.iter().map(|residual| residual * residual).sum();
         let count = right.len() as f64;
         let mean = right.iter().sum::<f64>() / count;
         let spread: f64 = right.iter().map(|value| (value - mean).powi(2)).sum();
-        let std = |index: usize| (found.inverse[(index, index)] * found.left / count).sqrt();
+        let std = |index: usize| (found.inverse[(index, index)] * left / count).sqrt();
         let scale = found.solution[0];
         Some(Kinematics {
             lag: found.solution[1] / scale,
@@ -56,8 +61,8 @@ impl Kinematics {
             scale,
             scale_std: std(0),
             offset: found.solution[3],
-            explained: 1.0 - found.left / spread,
-            is_derivative: shared(pieces, tracks, &found.residuals(&rows, &right))? > SHARED,
+            explained: 1.0 - left / spread,
+            is_derivative: shared(pieces, tracks, &residuals)? > SHARED,
         })
         .filter(|found| found.lag.is_finite() && found.scale.is_finite())
     }
@@ -66,6 +71,17 @@ impl Kinematics {
     pub fn is_velocity(&self) -> bool {
         self.explained > EXPLAINED
     }
+}
+
+/// The readings of q̇ through the smoother through which q went.
+fn smoothed(piece: &Piece, track: &Track, sensors: Sensors) -> Option<Vec<f64>> {
+    let velocity = piece.measured()[1]?;
+    let mut integral = vec![0.0];
+    for (t, qd) in piece.t.windows(2).zip(velocity.windows(2)) {
+        integral.push(integral[integral.len() - 1] + 0.5 * (t[1] - t[0]) * (qd[0] + qd[1]));
+    }
+    let spline = Spline::new(&piece.t, sensors, [true, false], [&track.doubt[0], &[]]);
+    Some(spline.smooth([Some(&integral), None]).iter().map(|state| state[1]).collect())
 }
 
 /// Share of what is left of q̇ that what is left of q explains.
