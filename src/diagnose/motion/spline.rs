@@ -100,7 +100,7 @@ impl Spline {
         spline
     }
 
-    /// −2 ln likelihood of the readings under the noise level that suits them best, a constant apart.
+    /// −2 ln likelihood of the readings, a constant apart, under the noise level up to the given one that suits them best.
     pub(crate) fn deviance(&self, readings: [Option<&[f64]>; 2]) -> f64 {
         let (_, innovations) = self.filter(readings);
         let squares = innovations
@@ -109,7 +109,13 @@ impl Spline {
             .map(|(e, step)| e[0] * e[0] * step.precision[0] + e[1] * e[1] * step.precision[1]);
         let count =
             self.steps.iter().map(|step| step.precision.iter().filter(|p| **p > 0.0).count()).sum::<usize>() as f64;
-        count * (squares.sum::<f64>() / count).ln() + self.log_determinant
+        let squares = squares.sum::<f64>();
+        // differences of the readings hold all of the noise and some of the motion: it is not louder than they say
+        if squares > count {
+            squares + self.log_determinant
+        } else {
+            count * (1.0 + (squares / count).ln()) + self.log_determinant
+        }
     }
 
     /// The smoothed states.
