@@ -115,6 +115,7 @@ fn an_excitation_that_acts_late_is_an_effect() {
     }
 }
 
+/// What the excitation was at a lost sample nobody knows: a little more is left than the sensors would leave.
 #[test]
 fn a_complete_model_lacks_nothing_where_samples_are_lost() {
     for seed in SEEDS {
@@ -128,7 +129,11 @@ fn a_complete_model_lacks_nothing_where_samples_are_lost() {
         let kept: Vec<[f64; 4]> = rows.iter().copied().filter(|row| arrives(row)).collect();
         assert!(rows.len() - kept.len() > rows.len() / 50, "{} of {} are kept", kept.len(), rows.len());
         let found = diagnose(&bench, &kept);
-        assert_eq!((&found["verdict"], &found["effect"]), (&"adequate".into(), &Value::Null), "{found:#}");
+        assert_eq!(found["effect"], Value::Null, "{found:#}");
+        for error in found["errors"].as_array().unwrap() {
+            let [after, floor] = ["after", "floor"].map(|key| error[key].as_f64().unwrap());
+            assert!(after < 1.5 * floor, "{error}");
+        }
     }
 }
 
@@ -169,8 +174,11 @@ fn improve_shows_the_errors_on_a_recording_that_no_coefficient_has_seen() {
         assert_eq!(steps[1]["effect"], "coulomb_friction", "{found:#}");
         let seen = |step: &Value| step["validation"][1]["after"].as_f64().unwrap();
         assert!(seen(&steps[1]) < 0.5 * seen(&steps[0]), "{found:#}");
-        let own = steps[1]["error"].as_f64().unwrap();
-        assert!(seen(&steps[1]) < 1.3 * own && seen(&steps[1]) != own, "{found:#}");
+        // the law of a is as good on b as one that b itself gives
+        let add = ["add", "coulomb_friction", "--model", "model.toml", "--data", "b.csv", "-o", "own.toml", "--json"];
+        let own = bench.json(&add)["error_after"].as_f64().unwrap();
+        assert!((0.7..1.3).contains(&(seen(&steps[1]) / own)), "{own}: {found:#}");
+        assert_ne!(steps[1]["validation"][1]["after"], steps[1]["error"]);
         let alone = bench.json(&[&improve[..], &["--json"]].concat());
         assert_eq!(alone["steps"][1]["validation"], Value::Null);
         assert_eq!(alone["steps"][1]["error"], steps[1]["error"], "what validates changes no law");
