@@ -266,7 +266,10 @@ fn silverbox_lacks_cubic_stiffness_and_no_friction_and_with_it_runs_free() {
     assert!(!found["indistinguishable"].to_string().contains("friction"), "{found:#}");
     let added = ["add", "cubic_stiffness", "--data", "training.csv", "--model", "model.toml", "-o", "cubic.toml"];
     let added = json(folder, &added);
-    assert!(added["error_after"].as_f64().unwrap() < 0.6 * added["error_before"].as_f64().unwrap(), "{added}");
+    // a window of 0.3 T₀ holds 2.5 samples: much of the error there is the sensors'
+    assert!(added["error_after"].as_f64().unwrap() < 0.7 * added["error_before"].as_f64().unwrap(), "{added}");
+    near(&added, "/coefficients/q", 0.990, 0.01);
+    near(&added, "/coefficients/q^3", 3.93, 0.03);
     let error = &json(folder, &["compare", "arrow.csv", "--model", "cubic.toml"])["error"];
     assert!(error["free_run_nrmse"].as_f64().unwrap() <= 0.05, "{error}");
 }
