@@ -266,7 +266,10 @@ fn silverbox_lacks_cubic_stiffness_and_no_friction_and_with_it_runs_free() {
     assert!(!found["indistinguishable"].to_string().contains("friction"), "{found:#}");
     let added = ["add", "cubic_stiffness", "--data", "training.csv", "--model", "model.toml", "-o", "cubic.toml"];
     let added = json(folder, &added);
-    assert!(added["error_after"].as_f64().unwrap() < 0.6 * added["error_before"].as_f64().unwrap(), "{added}");
+    // a window of 0.3 T₀ holds 2.5 samples: much of the error there is the sensors'
+    assert!(added["error_after"].as_f64().unwrap() < 0.7 * added["error_before"].as_f64().unwrap(), "{added}");
+    near(&added, "/coefficients/q", 0.990, 0.01);
+    near(&added, "/coefficients/q^3", 3.93, 0.03);
     let error = &json(folder, &["compare", "arrow.csv", "--model", "cubic.toml"])["error"];
     assert!(error["free_run_nrmse"].as_f64().unwrap() <= 0.05, "{error}");
 }
@@ -304,5 +307,72 @@ fn forces_of_testing_machines_are_published_and_not_validated() {
         );
         let last = stages.last().unwrap();
         assert!(last["explained"].as_f64().unwrap() > share && last["coefficients"]["coulomb_friction"].is_number());
+    }
+}
+
+const DAMPER: &str = "[terms]\nlinear_damping = \"fit\"\nlinear_stiffness = \"fit\"\nconstant_force = \"fit\"\n";
+const PENDULUM: &str = "linear_damping = \"fit\"\npendulum_restoring = \"fit\"\nconstant_force = \"fit\"\n";
+
+/// Records of rigs, the model to begin with, and the first answers that count as right by an independent robust weak-form regression; none
+/// where it is sure of none.
+fn rigs() -> [(&'static str, String, &'static [&'static str]); 8] {
+    let friction: &[&str] = &["coulomb_friction", "stribeck_friction"];
+    let presliding: &[&str] = &["presliding_friction", "hysteresis"];
+    let pendulum = |inertia: &str| format!("[terms]\ninertia = {inertia}\n{PENDULUM}");
+    let axis = "inertia = \"fit\"\nlinear_damping = \"fit\"\nconstant_force = \"fit\"\n";
+    let frame = DAMPER.replace("[terms]", "[terms]\ninertia = \"fit\"");
+    [
+        ("emps/emps_train_tidy.csv", format!("{EMPS}{axis}"), friction),
+        ("real/dfki_ddp.csv", pendulum("\"fit\""), friction),
+        ("real/mr_10_2.csv", DAMPER.into(), presliding),
+        ("real/brfd2_36lb_05hz.csv", DAMPER.into(), &["friction_with_backlash", "hysteresis", "presliding_friction"]),
+        (
+            "real/marm_free.csv",
+            pendulum("1"),
+            &["presliding_friction", "hysteresis", "coulomb_friction", "stribeck_friction"],
+        ),
+        ("real/shake1_elcentro.csv", frame, &["excitation_delay", "actuator_lag"]),
+        ("real/pneu_oring_3bar.csv", DAMPER.into(), &[]),
+        ("real/dfki_energy.csv", pendulum("\"fit\""), &[]),
+    ]
+}
+
+/// A named effect is among those that count, its std is below its coefficient; where none is sure none is named.
+fn assert_answer(name: &str, found: &Value, right: &[&str]) {
+    if right.is_empty() {
+        assert_eq!((&found["verdict"], &found["effect"]), (&"unexplained".into(), &Value::Null), "{name}: {found:#}");
+        return;
+    }
+    assert_eq!(found["verdict"], "missing", "{name}: {found:#}");
+    let effect = found["effect"].as_str().unwrap();
+    assert!(right.contains(&effect), "{name}: {effect} is none of {right:?}");
+    let best = &found["candidates"][0];
+    assert_eq!(best["effect"], effect, "{name}: {best}");
+    let number = |key: &str| best[key].as_f64().unwrap_or_else(|| panic!("{name}: no {key} in {best}"));
+    assert!(number("std") < number("coefficient").abs(), "{name}: {best}");
+    assert!(number("error_after") < number("error_before"), "{name}: {best}");
+}
+
+#[test]
+fn the_first_answer_on_records_of_rigs_is_one_that_counts() {
+    for (name, model, right) in rigs() {
+        let Some(data) = recording(name) else { return };
+        assert_answer(name, &run(&["diagnose"], &data, &model), right);
+    }
+}
+
+#[test]
+fn improve_never_raises_the_error_on_records_of_rigs() {
+    for (name, model, right) in rigs() {
+        let Some(data) = recording(name) else { return };
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        std::fs::write(folder.join("model.toml"), model).unwrap();
+        let data = data.canonicalize().unwrap();
+        let found = json(folder, &["improve", data.to_str().unwrap(), "--model", "model.toml", "-o", "better.toml"]);
+        let errors: Vec<f64> =
+            found["steps"].as_array().unwrap().iter().map(|step| step["error"].as_f64().unwrap()).collect();
+        assert!(errors.windows(2).all(|pair| pair[1] <= pair[0]), "{name}: {errors:?}");
+        assert_eq!(errors.len() > 1, !right.is_empty(), "{name}: {errors:?}");
     }
 }

@@ -9,4 +9,5 @@ mod force_law;
 mod good_input;
 mod known_laws;
 mod limits;
+mod sensors;
 mod units;

@@ -45,7 +45,7 @@ pub(in crate::diagnose) struct Windows {
     places: Vec<(usize, usize)>,
     /// Middle of every window on the axis of all pieces end to end, s.
     pub(in crate::diagnose) centres: Vec<f64>,
-    /// By test function, φ, φ' and φ'' at the cells.
+    /// By test function, φ, φ' and φ'' in the cells.
     weights: Vec<[Vec<f64>; 3]>,
 }
 
@@ -91,11 +91,14 @@ impl Windows {
     }
 }
 
-/// φ, φ' and φ'' at the middles of `size` cells.
+/// φ at the middles of `size` cells, the means of φ' and φ'' over them: what a derivative of φ weighs a constant with is then 0, as it must be.
 fn tabulated(size: usize, length: f64, cycles: f64, phase: f64) -> [Vec<f64>; 3] {
-    let at = |cell: usize| test_function((2 * cell + 1) as f64 / size as f64 - 1.0, cycles, phase);
-    let by = [1.0, 2.0 / length, 4.0 / (length * length)];
-    [0, 1, 2].map(|order| (0..size).map(|cell| by[order] * at(cell)[order]).collect())
+    let at = |half: usize| test_function(half as f64 / size as f64 - 1.0, cycles, phase);
+    let cell = length / size as f64;
+    let mean = |order: usize, by: f64| {
+        (0..size).map(|index| by * (at(2 * index + 2)[order] - at(2 * index)[order]) / cell).collect()
+    };
+    [(0..size).map(|index| at(2 * index + 1)[0]).collect(), mean(0, 1.0), mean(1, 2.0 / length)]
 }
 
 /// (1 − s²)⁴ cos(kπs − phase) and its first two derivatives by s.

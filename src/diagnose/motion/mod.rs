@@ -111,7 +111,7 @@ impl Motion {
 
     /// With the readings of q̇, where they are a measurement of their own.
     fn with_velocity(self) -> Motion {
-        let Some(kinematics) = Kinematics::of(&self.pieces, &self.tracks) else { return self };
+        let Some(kinematics) = Kinematics::of(&self.pieces, &self.tracks, self.sensors) else { return self };
         if kinematics.is_derivative || !kinematics.is_velocity() {
             return Motion { kinematics: Some(kinematics), ..self };
         }

@@ -48,10 +48,10 @@ impl Clock {
         let late = |[delay, std]: [f64; 2]| delay.abs() > SURE * std && delay.abs() > 0.5 * self.sample_time;
         let milliseconds = |[delay, std]: [f64; 2]| format!("{:.2} ± {:.2} ms", 1e3 * delay.abs(), 1e3 * std);
         let mut said = Vec::new();
-        match self.is_velocity {
-            Some(false) => said.push("qd is not the derivative of q: it is left out; check its column and unit".into()),
-            Some(true) if self.is_derivative == Some(true) => {
-                said.push("qd is computed from q: it is no second measurement".into());
+        match (self.is_derivative, self.is_velocity) {
+            (Some(true), _) => said.push("qd is computed from q: it is no second measurement".into()),
+            (_, Some(false)) => {
+                said.push("qd is not the derivative of q: it is left out; check its column and unit".into())
             }
             _ => {}
         }
