@@ -178,7 +178,8 @@ fn eligible(record: &Record, equation: &Equation) -> Vec<Term> {
     let is_delay = |term: &Term| matches!(term, Term::Effect(Effect::ExcitationDelay { .. }));
     let all = candidates(&record.expressions).into_iter();
     let scales = |term: &Term| !record.forced && *term == Term::Inertia;
-    all.filter(|term| !is_delay(term) && !scales(term) && !(is_output && record.uses_excitation(*term))).collect()
+    let is_barred = |term: &Term| is_delay(term) || scales(term) || is_output && record.uses_excitation(*term);
+    all.filter(|term| !is_barred(term)).collect()
 }
 
 fn column(record: &Record, equation: &Equation, term: Term) -> (Column, bool) {

@@ -160,7 +160,7 @@ pub(super) fn period(motions: &[Motion]) -> f64 {
         let sums = motions.iter().map(|motion| motion.powers(cutoff)).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
         period = TAU * (sums[0] / sums[1]).sqrt();
         let next = RESOLVED * TAU / period;
-        if !(next < 0.97 * cutoff) {
+        if next.is_nan() || next >= 0.97 * cutoff {
             break;
         }
         cutoff = next;

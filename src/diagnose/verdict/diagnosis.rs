@@ -239,7 +239,8 @@ impl Entry {
         if self.contender.resemblance >= TRAP {
             return Some(Doubt::Trap);
         }
-        (!(coefficient.abs() > SURE * std)).then_some(Doubt::Uncertain)
+        let is_sure = coefficient.abs() > SURE * std;
+        (!is_sure).then_some(Doubt::Uncertain)
     }
 
     /// What its gain leaves to doubt.

@@ -79,8 +79,8 @@ impl Kinematics {
             (0..3).for_each(|column| self.covariance[row][column] -= across[row] * across[column] / variance);
         }
         // the same with less rounding where the state was hardly known
-        for row in 0..3 {
-            self.covariance[channel][row] = across[row] * noise / variance;
+        for (row, across) in across.iter().enumerate() {
+            self.covariance[channel][row] = across * noise / variance;
             self.covariance[row][channel] = self.covariance[channel][row];
         }
         Reading { innovation, variance, across }

@@ -94,9 +94,9 @@ impl Smoother {
     }
 
     fn begin(&mut self, readings: [f64; 2]) {
-        for channel in 0..2 {
+        for (channel, reading) in readings.into_iter().enumerate() {
             if let Some(noise) = self.noise[channel] {
-                self.present.state[channel] = readings[channel];
+                self.present.state[channel] = reading;
                 self.present.covariance[channel][channel] = noise;
             }
         }
@@ -121,9 +121,9 @@ impl Smoother {
         for past in self.held() {
             past.across = past.across.map(|row| carried(row, dt));
         }
-        for channel in 0..2 {
+        for (channel, reading) in readings.into_iter().enumerate() {
             if let Some(noise) = self.noise[channel] {
-                self.measure(channel, readings[channel], noise);
+                self.measure(channel, reading, noise);
             }
         }
     }
