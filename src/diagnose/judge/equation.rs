@@ -110,7 +110,10 @@ impl Equation {
         let weights = vec![1.0; column.len()];
         let Some(solution) = Normal::of(&columns, column, &weights).solve() else { return 0.0 };
         let left = regression::residuals(&columns, column, &solution);
-        let variance = spread(column, self.functions[which]).powi(2);
+        // a column that hardly varies, a constant force, is measured by its size
+        let size = column.iter().map(|value| value * value).sum::<f64>() / column.len().max(1) as f64;
+        let spread = spread(column, self.functions[which]).powi(2);
+        let variance = if spread > CONSTANT * size { spread } else { size };
         let mean = left.iter().map(|value| value * value).sum::<f64>() / column.len().max(1) as f64;
         if variance > 0.0 { 1.0 - mean / variance } else { 1.0 }
     }
@@ -187,6 +190,9 @@ pub(in crate::diagnose) fn delay_of(term: Term) -> Option<f64> {
         _ => None,
     }
 }
+
+/// Variance ÷ mean square of a column below which it is a constant.
+const CONSTANT: f64 = 1e-12;
 
 /// Std of a column's rows, each test function about its own mean: a constant force is no motion to be explained.
 fn spread(rows: &[f64], functions: usize) -> f64 {

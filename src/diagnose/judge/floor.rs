@@ -42,7 +42,7 @@ fn noisy(record: &Record, force: f64, seed: u64) -> Vec<Motion> {
 
 /// RMS of what the noise adds to a law's residual ÷ std of its target, by window length; `errors` are the law's.
 ///
-/// No sensor leaves more than is left: where the floor would be above an error, it is that error.
+/// No sensor leaves more than is left: where the floor would be above an error, it is that error. NaN where there is none.
 pub(in crate::diagnose) fn floor(
     equation: &Equation,
     solutions: &[Vec<f64>; COUNT],
@@ -50,7 +50,7 @@ pub(in crate::diagnose) fn floor(
     errors: &[f64; COUNT],
 ) -> [f64; COUNT] {
     let floors = propagated(equation, solutions, others);
-    std::array::from_fn(|which| floors[which].min(errors[which]))
+    std::array::from_fn(|which| if errors[which].is_nan() { f64::NAN } else { floors[which].min(errors[which]) })
 }
 
 fn propagated(equation: &Equation, solutions: &[Vec<f64>; COUNT], others: &[Equation]) -> [f64; COUNT] {

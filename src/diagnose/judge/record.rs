@@ -85,7 +85,7 @@ impl Record {
         Some([half(0)?, half(1)?])
     }
 
-    fn column(&self, order: usize, values: impl FnMut(&(usize, usize, Nodes)) -> Vec<f64>, factor: f64) -> Column {
+    fn column(&self, order: usize, values: impl FnMut(&(usize, usize, Nodes)) -> Vec<[f64; 2]>, factor: f64) -> Column {
         let mut column = [0, 1, 2].map(|which| vec![0.0; self.windows[which].rows()]);
         self.add(order, &self.nodes.iter().map(values).collect(), factor, &mut column);
         column
@@ -102,7 +102,7 @@ impl Record {
             let own = |(index, number, nodes): &(usize, usize, Nodes)| {
                 let motion = &self.motions[*index];
                 let taken = if motion.tracks[*number].read[1] { 1 } else { 0 };
-                if taken == channel { nodes.remainder(motion, *number, channel) } else { vec![0.0; nodes.cells()] }
+                if taken == channel { nodes.remainder(motion, *number, channel) } else { vec![[0.0; 2]; nodes.cells()] }
             };
             self.add(order, &self.nodes.iter().map(own).collect(), factor, &mut column);
         }

@@ -31,8 +31,8 @@ pub(super) fn cell(period: f64) -> f64 {
     LENGTHS[0] * period / CELLS[0] as f64
 }
 
-/// Integrals over cells of all pieces.
-pub(super) type Cells = Vec<Vec<f64>>;
+/// Integrals over cells of all pieces, and their first moments about the middles of the cells, in cells.
+pub(super) type Cells = Vec<Vec<[f64; 2]>>;
 
 /// Windows of one length over all pieces, end to end.
 #[derive(Clone, Debug)]
@@ -46,7 +46,7 @@ pub(in crate::diagnose) struct Windows {
     /// Middle of every window on the axis of all pieces end to end, s.
     pub(in crate::diagnose) centres: Vec<f64>,
     /// By test function, φ, φ' and φ'' in the cells.
-    weights: Vec<[Vec<f64>; 3]>,
+    weights: Vec<[Vec<[f64; 2]>; 3]>,
 }
 
 impl Windows {
@@ -84,21 +84,27 @@ impl Windows {
         for ((piece, first), rows) in self.places.iter().zip(rows.chunks_exact_mut(self.functions)) {
             for (weights, row) in self.weights.iter().zip(rows) {
                 let weights = &weights[order];
-                let values = &cells[*piece][*first..*first + weights.len()];
-                *row += factor * weights.iter().zip(values).map(|(weight, value)| weight * value).sum::<f64>();
+                let cells = &cells[*piece][*first..*first + weights.len()];
+                let one = |([mean, rise], [value, moment]): (&[f64; 2], &[f64; 2])| mean * value + rise * moment;
+                *row += factor * weights.iter().zip(cells).map(one).sum::<f64>();
             }
         }
     }
 }
 
-/// φ at the middles of `size` cells, the means of φ' and φ'' over them: what a derivative of φ weighs a constant with is then 0, as it must be.
-fn tabulated(size: usize, length: f64, cycles: f64, phase: f64) -> [Vec<f64>; 3] {
-    let at = |half: usize| test_function(half as f64 / size as f64 - 1.0, cycles, phase);
+/// φ, φ' and φ'' in `size` cells, each by its mean over the cell and its rise. φ is a straight line in every cell, so that φ' is what it has
+/// there and ∫ φ q̈ dt = −∫ φ' q̇ dt exactly, however rough q̈ is.
+fn tabulated(size: usize, length: f64, cycles: f64, phase: f64) -> [Vec<[f64; 2]>; 3] {
+    let at = |edge: usize| test_function(2.0 * edge as f64 / size as f64 - 1.0, cycles, phase);
     let cell = length / size as f64;
-    let mean = |order: usize, by: f64| {
-        (0..size).map(|index| by * (at(2 * index + 2)[order] - at(2 * index)[order]) / cell).collect()
+    let slope = |order: usize, by: f64| {
+        (0..size).map(|index| [by * (at(index + 1)[order] - at(index)[order]) / cell, 0.0]).collect()
     };
-    [(0..size).map(|index| at(2 * index + 1)[0]).collect(), mean(0, 1.0), mean(1, 2.0 / length)]
+    let line = |index: usize| {
+        let [from, to] = [at(index)[0], at(index + 1)[0]];
+        [0.5 * (from + to), to - from]
+    };
+    [(0..size).map(line).collect(), slope(0, 1.0), slope(1, 2.0 / length)]
 }
 
 /// (1 − s²)⁴ cos(kπs − phase) and its first two derivatives by s.
@@ -142,7 +148,8 @@ mod tests {
             let windows = Windows::new(which, &[count], cell, 0.0);
             let rows = |order: usize, value: &dyn Fn(f64) -> f64| {
                 let mut rows = vec![0.0; windows.rows()];
-                windows.add(order, &vec![(0..count).map(|k| cell * value(at(k))).collect()], 1.0, &mut rows);
+                let cells = vec![(0..count).map(|k| [cell * value(at(k)), 0.0]).collect()];
+                windows.add(order, &cells, 1.0, &mut rows);
                 rows
             };
             let moved = rows(2, &|t| (omega * t + 0.3).sin());

@@ -218,7 +218,8 @@ fn likeliest_cutoff(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> f64 
     let duration = |piece: &Piece| piece.t[piece.len() - 1] - piece.t[0];
     let distance = pieces.iter().map(|piece| duration(piece) / (piece.len() - 1) as f64).fold(f64::INFINITY, f64::min);
     let top = NYQUIST * PI / distance;
-    let least = 2.0 * TAU / pieces.iter().map(duration).fold(0.0, f64::max);
+    // a motion slower than the parts that are looked at is a polynomial in each of them, whatever the cutoff
+    let least = 2.0 * TAU / parts.iter().map(duration).fold(0.0, f64::max);
     let deviance = |cutoff: &f64| -> f64 {
         let sensors = Sensors { cutoff: *cutoff, ..sensors };
         let of = |piece: &Piece| Spline::new(&piece.t, sensors, read, [&[], &[]]).deviance(readings(piece, read));

@@ -75,16 +75,22 @@ impl Nodes {
         edges.map(mean).collect()
     }
 
-    /// Integrals over the cells.
-    pub(in crate::diagnose) fn integrals(&self, values: &[f64]) -> Vec<f64> {
-        values.chunks_exact(self.per_cell).map(|values| values.iter().sum::<f64>() * self.width).collect()
+    /// Integrals over the cells, and their first moments about the middles, in cells: the test functions are straight lines over a cell.
+    pub(in crate::diagnose) fn integrals(&self, values: &[f64]) -> Vec<[f64; 2]> {
+        let count = self.per_cell as f64;
+        let sum = |values: &[f64]| {
+            let moment = |(index, value): (usize, &f64)| ((index as f64 + 0.5) / count - 0.5) * value;
+            let moment: f64 = values.iter().enumerate().map(moment).sum();
+            [values.iter().sum::<f64>() * self.width, moment * self.width]
+        };
+        values.chunks_exact(self.per_cell).map(sum).collect()
     }
 
     /// What the readings of a channel have beyond the smoothed motion, integrated over the cells: with it the smoothed motion is the
     /// measured one again, without what smoothing may take from it.
-    pub(in crate::diagnose) fn remainder(&self, motion: &Motion, number: usize, channel: usize) -> Vec<f64> {
+    pub(in crate::diagnose) fn remainder(&self, motion: &Motion, number: usize, channel: usize) -> Vec<[f64; 2]> {
         let (piece, track, sensors) = (&motion.pieces[number], &motion.tracks[number], &motion.sensors);
-        let mut sums = vec![0.0; self.cells()];
+        let mut sums = vec![[0.0; 2]; self.cells()];
         let Some(values) = readings(piece, track.read)[channel] else { return sums };
         let last = piece.len() - 1;
         for (k, (value, state)) in values.iter().zip(&track.states).enumerate() {
@@ -92,7 +98,8 @@ impl Nodes {
             let sure = track.share * weight / track.doubt[channel].get(k).copied().unwrap_or(1.0);
             let place = (piece.t[k] - sensors.lag(channel) - self.start) / self.cell();
             let Some(sum) = sums.get_mut(place as usize).filter(|_| place >= 0.0) else { continue };
-            *sum += sure * (value / sensors.unit(channel) - sensors.reading(channel, state));
+            let beyond = sure * (value / sensors.unit(channel) - sensors.reading(channel, state));
+            *sum = [sum[0] + beyond, sum[1] + beyond * (place.fract() - 0.5)];
         }
         sums
     }
