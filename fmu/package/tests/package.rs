@@ -115,7 +115,7 @@ fn text_in_the_xml_is_escaped() {
 fn what_cannot_be_packed_is_refused() {
     let refused = identifier("no name", &Model::cubic_library());
     assert!(matches!(refused, Err(FmuError::Package(PackageError::Name { .. }))));
-    let no_inertia = Model::of("m", [(Term::power(1, 0), Given::Fit)]);
-    assert!(matches!(identifier("A", &no_inertia), Err(FmuError::Model(_))));
+    let numbers = Model::of("m", [(Term::Inertia, Given::Known(1.0)), (Term::power(1, 0), Given::Known(2.0))]);
+    assert!(matches!(identifier("A", &numbers), Err(FmuError::Model(_))));
     assert!(matches!(plant("name = 1"), Err(FmuError::Law(_))));
 }

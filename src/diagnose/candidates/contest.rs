@@ -101,7 +101,8 @@ impl Arena<'_> {
     /// The same where candidates and target have each half of the readings.
     fn contest_apart(&self, all: &[Variant]) -> Vec<Contender> {
         let Some([even, odd]) = self.record.halves().filter(|_| !all.is_empty()) else { return Vec::new() };
-        let equation = self.equation.for_motion(&odd);
+        let own = self.equation;
+        let equation = Equation::new(&even, &own.terms, own.target, own.timing, true).for_motion(&odd);
         let base = self.folds.judge(&equation);
         Arena { record: &even, equation: &equation, base: &base, ..*self }.contest(all)
     }

@@ -9,6 +9,9 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+/// Error ÷ floor below which the noise cannot be what its differences say: they tell it to a factor of two.
+const FAR: f64 = 0.5;
+
 /// Times that noise is drawn.
 const DRAWS: u64 = 2;
 
@@ -42,7 +45,8 @@ fn noisy(record: &Record, force: f64, seed: u64) -> Vec<Motion> {
 
 /// RMS of what the noise adds to a law's residual ÷ std of its target, by window length; `errors` are the law's.
 ///
-/// No sensor leaves more than is left: where the floor would be above an error, it is that error. NaN where there is none.
+/// No sensor leaves more than is left: a floor above an error is that error. Where it is far above, the noise was taken for louder than it is
+/// (a coarsely sampled motion looks so), and all of it is lowered. NaN where there is no error.
 pub(in crate::diagnose) fn floor(
     equation: &Equation,
     solutions: &[Vec<f64>; COUNT],
@@ -50,7 +54,12 @@ pub(in crate::diagnose) fn floor(
     errors: &[f64; COUNT],
 ) -> [f64; COUNT] {
     let floors = propagated(equation, solutions, others);
-    std::array::from_fn(|which| if errors[which].is_nan() { f64::NAN } else { floors[which].min(errors[which]) })
+    let ratios = errors.iter().zip(floors).map(|(error, floor)| error / floor).filter(|ratio| ratio.is_finite());
+    let lowest = ratios.fold(1.0, f64::min);
+    let loudness = if lowest < FAR { lowest } else { 1.0 };
+    std::array::from_fn(
+        |which| if errors[which].is_nan() { f64::NAN } else { (loudness * floors[which]).min(errors[which]) },
+    )
 }
 
 fn propagated(equation: &Equation, solutions: &[Vec<f64>; COUNT], others: &[Equation]) -> [f64; COUNT] {

@@ -103,7 +103,7 @@ impl Motion {
         let noise = noise_levels(&pieces);
         let blank = Sensors { noise, lag: 0.0, scale: 1.0, cutoff: 1.0 };
         let single = [has[0], has[1] && !has[0]];
-        let sensors = Sensors { cutoff: likeliest_cutoff(&pieces, blank, single), ..blank };
+        let sensors = likeliest(&pieces, blank, single);
         let tracks = follow(&pieces, sensors, single);
         let motion = Motion { kinematics: None, sensors, pieces, tracks };
         Some(if has == [true, true] { motion.with_velocity() } else { motion })
@@ -118,7 +118,7 @@ impl Motion {
         let both = [true, true];
         let scale = if (kinematics.scale - 1.0).abs() < TRUE_TO_SCALE { 1.0 } else { kinematics.scale };
         let sensors = Sensors { lag: kinematics.lag, scale, ..self.sensors };
-        let sensors = Sensors { cutoff: likeliest_cutoff(&self.pieces, sensors, both), ..sensors };
+        let sensors = likeliest(&self.pieces, sensors, both);
         let tracks = follow(&self.pieces, sensors, both);
         Motion { kinematics: Some(kinematics), sensors, tracks, ..self }
     }
@@ -212,8 +212,9 @@ fn doubt(piece: &Piece, track: &Track, sensors: Sensors, channel: usize) -> Vec<
     distances.iter().map(factor).collect()
 }
 
-/// The cutoff under which the readings are likeliest, with a margin.
-fn likeliest_cutoff(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> f64 {
+/// The sensors with the cutoff under which the readings are likeliest, with a margin, and the noise level that suits them there: differences
+/// hold some of the motion, much of one that is sampled coarsely.
+fn likeliest(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> Sensors {
     let parts = thinned(pieces, LOOKED_AT);
     let duration = |piece: &Piece| piece.t[piece.len() - 1] - piece.t[0];
     let distance = pieces.iter().map(|piece| duration(piece) / (piece.len() - 1) as f64).fold(f64::INFINITY, f64::min);
@@ -227,5 +228,12 @@ fn likeliest_cutoff(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> f64 
     };
     let cutoffs = std::iter::successors(Some(top), |cutoff| Some(cutoff / RATIO)).take_while(|cutoff| *cutoff > least);
     let best = cutoffs.map(|cutoff| (deviance(&cutoff), cutoff)).min_by(|a, b| a.0.total_cmp(&b.0));
-    best.map_or(top, |(_, cutoff)| (MARGIN * cutoff).min(top))
+    let cutoff = best.map_or(top, |(_, cutoff)| cutoff);
+    let found = Sensors { cutoff, ..sensors };
+    let surprise = |piece: &Piece| Spline::new(&piece.t, found, read, [&[], &[]]).surprise(readings(piece, read));
+    let [squares, count] = parts.iter().map(surprise).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+    let loudness = (squares / count).sqrt().min(1.0);
+    let noise =
+        [0, 1].map(|channel| if read[channel] { loudness * sensors.noise[channel] } else { sensors.noise[channel] });
+    Sensors { cutoff: (MARGIN * cutoff).min(top), noise, ..sensors }
 }

@@ -102,20 +102,19 @@ impl Spline {
 
     /// −2 ln likelihood of the readings, a constant apart, under the noise level up to the given one that suits them best.
     pub(crate) fn deviance(&self, readings: [Option<&[f64]>; 2]) -> f64 {
+        let [squares, count] = self.surprise(readings);
+        let loudness = (squares / count).min(1.0);
+        squares / loudness + count * loudness.ln() + self.log_determinant
+    }
+
+    /// Σ innovation² ÷ variance, and how many innovations there are.
+    pub(crate) fn surprise(&self, readings: [Option<&[f64]>; 2]) -> [f64; 2] {
         let (_, innovations) = self.filter(readings);
-        let squares = innovations
-            .iter()
-            .zip(&self.steps)
-            .map(|(e, step)| e[0] * e[0] * step.precision[0] + e[1] * e[1] * step.precision[1]);
-        let count =
-            self.steps.iter().map(|step| step.precision.iter().filter(|p| **p > 0.0).count()).sum::<usize>() as f64;
-        let squares = squares.sum::<f64>();
-        // differences of the readings hold all of the noise and some of the motion: it is not louder than they say
-        if squares > count {
-            squares + self.log_determinant
-        } else {
-            count * (1.0 + (squares / count).ln()) + self.log_determinant
-        }
+        let steps = innovations.iter().zip(&self.steps);
+        steps.fold([0.0; 2], |[squares, count], (e, step)| {
+            let own = e[0] * e[0] * step.precision[0] + e[1] * e[1] * step.precision[1];
+            [squares + own, count + step.precision.iter().filter(|p| **p > 0.0).count() as f64]
+        })
     }
 
     /// The smoothed states.

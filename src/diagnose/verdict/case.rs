@@ -1,6 +1,6 @@
 //! Recordings under judgement, and a law's standing on them.
 
-use super::errors::{WindowError, are_adequate, errors};
+use super::errors::{TIE, WindowError, are_adequate, errors};
 use super::law::Law;
 use crate::diagnose::judge::{
     Blocks, COUNT, Equation, Estimate, Folds, HeldOut, Record, Target, Timing, delay_of, disturbed, estimate, floor,
@@ -217,6 +217,13 @@ impl Case {
         let differs = |index: &usize| (coefficients[*index] - law.coefficients[*index]).abs() > BIASED * std[*index];
         let biased: Vec<Term> =
             (0..std.len()).filter(|index| std[*index] > 0.0).filter(differs).map(|i| law.terms[i]).collect();
-        (!biased.is_empty()).then(|| Law { coefficients, std, biased, ..law.clone() })
+        if biased.is_empty() {
+            return None;
+        }
+        // halves of a coarsely sampled motion no longer show it: the judge must see no difference
+        let unbiased = Law { coefficients, std, biased, ..law.clone() };
+        let [own, other] = [self.errors_as_given(&unbiased)?.0, self.errors_as_given(law)?.0];
+        let worse = own.iter().zip(&other).map(|(own, other)| (own.after / other.after).ln());
+        (worse.filter(|worse| !worse.is_nan()).sum::<f64>() <= TIE * COUNT as f64).then_some(unbiased)
     }
 }

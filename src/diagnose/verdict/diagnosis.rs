@@ -6,7 +6,7 @@
 //! std swallows.
 
 use super::case::{Case, Standing};
-use super::errors::{ADEQUATE, WindowError, are_adequate, errors};
+use super::errors::{ADEQUATE, TIE, WindowError, are_adequate, errors};
 use super::law::Law;
 use super::remainder;
 use crate::diagnose::candidates::{Contender, contest};
@@ -24,9 +24,6 @@ const LARGE: f64 = 0.816;
 
 /// Ratio of errors in one window that disqualifies: 2 % worse.
 const WORSE: f64 = 1.02;
-
-/// Score, for each window length, by which two candidates are equally good: 5 % of the error.
-pub(in crate::diagnose) const TIE: f64 = 0.05;
 
 /// Most candidates in a tie.
 const TIED: usize = 3;

@@ -2,6 +2,9 @@
 
 use crate::diagnose::judge::{COUNT, HeldOut, Record};
 
+/// Score, for each window length, by which two candidates are equally good: 5 % of the error.
+pub(in crate::diagnose) const TIE: f64 = 0.05;
+
 /// Error ÷ what the sensors alone would leave, up to which a law is adequate.
 pub const ADEQUATE: f64 = 1.25;
 

@@ -1,8 +1,8 @@
 //! Effects added to a law until nothing is missing that the catalogue has.
 
 use super::case::{Case, Standing};
-use super::diagnosis::{Diagnosis, Finding, TIE, diagnose};
-use super::errors::WindowError;
+use super::diagnosis::{Diagnosis, Finding, diagnose};
+use super::errors::{TIE, WindowError};
 use super::law::Law;
 use crate::diagnose::candidates::{contender, same_effect};
 use crate::diagnose::judge::{COUNT, PRINCIPAL, delay_of};

@@ -1,8 +1,8 @@
 //! A model put to recordings: its form with its best coefficients, its open inner parameters and "maybe" terms decided.
 
 use super::case::{Case, Standing};
-use super::diagnosis::{Diagnosis, TIE, diagnose};
-use super::errors::WindowError;
+use super::diagnosis::{Diagnosis, diagnose};
+use super::errors::{TIE, WindowError};
 use super::improve::{Addition, Improvement, add, improve};
 use super::law::Law;
 use super::sharpen::sharpened;

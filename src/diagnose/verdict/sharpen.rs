@@ -1,7 +1,7 @@
 //! The likelihood sharpens what the judge has named: where all error is the sensors' noise it is the best there is.
 
 use super::case::Case;
-use super::diagnosis::TIE;
+use super::errors::TIE;
 use super::law::Law;
 use crate::diagnose::fit::{Evidence, Form, refit};
 use crate::diagnose::judge::COUNT;

@@ -1,7 +1,7 @@
 //! How the sensors of a record keep time.
 
 use super::case::Case;
-use super::diagnosis::TIE;
+use super::errors::TIE;
 use super::law::Law;
 use crate::diagnose::judge::{COUNT, delay_of};
 
