@@ -212,8 +212,7 @@ fn doubt(piece: &Piece, track: &Track, sensors: Sensors, channel: usize) -> Vec<
     distances.iter().map(factor).collect()
 }
 
-/// The sensors with the cutoff under which the readings are likeliest, with a margin, and the noise level that suits them there: differences
-/// hold some of the motion, much of one that is sampled coarsely.
+/// The sensors with the cutoff under which the readings are likeliest, with a margin.
 fn likeliest(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> Sensors {
     let parts = thinned(pieces, LOOKED_AT);
     let duration = |piece: &Piece| piece.t[piece.len() - 1] - piece.t[0];
@@ -229,11 +228,5 @@ fn likeliest(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> Sensors {
     let cutoffs = std::iter::successors(Some(top), |cutoff| Some(cutoff / RATIO)).take_while(|cutoff| *cutoff > least);
     let best = cutoffs.map(|cutoff| (deviance(&cutoff), cutoff)).min_by(|a, b| a.0.total_cmp(&b.0));
     let cutoff = best.map_or(top, |(_, cutoff)| cutoff);
-    let found = Sensors { cutoff, ..sensors };
-    let surprise = |piece: &Piece| Spline::new(&piece.t, found, read, [&[], &[]]).surprise(readings(piece, read));
-    let [squares, count] = parts.iter().map(surprise).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
-    let loudness = (squares / count).sqrt().min(1.0);
-    let noise =
-        [0, 1].map(|channel| if read[channel] { loudness * sensors.noise[channel] } else { sensors.noise[channel] });
-    Sensors { cutoff: (MARGIN * cutoff).min(top), noise, ..sensors }
+    Sensors { cutoff: (MARGIN * cutoff).min(top), ..sensors }
 }

@@ -100,21 +100,17 @@ impl Spline {
         spline
     }
 
-    /// −2 ln likelihood of the readings, a constant apart, under the noise level up to the given one that suits them best.
+    /// −2 ln likelihood of the readings, a constant apart, under the noise level up to the given one that suits them best: differences of
+    /// the readings hold all of the noise and some of the motion.
     pub(crate) fn deviance(&self, readings: [Option<&[f64]>; 2]) -> f64 {
-        let [squares, count] = self.surprise(readings);
-        let loudness = (squares / count).min(1.0);
-        squares / loudness + count * loudness.ln() + self.log_determinant
-    }
-
-    /// Σ innovation² ÷ variance, and how many innovations there are.
-    pub(crate) fn surprise(&self, readings: [Option<&[f64]>; 2]) -> [f64; 2] {
         let (_, innovations) = self.filter(readings);
         let steps = innovations.iter().zip(&self.steps);
-        steps.fold([0.0; 2], |[squares, count], (e, step)| {
+        let [squares, count] = steps.fold([0.0; 2], |[squares, count], (e, step)| {
             let own = e[0] * e[0] * step.precision[0] + e[1] * e[1] * step.precision[1];
             [squares + own, count + step.precision.iter().filter(|p| **p > 0.0).count() as f64]
-        })
+        });
+        let loudness = (squares / count).min(1.0);
+        squares / loudness + count * loudness.ln() + self.log_determinant
     }
 
     /// The smoothed states.
