@@ -1,14 +1,13 @@
 //! A law whose output is F: a machine imposes q(t), and what the specimen answers is measured.
 //!
 //! q(t) = initial q + x(t), x the scenario's excitation as a function of time, not held, and q̇ = ẋ. The sine is that
-//! of the stage at t, so that a stage
-//! with another amplitude or frequency begins with a jump of q. F = Σ θ_j f_j; internal states begin with nothing
-//! stored and are integrated along the motion.
+//! of the stage at t, so that a stage with another amplitude or frequency begins with a jump of q. F = Σ θ_j f_j;
+//! internal states begin with nothing stored and are integrated along the motion.
 
 use super::check::ScenarioError;
 use super::excitation::ExcitationKind;
 use super::noise::{Stream, standard_normal};
-use super::plant::Reading;
+use super::reading::Reading;
 use super::scenario::Scenario;
 use crate::law::{Hold, State, Term, Trajectory, term_series};
 use serde::{Deserialize, Serialize};

@@ -14,6 +14,7 @@ mod noise;
 mod parametric;
 mod plant;
 mod random;
+mod reading;
 mod scenario;
 
 pub use builtin::{Builtin, UnknownBuiltin};
@@ -22,5 +23,6 @@ pub use excitation::{Excitation, ExcitationKind};
 pub use hidden::Hidden;
 pub use imposed::Specimen;
 pub use parametric::{LawParameter, ParametricLaw, ParametricLawError};
-pub use plant::{Plant, PlantError, Reading, SimulateError, Truth, record};
+pub use plant::{Plant, PlantError, SimulateError, Truth, record};
+pub use reading::Reading;
 pub use scenario::{Scenario, SensorNoise, Stage};

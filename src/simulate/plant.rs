@@ -8,23 +8,11 @@ use super::check::ScenarioError;
 use super::excitation::ExcitationKind;
 use super::imposed;
 use super::noise::{Stream, standard_normal};
+use super::reading::Reading;
 use super::scenario::Scenario;
 use crate::law::{Dynamics, Effect, History, MAX_MEMORY, Motion, Phase, State, Term};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
-
-/// What the sensors and the actuator show.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Reading {
-    /// Time, s.
-    pub t: f64,
-    /// Displacement with its sensor noise.
-    pub q: f64,
-    /// Velocity with its sensor noise.
-    pub qd: f64,
-    /// The excitation that is held from this instant on, with its sensor noise.
-    pub excitation: f64,
-}
 
 /// What no estimator may see.
 #[derive(Clone, Copy, Debug, PartialEq)]

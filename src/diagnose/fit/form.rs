@@ -3,7 +3,7 @@
 use super::means::is_series;
 use super::outcome::Sums;
 use crate::evidence::Noise;
-use crate::law::{Catalogue, Expression, State, Term};
+use crate::law::{Expression, State, Term};
 use nalgebra::DMatrix;
 
 /// A form of law: which terms it has, and what is known of each coefficient.
@@ -82,24 +82,6 @@ impl Form {
         form.held.remove(index);
         form.open.remove(index);
         form
-    }
-
-    /// The effect id of a term; the user's name of an expression.
-    pub fn effect_name(&self, term: Term) -> String {
-        match term {
-            Term::Expression(_) => self.term_name(term),
-            _ => Catalogue::of(term).map_or_else(|| term.name(), |entry| entry.id.into()),
-        }
-    }
-
-    /// The canonical name of a term; the user's name of an expression.
-    pub fn term_name(&self, term: Term) -> String {
-        match term {
-            Term::Expression(index) => {
-                self.expressions.get(usize::from(index)).map_or_else(|| term.name(), |own| own.name().into())
-            }
-            _ => term.name(),
-        }
     }
 
     pub(super) fn inertia(&self) -> Option<usize> {

@@ -7,7 +7,7 @@
 
 use super::case::{Case, Standing};
 use super::errors::{ADEQUATE, TIE, WindowError, are_adequate, errors};
-use super::law::Law;
+use super::law::{Law, effect_name};
 use super::remainder;
 use crate::diagnose::candidates::{Contender, contest};
 use crate::diagnose::judge::{COUNT, PRINCIPAL, delay_of};
@@ -269,7 +269,7 @@ impl Entry {
             names.zip(effect.inner_values()).collect()
         });
         Candidate {
-            effect: effect_name(term, case),
+            effect: effect_name(term, &case.record.expressions),
             term,
             inner,
             coefficient,
@@ -283,19 +283,9 @@ impl Entry {
     }
 }
 
-/// The effect id of a term; the user's name of an expression.
-fn effect_name(term: Term, case: &Case) -> String {
-    match term {
-        Term::Expression(index) => {
-            case.record.expressions.get(usize::from(index)).map_or_else(|| term.name(), |own| own.name().into())
-        }
-        _ => Catalogue::of(term).map_or_else(|| term.name(), |entry| entry.id.into()),
-    }
-}
-
 /// The smallest effect that the best one contains and is not significantly better than.
 fn smallest(case: &Case, standing: &Standing, entries: &[Entry], best: usize) -> usize {
-    let name = |index: usize| effect_name(entries[index].contender.term, case);
+    let name = |index: usize| effect_name(entries[index].contender.term, &case.record.expressions);
     let larger = name(best);
     let may_stand = |index: usize| {
         let smaller = &entries[index];
@@ -318,8 +308,9 @@ fn ties(case: &Case, entries: &[Entry], winner: usize) -> Vec<Vec<String>> {
     let best = entries[winner].contender.score;
     let near = |entry: &&Entry| entry.doubt.is_none() && (entry.contender.score - best).abs() <= TIE * COUNT as f64;
     let others = entries.iter().enumerate().filter(|(index, entry)| *index != winner && near(entry));
-    let first = std::iter::once(effect_name(entries[winner].contender.term, case));
-    let group: Vec<String> = first.chain(others.map(|(_, entry)| effect_name(entry.contender.term, case))).collect();
+    let first = std::iter::once(effect_name(entries[winner].contender.term, &case.record.expressions));
+    let group: Vec<String> =
+        first.chain(others.map(|(_, entry)| effect_name(entry.contender.term, &case.record.expressions))).collect();
     if group.len() > 1 { vec![group.into_iter().take(TIED).collect()] } else { Vec::new() }
 }
 

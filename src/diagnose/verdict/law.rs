@@ -42,19 +42,24 @@ impl Law {
 
     /// The effect id of a term; the user's name of an expression.
     pub fn effect_name(&self, term: Term) -> String {
-        match term {
-            Term::Expression(_) => self.term_name(term),
-            _ => Catalogue::of(term).map_or_else(|| term.name(), |entry| entry.id.into()),
-        }
+        effect_name(term, &self.expressions)
     }
 
     /// The canonical name of a term; the user's name of an expression.
     pub fn term_name(&self, term: Term) -> String {
-        match term {
-            Term::Expression(index) => {
-                self.expressions.get(usize::from(index)).map_or_else(|| term.name(), |own| own.name().into())
-            }
-            _ => term.name(),
-        }
+        own_name(term, &self.expressions).unwrap_or_else(|| term.name())
+    }
+}
+
+/// The effect id of a term; of an expression the name that the user gave it.
+pub(super) fn effect_name(term: Term, expressions: &[Expression]) -> String {
+    let id = || Catalogue::of(term).map_or_else(|| term.name(), |entry| entry.id.into());
+    own_name(term, expressions).unwrap_or_else(id)
+}
+
+fn own_name(term: Term, expressions: &[Expression]) -> Option<String> {
+    match term {
+        Term::Expression(index) => expressions.get(usize::from(index)).map(|own| own.name().into()),
+        _ => None,
     }
 }

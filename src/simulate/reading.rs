@@ -1,0 +1,16 @@
+//! What a simulated record holds: measured values alone.
+
+use serde::{Deserialize, Serialize};
+
+/// What the sensors and the actuator show.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Reading {
+    /// Time, s.
+    pub t: f64,
+    /// Displacement with its sensor noise.
+    pub q: f64,
+    /// Velocity with its sensor noise.
+    pub qd: f64,
+    /// The excitation that is held from this instant on, with its sensor noise.
+    pub excitation: f64,
+}
