@@ -37,10 +37,6 @@ const RESOLVED: f64 = 10.0;
 /// Smallest noise std ÷ range of a channel: rounding of the numbers in a file.
 const ROUNDED: f64 = 1e-7;
 
-/// How far q̇ ÷ the derivative of q may be from 1 for q̇ to be taken as it is: noise in that derivative lowers their ratio by so much at most,
-/// and a sensor in another unit is farther off.
-const TRUE_TO_SCALE: f64 = 0.05;
-
 /// Distance from the smoothed motion, in robust std, beyond which a single reading is a wild one (one in 10⁹ were the noise Gaussian).
 const WILD: f64 = 6.0;
 
@@ -116,8 +112,7 @@ impl Motion {
             return Motion { kinematics: Some(kinematics), ..self };
         }
         let both = [true, true];
-        let scale = if (kinematics.scale - 1.0).abs() < TRUE_TO_SCALE { 1.0 } else { kinematics.scale };
-        let sensors = Sensors { lag: kinematics.lag, scale, ..self.sensors };
+        let sensors = Sensors { lag: kinematics.lag, scale: kinematics.scale, ..self.sensors };
         let sensors = likeliest(&self.pieces, sensors, both);
         let tracks = follow(&self.pieces, sensors, both);
         Motion { kinematics: Some(kinematics), sensors, tracks, ..self }
