@@ -25,6 +25,9 @@ const RATIO: f64 = 1.5;
 /// Factor by which the likeliest cutoff is raised: one that is too low biases coefficients, one that is too high lets a little more noise in.
 const MARGIN: f64 = 1.5;
 
+/// −2 ln likelihood by which a q̇ that comes late must be likelier than a punctual one, as most are: chance gives it once in 10⁴.
+const LATE: f64 = 15.0;
+
 /// Samples from which the cutoff is chosen, at most.
 const LOOKED_AT: usize = 4000;
 
@@ -50,8 +53,6 @@ pub(super) struct Track {
     pub(super) read: [bool; 2],
     /// Factor on the variance of every reading by channel; empty where none is wild.
     pub(super) doubt: [Vec<f64>; 2],
-    /// For how many samples each reading that is taken stands.
-    pub(super) share: f64,
     /// Position, velocity, acceleration and jerk at every sample.
     pub(super) states: States,
 }
@@ -78,14 +79,7 @@ pub(super) fn readings(piece: &Piece, read: [bool; 2]) -> [Option<&[f64]>; 2] {
 impl Track {
     /// The same readings smoothed another way.
     pub(super) fn resmoothed(&self, piece: &Piece, sensors: Sensors) -> Track {
-        Track { share: self.share, ..track(piece, sensors, self.read, self.doubt.clone()) }
-    }
-}
-
-impl Sensors {
-    /// With the likeliest cutoff itself.
-    pub(super) fn without_margin(self) -> Sensors {
-        Sensors { cutoff: self.cutoff / MARGIN, ..self }
+        track(piece, sensors, self.read, self.doubt.clone())
     }
 }
 
@@ -112,10 +106,26 @@ impl Motion {
             return Motion { kinematics: Some(kinematics), ..self };
         }
         let both = [true, true];
-        let sensors = Sensors { lag: kinematics.lag, scale: kinematics.scale, ..self.sensors };
-        let sensors = likeliest(&self.pieces, sensors, both);
+        let late = Sensors { lag: kinematics.lag, scale: kinematics.scale, ..self.sensors };
+        let late = likeliest(&self.pieces, late, both);
+        let punctual = Sensors { lag: 0.0, ..late };
+        let deviance = |sensors: Sensors| deviance(&self.pieces, sensors, both);
+        let sensors = if deviance(punctual) < deviance(late) + LATE { punctual } else { late };
         let tracks = follow(&self.pieces, sensors, both);
         Motion { kinematics: Some(kinematics), sensors, tracks, ..self }
+    }
+
+    /// The smoothed motion as its sensors would read it without noise.
+    pub(super) fn as_followed(&self) -> Motion {
+        let mut motion = self.clone();
+        for (piece, track) in motion.pieces.iter_mut().zip(&self.tracks) {
+            for (channel, values) in [&mut piece.q, &mut piece.qd].into_iter().enumerate() {
+                let read = |state| self.sensors.unit(channel) * self.sensors.reading(channel, state);
+                let all = || track.states.iter().map(read).collect();
+                *values = values.as_ref().filter(|_| track.read[channel]).map(|_| all()).or_else(|| values.take());
+            }
+        }
+        motion
     }
 
     /// The motion as every second reading shows it, from the first or from the second on.
@@ -125,7 +135,7 @@ impl Motion {
                 let usual = |k: usize| whole.doubt[channel].get(k).copied().unwrap_or(1.0);
                 (0..piece.len()).map(|k| if k % 2 == first { usual(k) } else { UNREAD }).collect()
             });
-            Track { share: 2.0, ..track(piece, self.sensors, whole.read, doubt) }
+            track(piece, self.sensors, whole.read, doubt)
         });
         Motion { tracks: tracks.collect(), ..self.clone() }
     }
@@ -187,7 +197,7 @@ fn follow(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> Vec<Track> {
 fn track(piece: &Piece, sensors: Sensors, read: [bool; 2], doubt: [Vec<f64>; 2]) -> Track {
     let spline = Spline::new(&piece.t, sensors, read, [&doubt[0], &doubt[1]]);
     let states = spline.smooth(readings(piece, read));
-    Track { read, doubt, share: 1.0, states }
+    Track { read, doubt, states }
 }
 
 /// By what factor the variance of each reading is larger than usual; empty where no reading is wild.
@@ -207,6 +217,12 @@ fn doubt(piece: &Piece, track: &Track, sensors: Sensors, channel: usize) -> Vec<
     distances.iter().map(factor).collect()
 }
 
+/// −2 ln likelihood of all readings, a constant apart.
+fn deviance(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> f64 {
+    let of = |piece: &Piece| Spline::new(&piece.t, sensors, read, [&[], &[]]).deviance(readings(piece, read));
+    pieces.iter().map(of).sum()
+}
+
 /// The sensors with the cutoff under which the readings are likeliest, with a margin.
 fn likeliest(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> Sensors {
     let parts = thinned(pieces, LOOKED_AT);
@@ -215,13 +231,9 @@ fn likeliest(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> Sensors {
     let top = NYQUIST * PI / distance;
     // a motion slower than the parts that are looked at is a polynomial in each of them, whatever the cutoff
     let least = 2.0 * TAU / parts.iter().map(duration).fold(0.0, f64::max);
-    let deviance = |cutoff: &f64| -> f64 {
-        let sensors = Sensors { cutoff: *cutoff, ..sensors };
-        let of = |piece: &Piece| Spline::new(&piece.t, sensors, read, [&[], &[]]).deviance(readings(piece, read));
-        parts.iter().map(of).sum()
-    };
+    let at = |cutoff: f64| deviance(&parts, Sensors { cutoff, ..sensors }, read);
     let cutoffs = std::iter::successors(Some(top), |cutoff| Some(cutoff / RATIO)).take_while(|cutoff| *cutoff > least);
-    let best = cutoffs.map(|cutoff| (deviance(&cutoff), cutoff)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let best = cutoffs.map(|cutoff| (at(cutoff), cutoff)).min_by(|a, b| a.0.total_cmp(&b.0));
     let cutoff = best.map_or(top, |(_, cutoff)| cutoff);
     Sensors { cutoff: (MARGIN * cutoff).min(top), ..sensors }
 }
