@@ -14,3 +14,9 @@ pub struct Reading {
     /// The excitation that is held from this instant on, with its sensor noise.
     pub excitation: f64,
 }
+
+/// The columns t, q, q̇ and F of a record, each with one value a reading, SI units.
+pub fn columns(record: &[Reading]) -> [Vec<f64>; 4] {
+    let column = |value: fn(&Reading) -> f64| record.iter().map(value).collect();
+    [column(|own| own.t), column(|own| own.q), column(|own| own.qd), column(|own| own.excitation)]
+}
