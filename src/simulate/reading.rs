@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 pub struct Reading {
     /// Time, s.
     pub t: f64,
-    /// Displacement with its sensor noise.
+    /// Displacement with its sensor noise, m.
     pub q: f64,
-    /// Velocity with its sensor noise.
+    /// Velocity with its sensor noise, m/s.
     pub qd: f64,
-    /// The excitation that is held from this instant on, with its sensor noise.
+    /// The excitation that is held from this instant on, with its sensor noise, N.
     pub excitation: f64,
 }
 
