@@ -1,12 +1,8 @@
 //! One weak equation from one interval of samples.
 
 use super::Variation;
-use crate::law::{Hold, Monomial, Term};
+use crate::law::{GAUSS, Hold, Monomial, Term};
 use serde::{Deserialize, Serialize};
-
-/// Gauss–Legendre points on 0 ≤ x ≤ 1, exact for polynomials of degree 5.
-const GAUSS: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 /// Samples of one interval [T₁, T₂]; all slices are of one length ≥ 3.
 #[derive(Clone, Copy, Debug)]
