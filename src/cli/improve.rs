@@ -2,7 +2,7 @@
 
 use super::diagnose::{self, CandidateReport, TimingReport, WindowReport};
 use super::error::CommandError;
-use super::input::{Input, ModelArguments};
+use super::input::{Input, InputArguments};
 use super::output::{self, Pairs, Written};
 use super::picture::Picture;
 use super::progress::Waiting;
@@ -26,11 +26,8 @@ is left alone: undoing is going back to its file."#;
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
 pub(super) struct Arguments {
-    /// The recordings (CSV with a header, MAT or Parquet), or sections of them: DATA@t0:t1 in seconds
-    #[arg(required = true)]
-    data: Vec<String>,
     #[command(flatten)]
-    model: ModelArguments,
+    input: InputArguments,
     /// Where to write the new model
     #[arg(short, long, value_name = "MODEL2")]
     output: PathBuf,
@@ -100,9 +97,9 @@ impl Found {
 
 /// With --force the new model may take the old one's place, never a recording's; the picture takes neither's.
 fn check_targets(arguments: &Arguments) -> Result<(), CommandError> {
-    let mut inputs = output::files_of(&arguments.data)?;
+    let mut inputs = output::files_of(&arguments.input.data)?;
     output::check_target("-o", &arguments.output, &inputs)?;
-    inputs.push(arguments.model.model.clone());
+    inputs.push(arguments.input.model.model.clone());
     arguments.picture.as_deref().map_or(Ok(()), |path| output::check_target("--picture", path, &inputs))
 }
 
@@ -110,10 +107,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     check_targets(arguments)?;
     let written = Written::check(&arguments.output, arguments.force)?;
     let picture = arguments.picture.as_deref().map(|path| Picture::open(path, arguments.force)).transpose()?;
-    let input = Input::open(&arguments.data, &arguments.model)?;
+    let input = Input::open(&arguments.input.data, &arguments.input.model)?;
     let others = match arguments.validate.is_empty() {
         true => None,
-        false => Some(Input::open(&arguments.validate, &arguments.model)?),
+        false => Some(Input::open(&arguments.validate, &arguments.input.model)?),
     };
     let found = Waiting::on("improving", || find(&input, others.as_ref())).ok_or_else(|| input.undetermined())?;
     written.write(&improved_model(&input.model, &found.law).to_toml())?;

@@ -6,9 +6,13 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::path::Path;
 
-/// Width of the picture, and height of one step and of what is around them, pixels.
+/// Width of the picture, pixels: what a page of text shows unscaled.
 const WIDTH: u32 = 760;
+
+/// Height of one step, pixels: a bar and its title.
 const STEP: u32 = 44;
+
+/// Height of axis and margins, pixels.
 const AROUND: u32 = 70;
 
 /// Ratio between the ends of the axis at most: a floor far below is named at the left end.
