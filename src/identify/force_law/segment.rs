@@ -5,8 +5,8 @@ use super::features::Known;
 use super::smoother::{Instant, LONGEST};
 use super::sums::{Sums, Weight, dot};
 use crate::evidence::System;
-use crate::identify::identifier::Coefficient;
 use crate::identify::problem::Problem;
+use crate::identify::report::Coefficient;
 use crate::identify::settings::Settings;
 use serde::{Deserialize, Serialize};
 
