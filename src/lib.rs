@@ -4,7 +4,7 @@
 //! identifier keeps the equation of motion that explains them, notices when the system switches to another law, and
 //! re-identifies it. Data takes one way through the modules:
 //!
-//! measurement → [`law`] → [`weak`] rows → coefficients → [`evidence`] → switch ([`identify`])
+//! measurement → [`law`] → [`weak`] rows → [`estimation`] → [`evidence`] → switch ([`identify`])
 //!
 //! Terms stand on the left, the excitation on the right, `m q̈ + c q̇ + k₁ q + k₃ q³ = F`.
 
@@ -13,6 +13,7 @@ pub mod cli;
 #[cfg(feature = "cli")]
 pub mod data;
 pub mod diagnose;
+pub mod estimation;
 pub mod evidence;
 #[cfg(feature = "fmu")]
 pub mod fmu;

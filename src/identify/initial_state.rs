@@ -2,7 +2,7 @@
 
 use super::problem::Problem;
 use super::window::Window;
-use crate::evidence::{Filter, Noise};
+use crate::estimation::{Filter, Noise};
 use crate::law::State;
 
 /// The state at the first sample, from that sample and the next alone.

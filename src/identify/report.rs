@@ -1,6 +1,6 @@
 //! What an identifier tells after a step.
 
-use crate::evidence::Missing;
+use crate::estimation::Missing;
 use crate::law::Term;
 use serde::{Deserialize, Serialize};
 

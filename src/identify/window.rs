@@ -2,7 +2,7 @@
 
 use super::sample::Sample;
 use super::settings::Channels;
-use crate::evidence::Observation;
+use crate::estimation::Observation;
 use crate::law::{BandLimited, Drive, Hold, REACH, look_ahead};
 use serde::{Deserialize, Serialize};
 

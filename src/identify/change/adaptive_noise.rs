@@ -3,7 +3,7 @@
 //! Noise differs from sample to sample; what a switch adds to the innovations lasts. Half the mean square of successive differences
 //! (von Neumann, *Ann. Math. Stat.* 12 (1941), 367) hears the one and hardly the other.
 
-use crate::evidence::{Innovation, Noise};
+use crate::estimation::{Innovation, Noise};
 use serde::{Deserialize, Serialize};
 
 /// Samples that count for what is weighed now.

@@ -1,7 +1,7 @@
 //! The law in use, run along with the stream: its innovations, and how uncertain they are by what is not known of the law.
 
 use super::adaptive_noise::AdaptiveNoise;
-use crate::evidence::{Innovation, Noise, Observation, Pass};
+use crate::estimation::{Innovation, Noise, Observation, Pass};
 use crate::identify::library::{KnownLaw, Trials};
 use crate::identify::problem::Problem;
 use crate::identify::segment::{MotionScales, Segment};

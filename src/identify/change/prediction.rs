@@ -1,7 +1,7 @@
 //! The free prediction of eq. (4): the law integrated on its own, and how far the record deviates from it.
 
 use super::law_in_use::LawInUse;
-use crate::evidence::Observation;
+use crate::estimation::Observation;
 use crate::identify::deviation::Deviation;
 use crate::identify::problem::Problem;
 use crate::identify::sample::Sample;

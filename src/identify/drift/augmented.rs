@@ -2,7 +2,7 @@
 //!
 //! After an alarm two stories are told of the record from a while before it: the law switched at the instant that the evidence found, and
 //! the coefficients wander, a random walk of one of several intensities. Each is a filter of the state and the coefficients together
-//! ([`Joint`]), so that each has a likelihood: that of the record, whatever it predicts. A switch makes slow wandering improbable at once,
+//! ([`AugmentedFilter`]), so that each has a likelihood: that of the record, whatever it predicts. A switch makes slow wandering improbable at once,
 //! for the jump is nowhere near what a walk does between two samples; a drift makes any constant law improbable a period or two later. A
 //! walk fast enough to look like a switch speaks for one.
 //!
@@ -10,7 +10,7 @@
 //! whose coefficients have ceased to wander is begun again and again from the likeliest of them, until for some periods it loses nothing: the
 //! coefficients rest.
 
-use crate::evidence::{Channel, Guard, Joint, Noise, Observation, Start, Unknowns};
+use crate::estimation::{AugmentedFilter, Channel, InnovationGate, Noise, Observation, Start, Unknowns};
 use crate::identify::initial_state::first_state;
 use crate::identify::problem::Problem;
 use crate::identify::window::Window;
@@ -90,7 +90,7 @@ pub struct Before<'a> {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AugmentedDrift {
     course: Course,
-    rivals: Vec<Joint>,
+    rivals: Vec<AugmentedFilter>,
     sound: Vec<bool>,
     weights: Vec<f64>,
     reach: Vec<f64>,
@@ -98,7 +98,7 @@ pub struct AugmentedDrift {
     parts: usize,
     period: f64,
     switch: [u64; INSTANTS],
-    guard: Guard,
+    guard: InnovationGate,
     next: u64,
     /// Since which sample the trial speaks for a drift.
     leading_since: Option<u64>,
@@ -114,7 +114,7 @@ impl AugmentedDrift {
         let n = problem.n();
         AugmentedDrift {
             course: Course::Idle,
-            rivals: vec![Joint::new(problem.terms.len(), n); RIVALS],
+            rivals: vec![AugmentedFilter::new(problem.terms.len(), n); RIVALS],
             sound: vec![true; RIVALS],
             weights: vec![0.0; INTENSITIES.len()],
             reach: vec![0.0; n],
@@ -122,7 +122,7 @@ impl AugmentedDrift {
             parts: 1,
             period: 1.0,
             switch: [0; INSTANTS],
-            guard: Guard::default(),
+            guard: InnovationGate::default(),
             next: 0,
             leading_since: None,
             rest: (0, 0),
@@ -168,7 +168,7 @@ impl AugmentedDrift {
         self.weights.fill(0.0);
         (self.noise, self.parts, self.period) = (before.noise, before.parts, before.period);
         (self.switch, self.next) = (before.switch, before.start + 1);
-        (self.course, self.leading_since, self.guard) = (Course::Trial, None, Guard::default());
+        (self.course, self.leading_since, self.guard) = (Course::Trial, None, InnovationGate::default());
     }
 
     /// Takes what is new in the window, a bounded number of samples; returns whether the law is new.

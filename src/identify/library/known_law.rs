@@ -1,6 +1,6 @@
 //! A law of the past: its coefficients θ and their precision Λ on the terms that it has.
 
-use crate::evidence::{Information, Noise, Solution};
+use crate::estimation::{Information, Noise, Solution};
 use serde::{Deserialize, Serialize};
 
 /// A segment's law, as the library takes it.

@@ -4,7 +4,8 @@
 //! Λ = Λ₁ + Λ₂, Λθ = Λ₁θ₁ + Λ₂θ₂. There is room for [`ROOM`] laws; when it is full the one that was least recently in use goes.
 
 use super::known_law::{Estimate, KnownLaw};
-use crate::evidence::{Bank, Belief, Information, Solution, Weighing, either};
+use crate::estimation::{Information, Solution};
+use crate::evidence::{Bank, BayesFactor, GaussianPrior, either};
 use crate::identify::problem::Problem;
 use serde::{Deserialize, Serialize};
 
@@ -32,8 +33,8 @@ pub struct KnownLaws {
     clock: u64,
     latest: KnownLaw,
     solution: Solution,
-    belief: Belief,
-    weighing: Weighing,
+    belief: GaussianPrior,
+    weighing: BayesFactor,
     precision: Vec<f64>,
 }
 
@@ -47,8 +48,8 @@ impl KnownLaws {
             clock: 0,
             latest: KnownLaw::none(n),
             solution: Solution::none(n),
-            belief: Belief::none(n),
-            weighing: Weighing::new(n),
+            belief: GaussianPrior::none(n),
+            weighing: BayesFactor::new(n),
             precision: vec![1.0; n],
         }
     }

@@ -16,7 +16,7 @@
 //! ```
 
 use super::known_law::KnownLaw;
-use crate::evidence::{Noise, Solution};
+use crate::estimation::{Noise, Solution};
 use crate::identify::problem::Problem;
 use crate::law::Term;
 use serde::{Deserialize, Serialize};

@@ -1,11 +1,11 @@
 //! Known laws on trial: the filter of each runs over the record since a stage's start.
 //!
-//! The state is marginalised by the filter, the law's own uncertainty by its covariance (`evidence::Weighing`). A few samples are
+//! The state is marginalised by the filter, the law's own uncertainty by its covariance (`evidence::BayesFactor`). A few samples are
 //! run at a step, shared among the laws, until all have caught up with the stream; then they are weighed against each other and each
 //! against "a law that a switch may lead to".
 
 use super::known_laws::{KnownLaws, ROOM};
-use crate::evidence::{Noise, Pass};
+use crate::estimation::{Noise, Pass};
 use crate::identify::initial_state::first_state;
 use crate::identify::problem::Problem;
 use crate::identify::window::Window;

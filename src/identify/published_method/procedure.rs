@@ -12,7 +12,7 @@
 
 use super::capture::{Capture, complete};
 use super::equations::Equations;
-use crate::evidence::Observation;
+use crate::estimation::Observation;
 use crate::identify::deviation::Deviation;
 use crate::identify::problem::Problem;
 use crate::identify::report::{Coefficient, Output, Status};

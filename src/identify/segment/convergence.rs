@@ -10,7 +10,7 @@
 //! A coefficient is known when its variance is one n-th of what e of eq. (8) allows, or the law is; a law when e is, and it has moved by no
 //! more while its record grew by a tenth.
 
-use crate::evidence::{Information, Solution};
+use crate::estimation::{Information, Solution};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 

@@ -1,6 +1,6 @@
 //! How large the motion is, for priors in the data's own units.
 
-use crate::evidence::{Observation, Pass};
+use crate::estimation::{Observation, Pass};
 use crate::identify::problem::Problem;
 use crate::law::Motion;
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,7 @@
 //! Sensor noise follows the innovations, process noise the likelihood.
 
 use super::state::Segment;
-use crate::evidence::{Channel, Noise, RIVALS, Track};
+use crate::estimation::{Channel, Noise, RIVALS, Track};
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;

@@ -10,7 +10,7 @@ use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
 use super::prior::{InertiaPrior, Prior};
 use super::state::{NOISE_MEMORY, Runs, Segment};
-use crate::evidence::{Noise, Observation, Pass};
+use crate::estimation::{Noise, Observation, Pass};
 use crate::identify::initial_state::first_state;
 use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;

@@ -4,7 +4,7 @@ use super::convergence::Convergence;
 use super::motion_scales::MotionScales;
 use super::prior::InertiaPrior;
 use super::term_selection::TermSelection;
-use crate::evidence::{Information, Lack, Missing, Noise, Pass, Solution};
+use crate::estimation::{Information, Missing, Noise, Pass, ScoreTest, Solution};
 use crate::identify::library::Estimate;
 use crate::identify::problem::Problem;
 use crate::identify::validation::{Constancy, SandwichFactor, Stability};
@@ -43,7 +43,7 @@ pub struct Segment {
     /// The run under way.
     pub(super) run: Run,
     /// Effects that the law lacks, tested beside a run.
-    pub(super) score_test: ScoreTest,
+    pub(super) score_test: MissingEffects,
     pub(super) convergence: Convergence,
     pub(super) selection: TermSelection,
     pub(super) stability: Stability,
@@ -119,8 +119,8 @@ pub(super) struct Checkpoint {
 
 /// The test for effects that the law lacks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct ScoreTest {
-    pub(super) candidates: Lack,
+pub(super) struct MissingEffects {
+    pub(super) candidates: ScoreTest,
     /// Whether the run under way looks for them.
     pub(super) looking: bool,
     /// Length of the record from which the next run looks.
@@ -173,7 +173,7 @@ impl Segment {
                 sandwich: SandwichFactor::new(n),
                 checkpoint: Checkpoint { at: None, information: Information::none(n) },
             },
-            score_test: ScoreTest { candidates: Lack::new(&problem.terms, n), looking: false, next_look: 0 },
+            score_test: MissingEffects { candidates: ScoreTest::new(&problem.terms, n), looking: false, next_look: 0 },
             convergence: Convergence::new(n),
             selection: TermSelection::new(n),
             stability: Stability::new(problem.terms.len()),

@@ -6,7 +6,7 @@
 //! had not dearer. Where the information is too near to singular for that, the search starts from the terms of the law as it is, and
 //! adds before it drops.
 
-use crate::evidence::{Information, Solution};
+use crate::estimation::{Information, Solution};
 use serde::{Deserialize, Serialize};
 
 /// What the old law's structure counts for, in twice nats.

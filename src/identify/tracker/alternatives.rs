@@ -2,7 +2,7 @@
 
 use super::new_record::{INERTIA_SPREAD, PRIOR_WIDTH};
 use super::state::{FRESH_START, Fitting, Setup, Tracker};
-use crate::evidence::Noise;
+use crate::estimation::Noise;
 use crate::identify::segment::Prior;
 
 /// Runs after which a fit that has not settled is given up …

@@ -2,7 +2,7 @@
 
 use super::regime::Event;
 use super::state::{Fitting, SWITCH_SIZE, Schedule, Tracker};
-use crate::evidence::Noise;
+use crate::estimation::Noise;
 use crate::identify::problem::Problem;
 use crate::identify::segment::{NOISE_MEMORY, Prior};
 

@@ -1,6 +1,6 @@
 //! The law as last made known: what is not known any more keeps its value, and has no std.
 
-use crate::evidence::Missing;
+use crate::estimation::Missing;
 use crate::identify::problem::Problem;
 use crate::identify::report::Coefficient;
 use serde::{Deserialize, Serialize};

@@ -1,14 +1,13 @@
 //! Bounds of the error that a law states for itself, as e of eq. (8).
 
-/// Bound of e that makes a law known: coefficients within 5 % of their size together, as the published figures ask.
-const KNOWN: f64 = 0.05 * 0.05;
+use crate::limits::SETTLED_ERROR;
 
-/// A law is validated when it states e below this: half of [`KNOWN`], since what is stated is an expectation. With the whole of it the law
+/// A law is validated when it states e below this: half of the bound, since what is stated is an expectation. With the whole of it the law
 /// of the study's own test was validated 61 ms before its e was below.
-pub const VALIDATED: f64 = 0.5 * KNOWN;
+pub const VALIDATED: f64 = 0.5 * SETTLED_ERROR;
 
-/// A law that stands moves by less than this while its record grows: [`KNOWN`] between two estimates.
-pub(super) const STOOD: f64 = KNOWN;
+/// A law that stands moves by less than the bound while its record grows.
+pub(super) const STOOD: f64 = SETTLED_ERROR;
 
 /// A law that states e below this is good enough to weigh switches against: coefficients within 20 % of their size together.
 pub const TRUSTED: f64 = 0.2 * 0.2;

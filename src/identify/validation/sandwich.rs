@@ -4,7 +4,7 @@
 //! covariance. Error that the law does not model lasts: the blocks' scores are then larger, and so is the covariance of the
 //! coefficients, by the same factor (the sandwich estimate of White, Econometrica 50, 1982, here as one factor for all).
 
-use crate::evidence::Information;
+use crate::estimation::Information;
 use serde::{Deserialize, Serialize};
 
 /// Blocks in a record.

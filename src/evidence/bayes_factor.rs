@@ -1,6 +1,6 @@
 //! How well coefficients that are known beforehand explain a record.
 //!
-//! A record's information I and score g about a point θ₀ make its likelihood Gaussian there: ln L(θ₀ + δ) = g·δ − ½ δᵀIδ. Belief in
+//! A record's information I and score g about a point θ₀ make its likelihood Gaussian there: ln L(θ₀ + δ) = g·δ − ½ δᵀIδ. A prior of
 //! the coefficients, δ normal about μ with precision Λ, then has the log-evidence (MacKay, *Information Theory, Inference, and Learning
 //! Algorithms*, ch. 28)
 //!
@@ -11,9 +11,9 @@
 //! A law seen before and "some law that switches may lead to" are two such beliefs: their difference says, in nats, which of them
 //! the record speaks for. The wider belief pays for what it leaves open.
 
-use super::information::Information;
-use super::single::Single;
-use super::symmetric::{System, WIDTH};
+use super::single_change::SingleChange;
+use crate::estimation::Information;
+use crate::estimation::{System, WIDTH};
 use serde::{Deserialize, Serialize};
 
 /// Pivots this far below their diagonal are rounding.
@@ -21,7 +21,7 @@ const TOLERANCE: f64 = 1e-13;
 
 /// What is believed of n coefficients before a record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Belief {
+pub struct GaussianPrior {
     /// Where they lie, about the point at which the record's score is taken, n.
     pub offset: Vec<f64>,
     /// Λ, as [`Information::matrix`].
@@ -33,16 +33,21 @@ pub struct Belief {
 
 /// Room for the elimination.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Weighing {
+pub struct BayesFactor {
     record: Information,
     system: System,
-    single: Single,
+    single: SingleChange,
 }
 
-impl Belief {
+impl GaussianPrior {
     /// Certainty that `n` coefficients are at the point.
-    pub fn none(n: usize) -> Belief {
-        Belief { offset: vec![0.0; n], precision: vec![0.0; n * n + WIDTH], open: vec![false; n], log_determinant: 0.0 }
+    pub fn none(n: usize) -> GaussianPrior {
+        GaussianPrior {
+            offset: vec![0.0; n],
+            precision: vec![0.0; n * n + WIDTH],
+            open: vec![false; n],
+            log_determinant: 0.0,
+        }
     }
 
     /// Independent coefficients with these variances; 0 is certainty.
@@ -60,7 +65,7 @@ impl Belief {
     }
 
     /// The precision that information has on the coefficients `open`, the others held.
-    pub fn set_information(&mut self, information: &Information, open: &[bool], weighing: &mut Weighing) {
+    pub fn set_information(&mut self, information: &Information, open: &[bool], weighing: &mut BayesFactor) {
         self.precision.copy_from_slice(&information.matrix);
         self.open.copy_from_slice(open);
         weighing.system.load(&self.precision, None);
@@ -74,14 +79,14 @@ impl Belief {
     }
 }
 
-impl Weighing {
+impl BayesFactor {
     /// Room for `n` coefficients.
-    pub fn new(n: usize) -> Weighing {
-        Weighing { record: Information::none(n), system: System::new(n), single: Single::new(n) }
+    pub fn new(n: usize) -> BayesFactor {
+        BayesFactor { record: Information::none(n), system: System::new(n), single: SingleChange::new(n) }
     }
 
     /// Log-evidence of the belief, nats, against certainty that the coefficients are at the record's point.
-    pub fn evidence(&mut self, record: &Information, belief: &Belief) -> f64 {
+    pub fn evidence(&mut self, record: &Information, belief: &GaussianPrior) -> f64 {
         self.record.clone_from_slices(record);
         let at_offset = likelihood(record, &belief.offset);
         self.record.shift(&belief.offset);
@@ -94,7 +99,7 @@ impl Weighing {
 
     /// Log-evidence, nats, of a change of one coefficient alone against the belief that has just been weighed; `precision` is 1/τ² of
     /// each.
-    pub fn evidence_of_a_change(&mut self, belief: &Belief, precision: &[f64]) -> f64 {
+    pub fn evidence_of_a_change(&mut self, belief: &GaussianPrior, precision: &[f64]) -> f64 {
         self.single.evidence(&self.record, &self.system, &belief.open, precision)
     }
 
@@ -143,19 +148,19 @@ mod tests {
     #[test]
     fn the_evidence_of_a_belief_is_the_integral_of_the_likelihood_over_it() {
         let (offset, std) = ([0.45, 0.5], [0.1, 0.2]);
-        let mut belief = Belief::none(2);
+        let mut belief = GaussianPrior::none(2);
         belief.offset.copy_from_slice(&offset);
         belief.set_variances(std.iter().map(|std| std * std));
-        let evidence = Weighing::new(2).evidence(&record(), &belief);
+        let evidence = BayesFactor::new(2).evidence(&record(), &belief);
         let sum = integrated(&record(), offset, std);
         assert!((evidence - sum).abs() < 1e-3, "{evidence} against {sum}");
     }
 
     #[test]
     fn certainty_has_the_likelihood_of_its_point() {
-        let mut belief = Belief::none(2);
+        let mut belief = GaussianPrior::none(2);
         belief.offset.copy_from_slice(&[0.4, 0.5]);
-        let evidence = Weighing::new(2).evidence(&record(), &belief);
+        let evidence = BayesFactor::new(2).evidence(&record(), &belief);
         assert!((evidence - likelihood(&record(), &belief.offset)).abs() < 1e-9);
     }
 
@@ -163,7 +168,8 @@ mod tests {
     fn a_precision_and_the_same_variances_are_one_belief() {
         let mut precision = Information::none(2);
         (precision.matrix[0], precision.matrix[3]) = (100.0, 25.0);
-        let (mut weighing, mut first, mut second) = (Weighing::new(2), Belief::none(2), Belief::none(2));
+        let (mut weighing, mut first, mut second) =
+            (BayesFactor::new(2), GaussianPrior::none(2), GaussianPrior::none(2));
         first.set_information(&precision, &[true, true], &mut weighing);
         second.set_variances([0.01, 0.04].into_iter());
         let difference = weighing.evidence(&record(), &first) - weighing.evidence(&record(), &second);

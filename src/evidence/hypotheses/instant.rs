@@ -3,7 +3,7 @@
 //! The evidence e of a hypothesis is the log-likelihood ratio of all data under "the law switched at its start" to that under "it did not".
 //! With every instant as likely beforehand, the density of the instant is exp(e), taken as linear between neighbouring starts.
 
-use super::Bank;
+use super::bank::Bank;
 
 impl Bank {
     /// Root mean square of the distance between the switch and `instant`, s; `time` is that of a sample, `now` that of the last one.

@@ -1,8 +1,8 @@
 //! One run of the filter over a record: likelihood, score and information of the coefficients.
 
 use super::filter::{Channel, Filter, Innovation, Noise};
-use super::guard::Guard;
 use super::information::Information;
+use super::innovation_gate::InnovationGate;
 use super::symmetric::{Lane, LogSum, WIDTH};
 use crate::law::{Compiled, Drive, Linearized, Motion, State, Term};
 use serde::{Deserialize, Serialize};
@@ -143,7 +143,7 @@ pub struct Pass {
     rival_filters: [Filter; 2],
     fastest: f64,
     /// Keeps outliers out, where wanted.
-    guard: Option<Guard>,
+    guard: Option<InnovationGate>,
     compiled: Compiled,
     /// Whether the free terms of this run are known.
     seeking: bool,
@@ -184,7 +184,7 @@ impl Pass {
 
     /// The same run, which leaves outliers out.
     pub fn guarded(self) -> Pass {
-        Pass { guard: Some(Guard::default()), ..self }
+        Pass { guard: Some(InnovationGate::default()), ..self }
     }
 
     /// Begins at a state that does not depend on the coefficients.
@@ -193,7 +193,7 @@ impl Pass {
         self.rival_filters = [filter; 2];
         self.track = Track::default();
         self.rivals = [Track::default(); 2];
-        self.guard = self.guard.map(|_| Guard::default());
+        self.guard = self.guard.map(|_| InnovationGate::default());
         self.information.clear();
         self.sensitivity.fill([0.0; 2]);
         self.parts = parts_for(self.fastest);

@@ -10,25 +10,16 @@
 //! ```
 //!
 //! "No switch" has the information that the stage gave on its coefficients up to the start, on all that the law may have or on its own
-//! alone; "switch" a prior as wide as physics makes plausible, of all coefficients or of one ([`super::Single`]). Their difference is
+//! alone; "switch" a prior as wide as physics makes plausible, of all coefficients or of one ([`SingleChange`]). Their difference is
 //! the evidence of a switch (Willsky and Jones 1976, with a prior in the place of the maximum). Starts are kept on a grid whose spacing grows
 //! with age, and where the evidence has a peak.
 
-mod hypothesis;
-mod instant;
-mod unswitched;
-
-use super::filter::Innovation;
-use super::information::Information;
-use super::pass::IntervalMap;
-use super::single::{Single, either, log_sum};
-use super::symmetric::{Lane, System, WIDTH};
-use super::weighing::{Belief, Weighing, likelihood};
-use hypothesis::Hypothesis;
+use super::hypothesis::{Hypothesis, Law};
+use super::no_change::TOLERANCE;
+use crate::estimation::{Innovation, IntervalMap, Lane, System, WIDTH};
+use crate::evidence::bayes_factor::{BayesFactor, GaussianPrior, likelihood};
+use crate::evidence::single_change::{SingleChange, either, log_sum};
 use serde::{Deserialize, Serialize};
-
-/// Pivots this far below their diagonal are rounding.
-const TOLERANCE: f64 = 1e-13;
 
 /// Evidence of this many levels at once comes from the last samples alone.
 const OVERWHELMING: f64 = 10.0;
@@ -41,19 +32,6 @@ const FAR_BELOW: f64 = 12.0;
 
 /// Evidence that chance seldom gives a start which lies between others, nats.
 const OUTSTANDING: f64 = 4.0;
-
-/// What the law in use knows of its coefficients when a hypothesis starts.
-#[derive(Clone, Copy, Debug)]
-pub struct Law<'a> {
-    /// Information on the coefficients from the stage so far.
-    pub information: &'a Information,
-    /// Which of them it may have.
-    pub open: &'a [bool],
-    /// Which of those it has.
-    pub own: &'a [bool],
-    /// Whether it explains its record down to the sensors' noise.
-    pub explains: bool,
-}
 
 /// A switch that the data speak for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,14 +57,14 @@ struct Shared {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bank {
     n: usize,
-    hypotheses: Vec<Hypothesis>,
-    count: usize,
+    pub(super) hypotheses: Vec<Hypothesis>,
+    pub(super) count: usize,
     /// 1/τ² by coefficient, the prior of "switch".
     spread: Vec<f64>,
     spread_log_determinant: f64,
     shared: Shared,
     system: System,
-    single: Single,
+    single: SingleChange,
 }
 
 impl Bank {
@@ -101,7 +79,7 @@ impl Bank {
             spread_log_determinant: 0.0,
             shared: Shared { input: [lanes(), lanes()], rows: [lanes(), lanes()] },
             system: System::new(n),
-            single: Single::new(n),
+            single: SingleChange::new(n),
         }
     }
 
@@ -232,7 +210,7 @@ impl Bank {
 
     /// Log-evidence, nats, of a switch to coefficients that are known beforehand, their offset counted from those in use, at the start
     /// that suits them best; and of a switch to any law at that start. Both against the law in use exactly as it is.
-    pub fn of_known_law(&mut self, belief: &Belief, weighing: &mut Weighing) -> [f64; 2] {
+    pub fn of_known_law(&mut self, belief: &GaussianPrior, weighing: &mut BayesFactor) -> [f64; 2] {
         let fit = |index: usize| likelihood(&self.hypotheses[index].information, &belief.offset);
         let starts = (0..self.count).map(|index| (index, fit(index)));
         match starts.max_by(|a, b| a.1.total_cmp(&b.1)) {
@@ -355,6 +333,7 @@ impl Shared {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::estimation::Information;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;

@@ -31,7 +31,7 @@ pub struct Missing {
 
 /// The candidates beside a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Lack {
+pub struct ScoreTest {
     candidates: Vec<Candidate>,
     own: Information,
     solution: Solution,
@@ -54,9 +54,9 @@ struct Candidate {
     cross: Vec<f64>,
 }
 
-impl Lack {
+impl ScoreTest {
     /// The catalogue's effects that one instant gives and that the law of these terms does not have, beside `n` free terms.
-    pub fn new(terms: &[Term], n: usize) -> Lack {
+    pub fn new(terms: &[Term], n: usize) -> ScoreTest {
         let absent = |term: &Term| match term {
             Term::Effect(effect) => {
                 !terms.iter().filter_map(|other| other.effect()).any(|other| other.id() == effect.id())
@@ -74,7 +74,7 @@ impl Lack {
             score: 0.0,
             cross: vec![0.0; n],
         };
-        Lack {
+        ScoreTest {
             candidates: candidates.map(candidate).collect(),
             own: Information::none(n),
             solution: Solution::none(n),

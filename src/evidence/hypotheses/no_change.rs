@@ -1,11 +1,13 @@
 //! "No switch": the law until a hypothesis starts, with certain terms.
 
-use super::TOLERANCE;
-use crate::evidence::symmetric::System;
+use crate::estimation::System;
 use serde::{Deserialize, Serialize};
 
+/// Pivots this far below their diagonal are rounding.
+pub(super) const TOLERANCE: f64 = 1e-13;
+
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Unswitched {
+pub(super) struct NoChange {
     /// Which coefficients it has.
     pub(super) active: Vec<bool>,
     /// μᵀΛμ.
@@ -16,9 +18,9 @@ pub(super) struct Unswitched {
     pub(super) log_weight: f64,
 }
 
-impl Unswitched {
-    pub(super) fn none(n: usize) -> Unswitched {
-        Unswitched { active: vec![false; n], at_mean: 0.0, log_determinant: 0.0, log_weight: 0.0 }
+impl NoChange {
+    pub(super) fn none(n: usize) -> NoChange {
+        NoChange { active: vec![false; n], at_mean: 0.0, log_determinant: 0.0, log_weight: 0.0 }
     }
 
     /// Takes what its record says of it; a coefficient of which that says nothing is none of its own.
@@ -36,7 +38,7 @@ impl Unswitched {
     /// Shares the probability with the same law without some of its coefficients: what they gain in likelihood, against how much of what each
     /// could have been, 1/√`precision`, the record leaves (Dickey, *Ann. Math. Stat.* 42 (1971), 204). What it could have been is in the
     /// prior that both were settled with.
-    pub(super) fn share(&mut self, fewer: &mut Unswitched, precision: &[f64]) {
+    pub(super) fn share(&mut self, fewer: &mut NoChange, precision: &[f64]) {
         let dropped =
             self.active.iter().zip(&fewer.active).zip(precision).filter(|((own, fewer), _)| **own && !**fewer);
         let reach: f64 = dropped.map(|(_, precision)| -0.5 * precision.ln()).sum();
@@ -56,7 +58,7 @@ impl Unswitched {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::evidence::Information;
+    use crate::estimation::Information;
 
     /// Fifty readings of 1.2 x + b about (1.2, 0), std 0.1, each coefficient known to some 1/20 of what it could be.
     fn weights(offset: f64) -> [f64; 2] {
@@ -66,7 +68,7 @@ mod tests {
             record.add(&[x, 1.0], offset + 0.1 * (12.9898 * f64::from(k)).sin(), 0.01);
         }
         record.matrix[3] += 4.0;
-        let (mut system, mut full, mut own) = (System::new(2), Unswitched::none(2), Unswitched::none(2));
+        let (mut system, mut full, mut own) = (System::new(2), NoChange::none(2), NoChange::none(2));
         full.active = vec![true, true];
         own.active = vec![true, false];
         full.settle(&record.matrix, &record.score, &mut system);

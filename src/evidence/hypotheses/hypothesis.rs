@@ -1,10 +1,21 @@
 //! One hypothesis: since its start the law has been another one.
 
-use super::unswitched::Unswitched;
-use super::{Law, TOLERANCE};
-use crate::evidence::information::Information;
-use crate::evidence::symmetric::{Lane, System, WIDTH};
+use super::no_change::{NoChange, TOLERANCE};
+use crate::estimation::{Information, Lane, System, WIDTH};
 use serde::{Deserialize, Serialize};
+
+/// What the law in use knows of its coefficients when a hypothesis starts.
+#[derive(Clone, Copy, Debug)]
+pub struct Law<'a> {
+    /// Information on the coefficients from the stage so far.
+    pub information: &'a Information,
+    /// Which of them it may have.
+    pub open: &'a [bool],
+    /// Which of those it has.
+    pub own: &'a [bool],
+    /// Whether it explains its record down to the sensors' noise.
+    pub explains: bool,
+}
 
 /// A law that explains its record is trusted with this fraction of its information: its covariance is that of a linearisation.
 const CAUTION: f64 = 0.3;
@@ -43,9 +54,9 @@ pub(super) struct Hypothesis {
     /// Λμ of "no switch": what the stage up to the start says about the coefficients in use.
     pull: Vec<f64>,
     /// "No switch" with every coefficient that the law may have.
-    full: Unswitched,
+    full: NoChange,
     /// With its own alone, where it has dropped others.
-    own: Unswitched,
+    own: NoChange,
 }
 
 impl Hypothesis {
@@ -63,8 +74,8 @@ impl Hypothesis {
             information: Information::none(n),
             prior: Information::none(n).matrix,
             pull: vec![0.0; n],
-            full: Unswitched::none(n),
-            own: Unswitched::none(n),
+            full: NoChange::none(n),
+            own: NoChange::none(n),
         }
     }
 
@@ -100,12 +111,12 @@ impl Hypothesis {
     }
 
     /// The laws that there may have been until the start.
-    pub(super) fn likely_laws(&self) -> impl Iterator<Item = &Unswitched> {
+    pub(super) fn likely_laws(&self) -> impl Iterator<Item = &NoChange> {
         [&self.full, &self.own].into_iter().filter(|law| law.log_weight > NEGLIGIBLE)
     }
 
     /// Log-evidence of no switch from `law`; leaves the eliminated system behind.
-    pub(super) fn unswitched(&self, law: &Unswitched, system: &mut System) -> f64 {
+    pub(super) fn unswitched(&self, law: &NoChange, system: &mut System) -> f64 {
         system.load(&self.information.matrix, Some(&self.prior));
         system.set_right(self.information.score.iter().zip(&self.pull).map(|(score, pull)| score + pull));
         law.isolate_inactive(system);

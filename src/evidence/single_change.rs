@@ -11,8 +11,8 @@
 //!
 //! and, with variance τ² before the record, the log-evidence ½ s²τ²/(1 + iτ²) − ½ ln(1 + iτ²) against no change.
 
-use super::information::Information;
-use super::symmetric::{Lane, System, WIDTH};
+use crate::estimation::Information;
+use crate::estimation::{Lane, System, WIDTH};
 use serde::{Deserialize, Serialize};
 
 /// What a change has of its own beside the law's uncertainty, relative to all that it has; less is rounding.
@@ -20,17 +20,17 @@ const OWN: f64 = 1e-9;
 
 /// Room for the changes of n coefficients, one at a time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Single {
+pub struct SingleChange {
     /// M through the elimination of A: n rows of as many lanes as n needs.
     crossed: Vec<Lane>,
     /// ½ s²τ²/(1 + iτ²) and 1 + iτ² of each.
     changes: Vec<[f64; 2]>,
 }
 
-impl Single {
+impl SingleChange {
     /// Room for `n` coefficients.
-    pub fn new(n: usize) -> Single {
-        Single { crossed: vec![[0.0; WIDTH]; n * n.div_ceil(WIDTH)], changes: vec![[0.0; 2]; n] }
+    pub fn new(n: usize) -> SingleChange {
+        SingleChange { crossed: vec![[0.0; WIDTH]; n * n.div_ceil(WIDTH)], changes: vec![[0.0; 2]; n] }
     }
 
     /// Log-evidence, nats, of a change of one coefficient, each as likely as the others, against none. `system` is A and g + Λμ,
@@ -142,7 +142,7 @@ mod tests {
         system.set_right(record.score.iter().zip(&prior.score).map(|(a, b)| a + b));
         (0..3).filter(|index| !open[*index]).for_each(|index| system.isolate(index));
         system.eliminate(1e-13);
-        Single::new(3).evidence(&record, &system, &open, &precision)
+        SingleChange::new(3).evidence(&record, &system, &open, &precision)
     }
 
     #[test]

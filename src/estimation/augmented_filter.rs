@@ -41,7 +41,7 @@ pub struct Start<'a> {
 
 /// Mean and covariance of state and coefficients.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Joint {
+pub struct AugmentedFilter {
     /// Σ −½ (ε² ÷ s + ln s).
     pub log_likelihood: f64,
     state: State,
@@ -57,11 +57,11 @@ pub struct Joint {
     compiled: Compiled,
 }
 
-impl Joint {
+impl AugmentedFilter {
     /// A filter that has not begun, of `n` coefficients among `terms`.
-    pub fn new(terms: usize, n: usize) -> Joint {
+    pub fn new(terms: usize, n: usize) -> AugmentedFilter {
         let size = n + 2;
-        Joint {
+        AugmentedFilter {
             log_likelihood: 0.0,
             state: State::default(),
             scaled: vec![0.0; n],
@@ -92,7 +92,7 @@ impl Joint {
     }
 
     /// Becomes what `other` is, of the same law.
-    pub fn copy_from(&mut self, other: &Joint) {
+    pub fn copy_from(&mut self, other: &AugmentedFilter) {
         (self.log_likelihood, self.state) = (other.log_likelihood, other.state);
         self.scaled.copy_from_slice(&other.scaled);
         self.all.copy_from_slice(&other.all);
@@ -107,7 +107,7 @@ impl Joint {
     /// Each coefficient θ, and the inertia, wanders by a std that is given relative to its `reach`; the inertia takes all of κ and b with it.
     pub fn wander(&mut self, unknowns: &Unknowns, reach: &[f64], [width, of_inertia]: [f64; 2]) {
         let (size, mass) = (self.size(), self.mass(unknowns));
-        let Joint { covariance, scaled, .. } = self;
+        let AugmentedFilter { covariance, scaled, .. } = self;
         for (index, reach) in reach.iter().enumerate().filter(|(index, _)| unknowns.free_inertia != Some(*index)) {
             covariance[(index + 2) * (size + 1)] += (width * reach / mass).powi(2);
         }
@@ -123,7 +123,7 @@ impl Joint {
         let mass = self.scatter(unknowns);
         let parts = observation.drive.parts(parts);
         let dt = observation.dt / parts as f64;
-        let Joint { compiled, slopes, scaled_slopes, map, state, all, .. } = self;
+        let AugmentedFilter { compiled, slopes, scaled_slopes, map, state, all, .. } = self;
         compiled.compile(&Motion { terms: unknowns.terms, coefficients: all });
         let mut first = true;
         for part in 0..parts {
@@ -157,7 +157,7 @@ impl Joint {
     /// P over an interval.
     fn carry(&mut self, process: f64, dt: f64) {
         let size = self.size();
-        let Joint { covariance, moved, map, .. } = self;
+        let AugmentedFilter { covariance, moved, map, .. } = self;
         let [a, b] = map.transition;
         let (to_q, to_qd) = moved.split_at_mut(size);
         for (column, (q, qd)) in to_q.iter_mut().zip(to_qd.iter_mut()).enumerate() {
@@ -194,7 +194,7 @@ impl Joint {
         let (residual, total) = self.residual(channel, measured, variance);
         let (size, place) = (self.size(), channel as usize);
         self.log_likelihood -= 0.5 * (residual * residual / total + total.ln());
-        let Joint { column, covariance, state, scaled, .. } = self;
+        let AugmentedFilter { column, covariance, state, scaled, .. } = self;
         column.copy_from_slice(&covariance[place * size..(place + 1) * size]);
         let share = residual / total;
         state.q += column[0] * share;
@@ -259,8 +259,8 @@ mod tests {
     }
 
     /// A filter that begins with coefficients a tenth off and is told that they may be, after `seconds` of a driven motion seen without noise.
-    fn followed(seconds: f64, wander: f64) -> Joint {
-        let mut joint = Joint::new(3, 3);
+    fn followed(seconds: f64, wander: f64) -> AugmentedFilter {
+        let mut joint = AugmentedFilter::new(3, 3);
         let all = TRUTH.map(|value| 1.1 * value);
         let start = Start { all: &all, reach: &TRUTH, width: 0.2, state: State::default(), variances: VARIANCES };
         joint.begin(&unknowns(), &start);
@@ -305,7 +305,7 @@ mod tests {
     /// θ = κ ÷ b: the variance to first order is that of the tangent, whatever moves κ and b together.
     #[test]
     fn an_inertia_that_wanders_takes_no_other_coefficient_with_it() {
-        let mut joint = Joint::new(3, 3);
+        let mut joint = AugmentedFilter::new(3, 3);
         let start = Start { all: &TRUTH, reach: &TRUTH, width: 0.0, state: State::default(), variances: VARIANCES };
         joint.begin(&unknowns(), &start);
         joint.wander(&unknowns(), &TRUTH, [0.0, 0.1]);

@@ -24,7 +24,7 @@ const DOUBTFUL: f64 = 3.0;
 
 /// What a channel's last readings were like.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Guard {
+pub struct InnovationGate {
     /// Which of the last readings were far off, the latest in the lowest bit.
     far: [u32; 2],
     last: [f64; 2],
@@ -32,7 +32,7 @@ pub struct Guard {
     outlier: [bool; 2],
 }
 
-impl Guard {
+impl InnovationGate {
     /// Whether a reading counts that leaves this residual, whose variance is `variance`.
     #[inline]
     pub fn admits(&mut self, channel: Channel, residual: f64, variance: f64) -> bool {
@@ -64,7 +64,7 @@ mod tests {
     use super::*;
 
     fn admitted(residuals: &[f64]) -> Vec<bool> {
-        let mut guard = Guard::default();
+        let mut guard = InnovationGate::default();
         residuals.iter().map(|residual| guard.admits(Channel::Qd, *residual, 1.0)).collect()
     }
 
@@ -92,7 +92,7 @@ mod tests {
         let readings = [&[40.0][..], &quiet, &[35.0, 60.0, 1.0, 9.0]].concat();
         assert_eq!(admitted(&readings)[9..], [false, false, true, false]);
         assert_eq!(admitted(&[&readings[..], &[9.0]].concat())[13..], [true]);
-        let mut guard = Guard::default();
+        let mut guard = InnovationGate::default();
         assert_eq!(guard.precision(Channel::Qd, 60.0), (FAR / 60.0).powi(2));
         readings
             .iter()
