@@ -1,10 +1,11 @@
-//! Chores of the project: `cargo xtask crosscheck | test | fmu | bench | study | real`.
+//! Chores of the project: `cargo xtask crosscheck | test | fmu | bench | study | real | picture`.
 
 mod command;
 mod crosscheck;
 mod error;
 mod fmu;
 mod libclang;
+mod picture;
 mod python;
 mod readme;
 mod real;
@@ -31,7 +32,8 @@ usage: cargo xtask CHORE
   real [--only NAME].. [--json OUT] [--switchid PATH]
                      what the command line makes of the real records in $SWITCHID_DATA, beside an
                      independent regression's answers; status 1 where a figure misses its floor.
-                     NAME is a record, transfer or silverbox; PATH is a built command line";
+                     NAME is a record, transfer or silverbox; PATH is a built command line
+  picture            draws docs/switching.svg anew: motion, true and identified coefficients, alarms";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -53,6 +55,7 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         ("bench", rest) => cargo(&["bench", "--package", "switchid", "--bench", "step", "--"], rest),
         ("study", rest) => cargo(&["run", "--quiet", "--release", "--example", "study", "--"], rest),
         ("real", rest) => real::real(rest),
+        ("picture", []) => picture::picture(),
         ("--help" | "-h" | "help", _) => {
             println!("{USAGE}");
             Ok(())
