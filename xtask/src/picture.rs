@@ -17,7 +17,11 @@ const COMMAND: &str = "target/release/switchid-harness";
 /// Whatever step fails.
 pub fn picture() -> Result<(), Error> {
     let folder = root().join(FOLDER);
-    std::fs::create_dir_all(&folder).map_err(|source| Error::File { action: "create", path: folder.clone(), source })?;
+    std::fs::create_dir_all(&folder).map_err(|source| Error::File {
+        action: "create",
+        path: folder.clone(),
+        source,
+    })?;
     let interpreter = python::environment()?;
     fmu::build_command()?;
     let [record, truth, trace] = ["record.csv", "record.truth.json", "trace.csv"].map(|name| folder.join(name));
