@@ -1,10 +1,11 @@
-//! What the figures beside their limits say, on few seeds that were fixed beforehand: `figures --against-limits` has the whole of it.
+//! What the figures beside their limits say, on few seeds that were fixed beforehand: `cargo xtask figures --against-limits`
+//! has the whole of it.
 
-#[path = "../examples/figures/against_limits/disturbed.rs"]
+#[path = "../measure/figures/against_limits/disturbed.rs"]
 mod disturbed;
-#[path = "../examples/figures/follow.rs"]
+#[path = "../measure/figures/follow.rs"]
 mod follow;
-#[path = "../examples/figures/against_limits/recorded.rs"]
+#[path = "../measure/figures/against_limits/recorded.rs"]
 mod recorded;
 
 use disturbed::Disturbance;

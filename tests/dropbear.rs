@@ -2,7 +2,7 @@
 //!
 //! The folder is named by `SWITCHID_DATA`; without it the test says that it skips, and in CI that is a failure.
 
-#[path = "../examples/dropbear/measure.rs"]
+#[path = "../measure/dropbear/measure.rs"]
 mod measure;
 
 use measure::{figures, identify, read};

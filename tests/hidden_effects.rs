@@ -1,6 +1,7 @@
-//! Effects hidden in plants, and what a diagnosis says of their records: a small part of `examples/hidden_effects`, under another seed.
+//! Effects hidden in plants, and what a diagnosis says of their records: a small part of
+//! `cargo xtask effects`, under another seed.
 
-#[path = "../examples/hidden_effects/benchmark/mod.rs"]
+#[path = "../measure/effects/benchmark/mod.rs"]
 mod benchmark;
 
 use benchmark::{Answer, Outcome, Outside, Secret, Sensors, Setting, draw, judge, pair};

@@ -1,6 +1,16 @@
-//! The house rules, read from the sources: no import runs upward, the heart does no I/O, `unsafe` has one home.
+//! The house rules, read from the sources: no import runs upward, no files stand on a circle, the heart does no I/O,
+//! `unsafe` has one home.
 
+#[path = "layering/house.rs"]
+mod house;
+#[path = "layering/text.rs"]
+mod text;
+
+use house::{Arrow, House, circles, module_of, upward};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+use std::slice::from_ref;
+use text::{code, words};
 
 /// From the top down; a module imports only from rows below its own, and from itself.
 const LAYERS: [&[&str]; 8] = [
@@ -43,66 +53,55 @@ fn layer(module: &str) -> Option<usize> {
     LAYERS.iter().position(|row| row.contains(&module))
 }
 
-/// The source without comments, doc lines, strings and its `#[cfg(test)]` module: only what the compiler builds.
-fn code(source: &str) -> String {
-    let built = source.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
-    let lines = built.lines().map(|line| without_strings(line).split("//").next().unwrap_or_default().to_string());
-    lines.collect::<Vec<_>>().join("\n")
+/// Folders of `src` whose circles and upward arrows are known and still to be mended. None may be here that has none.
+const STILL_OPEN: [&str; 2] = ["evidence", "identify"];
+
+/// Every rule that the arrows of the library break, in words.
+fn broken_arrows(arrows: &BTreeSet<Arrow>) -> Vec<String> {
+    let between = arrows.iter().filter_map(broken_layer);
+    let up = upward(arrows);
+    let up = up.iter().map(|arrow| format!("{}, whose file stands above it", told(arrow)));
+    let circles = circles(arrows).into_iter().map(|(folder, way)| circle(arrows, &folder, &way));
+    between.chain(up).chain(circles).collect()
 }
 
-fn without_strings(line: &str) -> String {
-    let line = line.replace("\\\"", "").replace("'\"'", "");
-    line.split('"').step_by(2).collect::<Vec<_>>().join("\"\"")
-}
-
-/// The modules that a source names behind `crate::`, also in braces: `use crate::{law::Term, weak}`.
-fn imports(code: &str) -> Vec<String> {
-    let mut found = Vec::new();
-    for rest in code.split("crate::").skip(1) {
-        match rest.strip_prefix('{') {
-            Some(group) => found.extend(heads(group)),
-            None => found.extend(head(rest)),
+/// What is wrong with an arrow between two of the library's modules.
+fn broken_layer(arrow: &Arrow) -> Option<String> {
+    let (from, to) = (arrow.from.first()?, arrow.to.first()?);
+    match (layer(from), layer(to)) {
+        (None, _) => Some(format!("{from} stands in no layer")),
+        (Some(own), Some(other)) if from != to && other <= own => {
+            Some(format!("{}, and {to} is not below {from}", told(arrow)))
         }
+        _ => None,
     }
-    found
 }
 
-fn head(path: &str) -> Option<String> {
-    let name: String = path.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-    if name.is_empty() { None } else { Some(name) }
+fn told(arrow: &Arrow) -> String {
+    let to = if arrow.to.is_empty() { "the crate's root".to_string() } else { arrow.to.join("::") };
+    format!("{} takes {} from {to}", arrow.from.join("::"), arrow.name)
 }
 
-/// The first names of each path in a group whose opening brace is already passed.
-fn heads(group: &str) -> Vec<String> {
-    let (mut depth, mut found, mut start) = (1, Vec::new(), 0);
-    for (at, character) in group.char_indices() {
-        match character {
-            '{' => depth += 1,
-            '}' => depth -= 1,
-            _ => {}
-        }
-        if depth == 0 || (depth == 1 && character == ',') {
-            found.extend(head(&group[start..at]));
-            start = at + 1;
-        }
-        if depth == 0 {
-            break;
-        }
-    }
-    found
+/// A circle with the arrows that tie it.
+fn circle(arrows: &BTreeSet<Arrow>, folder: &[String], way: &[String]) -> String {
+    let ties = way.iter().zip(way.iter().cycle().skip(1)).flat_map(|(a, b)| {
+        let (a, b) = ([folder, from_ref(a)].concat(), [folder, from_ref(b)].concat());
+        arrows.iter().filter(move |arrow| arrow.from.starts_with(&a) && arrow.to.starts_with(&b))
+    });
+    let ties: Vec<String> = ties.map(|arrow| format!("\n    {}", told(arrow))).collect();
+    format!("circle in {}: {}{}", named(folder), way.join(" -> "), ties.concat())
 }
 
-/// Every broken rule of one source of the library, in words.
+fn named(folder: &[String]) -> String {
+    if folder.is_empty() { "the source folder".to_string() } else { folder.join("/") }
+}
+
+/// Every broken rule of one source of the library that needs no other source, in words.
 fn broken(module: &str, source: &str) -> Vec<String> {
     let code = code(source);
     let mut broken = Vec::new();
-    match layer(module) {
-        None => broken.push(format!("{module} stands in no layer")),
-        Some(own) => {
-            let imported = imports(&code).into_iter().filter(|name| name != module);
-            let upward = imported.filter(|name| layer(name).is_some_and(|other| other <= own));
-            broken.extend(upward.map(|name| format!("{module} imports {name}, which is not below it")));
-        }
+    if layer(module).is_none() {
+        broken.push(format!("{module} stands in no layer"));
     }
     if !OUTSIDE_THE_HEART.contains(&module) {
         let said = FORBIDDEN_IN_THE_HEART.iter().filter(|text| code.contains(**text));
@@ -113,7 +112,10 @@ fn broken(module: &str, source: &str) -> Vec<String> {
 }
 
 fn broken_anywhere(code: &str) -> Vec<String> {
-    FORBIDDEN_ANYWHERE.iter().filter(|text| code.contains(**text)).map(|text| format!("says {text}")).collect()
+    let said = FORBIDDEN_ANYWHERE.iter().filter(|text| code.contains(**text)).map(|text| format!("says {text}"));
+    let words = words(code);
+    let inline = words.windows(3).filter(|words| words[0] == "mod" && words[2] == "{");
+    said.chain(inline.map(|words| format!("has the module {} inside: give it a file", words[1]))).collect()
 }
 
 fn says_unsafe(source: &str) -> bool {
@@ -138,26 +140,43 @@ fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
     found
 }
 
-/// The module of `src/` to which a file belongs; none for the crate's own roots.
-fn module_of(path: &Path) -> Option<String> {
-    let inside = path.strip_prefix(root().join("src")).unwrap();
-    let first = inside.components().next()?.as_os_str().to_str()?.trim_end_matches(".rs").to_string();
-    if ["lib", "main"].contains(&first.as_str()) { None } else { Some(first) }
+/// The arrows between the files of a crate, by its folder of sources.
+fn arrows(folder: &str) -> BTreeSet<Arrow> {
+    let folder = root().join(folder);
+    let sources = sources(&folder);
+    let inside = sources.iter().map(|(path, source)| (path.strip_prefix(&folder).unwrap(), source.as_str()));
+    House::new(inside).arrows()
 }
 
 #[test]
 fn no_source_breaks_a_rule() {
-    let sources = sources(&root().join("src"));
+    let folder = root().join("src");
+    let sources = sources(&folder);
     assert!(sources.len() > 10, "only {} sources found", sources.len());
     let mut complaints = Vec::new();
     for (path, source) in &sources {
-        let broken = match module_of(path) {
+        let module = module_of(path.strip_prefix(&folder).unwrap()).and_then(|names| names.first().cloned());
+        let broken = match module {
             Some(module) => broken(&module, source),
             None => broken_anywhere(&code(source)),
         };
         complaints.extend(broken.into_iter().map(|rule| format!("{}: {rule}", path.display())));
     }
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+#[test]
+fn no_import_runs_upward_and_none_in_a_circle() {
+    let arrows = arrows("src");
+    assert!(arrows.len() > 100, "only {} arrows found", arrows.len());
+    let is_open = |arrow: &&Arrow, folder: &str| arrow.from[0] == folder && arrow.to.first() == arrow.from.first();
+    for folder in STILL_OPEN {
+        let inside: BTreeSet<Arrow> = arrows.iter().filter(|arrow| is_open(arrow, folder)).cloned().collect();
+        assert!(!broken_arrows(&inside).is_empty(), "{folder} is mended: take it off STILL_OPEN");
+    }
+    let kept = arrows.iter().filter(|arrow| !STILL_OPEN.iter().any(|folder| is_open(arrow, folder)));
+    let broken = broken_arrows(&kept.cloned().collect());
+    assert!(broken.is_empty(), "{} broken:\n{}", broken.len(), broken.join("\n"));
 }
 
 #[test]
@@ -168,36 +187,103 @@ fn only_the_crate_that_speaks_c_is_unsafe() {
     }
 }
 
+/// The rules that a small house breaks.
+fn broken_house(files: &[(&str, &str)]) -> Vec<String> {
+    broken_arrows(&House::new(files.iter().map(|(path, source)| (Path::new(*path), *source))).arrows())
+}
+
 #[test]
-fn an_upward_import_is_seen() {
-    for (module, source) in [
-        ("law", "use crate::identify::Settings;"),
-        ("law", "use crate::{weak, law::Term};"),
-        ("weak", "use crate::{law::{Term, Hold}, simulate::Plant};"),
-        ("simulate", "fn x() -> crate::identify::Sample {}"),
-        ("identify", "use crate::{\n    law::Term,\n    data::{Section},\n};"),
-        ("data", "use crate::cli;"),
-        ("unheard_of", ""),
+fn an_upward_import_between_modules_is_seen() {
+    for (file, source) in [
+        ("law/term.rs", "use crate::identify::Settings;"),
+        ("law/mod.rs", "use crate::{weak::Row, law::Term};"),
+        ("weak/row.rs", "use crate::{law::{Term, Hold}, simulate::Plant};"),
+        ("simulate/mod.rs", "fn x() -> crate::identify::Sample {}"),
+        ("identify/mod.rs", "use crate::{\n    law::Term,\n    data::{Section},\n};"),
+        ("weak/row.rs", "use super::super::identify::Sample;"),
+        ("weak/row.rs", "use crate::identify;\nfn x() -> identify::Sample {}"),
+        ("data/mod.rs", "use crate::cli::run;"),
+        ("unheard_of.rs", "use crate::law::Term;"),
     ] {
-        assert_eq!(broken(module, source).len(), 1, "{module}: {source}");
+        let others = ["law", "weak", "simulate", "identify", "data", "cli"].map(|name| format!("{name}/hold.rs"));
+        let mut files: Vec<(&str, &str)> = others.iter().map(|path| (path.as_str(), "")).collect();
+        let roots = ["law", "weak", "simulate", "identify", "data", "cli"].map(|name| format!("{name}/mod.rs"));
+        files.extend(roots.iter().map(|path| (path.as_str(), "")));
+        files.push((file, source));
+        assert_eq!(broken_house(&files).len(), 1, "{file}: {source}");
     }
 }
 
 #[test]
 fn a_downward_import_is_allowed() {
-    for (module, source) in [
-        ("identify", "use crate::{law::{Term, Hold}, weak::Row, identify::Sample};"),
-        ("cli", "use crate::data;\nuse std::fs;"),
-        ("law", "// use crate::identify;\n/// println!(\"x\")\nconst X: &str = \"crate::cli .unwrap()\";"),
-        ("weak", "fn x() {}\n#[cfg(test)]\nmod tests {\n    use crate::identify; fn y() { z().unwrap(); }\n}"),
+    for (file, source) in [
+        ("identify/mod.rs", "use crate::{law::{Term, Hold}, weak::Row, identify::inner::Sample};"),
+        ("cli/mod.rs", "use crate::data::open;\nuse std::fs;"),
+        ("law/mod.rs", "// use crate::identify::x;\n/// println!(\"x\")\nconst X: &str = \"crate::cli::x .unwrap()\";"),
+        (
+            "weak/mod.rs",
+            "fn x() {}\n#[cfg(test)]\nmod tests {\n    use crate::identify::x; fn y() { z().unwrap(); }\n}",
+        ),
     ] {
-        assert_eq!(broken(module, source), Vec::<String>::new(), "{module}: {source}");
+        let others = ["law/term.rs", "law/hold.rs", "weak/row.rs", "identify/inner.rs", "data/mod.rs", "cli/x.rs"];
+        let files: Vec<(&str, &str)> = others.iter().map(|path| (*path, "")).chain([(file, source)]).collect();
+        assert_eq!(broken_house(&files), Vec::<String>::new(), "{file}: {source}");
     }
 }
 
 #[test]
+fn a_circle_of_files_in_a_folder_is_seen() {
+    for (files, folder) in [
+        (vec![("law/a.rs", "use super::b::B;"), ("law/b.rs", "use super::a::A;")], "circle in law: a -> b"),
+        (vec![("law/a.rs", "use super::B;"), ("law/b.rs", "fn b() -> super::a::A {}")], "circle in law: a -> b"),
+        (
+            vec![("law/a/x.rs", "use crate::law::b::B;"), ("law/a/y.rs", ""), ("law/b.rs", "use super::a::y::Y;")],
+            "circle in law: a -> b",
+        ),
+        (
+            vec![("law/a.rs", "use super::b;\nfn x() { b::y(); }"), ("law/b.rs", "use super::a::*;")],
+            "circle in law: a -> b",
+        ),
+    ] {
+        let mut house = vec![("law/mod.rs", "mod a;\nmod b;\npub use a::A;\npub use b::B;")];
+        house.extend(files);
+        let broken = broken_house(&house);
+        assert!(broken.len() == 1 && broken[0].starts_with(folder), "{house:?}: {broken:?}");
+    }
+}
+
+#[test]
+fn an_arrow_up_to_the_file_of_a_folder_is_seen() {
+    for (files, arrow) in [
+        (vec![("law/mod.rs", "pub struct A;"), ("law/a.rs", "use super::A;")], "law::a takes A from law"),
+        (vec![("law/a.rs", "struct A;"), ("law/a/b.rs", "impl super::A {}")], "law::a::b takes A from law::a"),
+        (vec![("lib.rs", "struct A;"), ("law/a.rs", "use crate::A;")], "law::a takes A from the crate's root"),
+        (vec![("law/mod.rs", "mod a;"), ("law/a.rs", "use super::*;")], "law::a takes * from law"),
+    ] {
+        let broken = broken_house(&files);
+        assert!(broken.len() == 1 && broken[0].starts_with(arrow), "{files:?}: {broken:?}");
+    }
+}
+
+#[test]
+fn what_a_folder_hands_on_is_taken_from_where_it_stands() {
+    let house = [
+        ("law/mod.rs", "mod a;\nmod b;\nmod c;\npub use a::A;\npub(crate) use b::{self, B as Beta};"),
+        ("law/a.rs", "pub struct A;"),
+        ("law/b.rs", "use super::A;\nimpl A {}"),
+        ("law/c.rs", "use super::{A, Beta};\nfn c() { Beta::new(A::new()); }"),
+    ];
+    let arrows = House::new(house.iter().map(|(path, source)| (Path::new(*path), *source))).arrows();
+    let told: Vec<String> = arrows.iter().map(told).collect();
+    assert_eq!(told, ["law::b takes A from law::a", "law::c takes A from law::a", "law::c takes B from law::b"]);
+    assert_eq!(broken_arrows(&arrows), Vec::<String>::new());
+}
+
+#[test]
 fn input_and_output_in_the_heart_are_seen() {
-    for source in ["use std::fs;", "fn x() { println!(); }", "let t = std::time::Instant::now();", "x.unwrap();"] {
+    for source in
+        ["use std::fs;", "fn x() { println!(); }", "let t = std::time::Instant::now();", "x.unwrap();", "mod x {}"]
+    {
         assert_eq!(broken("weak", source).len(), 1, "{source}");
     }
     assert!(says_unsafe("fn x() { unsafe { y() } }"));

@@ -1,8 +1,8 @@
 //! The truth of the built-in scenarios is found again by the default identifier.
 
-#[path = "../examples/figures/follow.rs"]
+#[path = "../measure/figures/follow.rs"]
 mod follow;
-#[path = "../examples/figures/measure.rs"]
+#[path = "../measure/figures/measure.rs"]
 mod measure;
 
 use follow::Figures;

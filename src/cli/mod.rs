@@ -10,7 +10,6 @@ mod diagnose;
 mod error;
 mod fmu;
 mod identify;
-mod identify_report;
 mod improve;
 mod input;
 mod limits;

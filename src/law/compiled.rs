@@ -5,7 +5,7 @@
 //! only the force is wanted. The order of a sum, and so its last bits, depend on nothing but terms and coefficients.
 
 use super::effect::Effect;
-use super::{Model, Monomial, Motion, State, Term};
+use super::{Monomial, Motion, State, Term};
 use serde::{Deserialize, Serialize};
 
 /// Factors of q or q̇: the powers, then the effects'; a power of two, so that a place is never out of range.
@@ -118,10 +118,10 @@ impl Reach {
 /// A law with numbers and the terms whose coefficients are sought.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Compiled {
-    coefficients: [f64; Model::MAX_TERMS],
-    parts: [Part; Model::MAX_TERMS],
+    coefficients: [f64; Compiled::MAX_TERMS],
+    parts: [Part; Compiled::MAX_TERMS],
     count: usize,
-    free: [Free; Model::MAX_TERMS],
+    free: [Free; Compiled::MAX_TERMS],
     shapes: Shapes,
     reach: Reach,
     free_reach: Reach,
@@ -136,10 +136,10 @@ pub struct Compiled {
 impl Default for Compiled {
     fn default() -> Compiled {
         Compiled {
-            coefficients: [f64::NAN; Model::MAX_TERMS],
-            parts: [Part::default(); Model::MAX_TERMS],
+            coefficients: [f64::NAN; Compiled::MAX_TERMS],
+            parts: [Part::default(); Compiled::MAX_TERMS],
             count: 0,
-            free: [Free::default(); Model::MAX_TERMS],
+            free: [Free::default(); Compiled::MAX_TERMS],
             shapes: Shapes::default(),
             reach: Reach::default(),
             free_reach: Reach::default(),
@@ -158,6 +158,9 @@ pub(super) struct Table {
 }
 
 impl Compiled {
+    /// The most terms of a law: its tables have this fixed size, so that no step allocates.
+    pub const MAX_TERMS: usize = 32;
+
     /// The first term that a compiled law cannot have: one with memory, or one more effect with inner parameters than there are
     /// places (3 of q, 4 of q̇).
     pub fn refused(terms: &[Term]) -> Option<Term> {
@@ -165,7 +168,7 @@ impl Compiled {
         terms.iter().copied().find(|term| *term != Term::Inertia && shapes.places(*term).is_none())
     }
 
-    /// Takes the free terms, at most [`Model::MAX_TERMS`], for `slopes`; the motion is to be compiled after them. A
+    /// Takes the free terms, at most [`Compiled::MAX_TERMS`], for `slopes`; the motion is to be compiled after them. A
     /// [refused](Compiled::refused) term makes the slopes, or the acceleration, NaN.
     pub fn seek(&mut self, free: &[Term]) {
         self.free_reach = Reach::default();
@@ -190,7 +193,7 @@ impl Compiled {
     /// Takes the motion, whose terms are those of the last time, unless it has its coefficients already.
     #[inline]
     pub fn follow(&mut self, motion: &Motion) {
-        let n = motion.coefficients.len().min(Model::MAX_TERMS);
+        let n = motion.coefficients.len().min(Compiled::MAX_TERMS);
         if self.coefficients[..n] != motion.coefficients[..n] {
             self.compile(motion);
         }

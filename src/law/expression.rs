@@ -6,9 +6,6 @@
 use super::formula::{Binary, FormulaError, Instruction, STACK, Unary, VARIABLES, parse};
 use serde::{Deserialize, Serialize};
 
-/// The most inner parameters of an expression.
-pub(super) const MAX_PARAMETERS: usize = 16;
-
 /// A named formula with values of its inner parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Expression {

@@ -9,6 +9,9 @@ use thiserror::Error;
 /// Values that a program may have on its stack at once.
 pub(super) const STACK: usize = 24;
 
+/// The most inner parameters of an expression.
+const MAX_PARAMETERS: usize = 16;
+
 /// How deep parentheses, signs and powers may nest.
 const NESTING: usize = 60;
 
@@ -281,7 +284,7 @@ impl Parser<'_> {
         if index == self.parameters.len() {
             self.parameters.push(name);
         }
-        if index < super::expression::MAX_PARAMETERS { Ok(index as u8) } else { Err(self.too_large()) }
+        if index < MAX_PARAMETERS { Ok(index as u8) } else { Err(self.too_large()) }
     }
 
     fn call(&mut self, name: &str, position: usize) -> Result<(), FormulaError> {

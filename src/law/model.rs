@@ -80,7 +80,7 @@ pub struct Model {
 
 impl Model {
     /// The most terms a model may have.
-    pub const MAX_TERMS: usize = 32;
+    pub const MAX_TERMS: usize = Compiled::MAX_TERMS;
 
     /// The default identifier's model: the full cubic library of eq. (11), all "maybe" but the inertia, and the
     /// constant times δq̇, which integrates to zero.

@@ -7,7 +7,7 @@
 //! tip_drag = { coefficient = 0.2, v = 0.1, expression = "abs(qd/v)^0.5*qd" }
 //! ```
 
-use super::check::ScenarioError;
+use super::error::ScenarioError;
 use crate::law::{Expression, Given, Model, ModelError, ModelTerm, Term};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error as _};
 

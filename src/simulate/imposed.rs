@@ -4,7 +4,7 @@
 //! of the stage at t, so that a stage with another amplitude or frequency begins with a jump of q. F = Σ θ_j f_j;
 //! internal states begin with nothing stored and are integrated along the motion.
 
-use super::check::ScenarioError;
+use super::error::ScenarioError;
 use super::excitation::ExcitationKind;
 use super::noise::{Stream, standard_normal};
 use super::reading::Reading;

@@ -7,18 +7,22 @@
 
 mod builtin;
 mod check;
+mod error;
 mod excitation;
 mod hidden;
 mod imposed;
 mod noise;
 mod parametric;
 mod plant;
+mod plants;
 mod random;
 mod reading;
 mod scenario;
+mod scenario_file;
+mod term_names;
 
 pub use builtin::{Builtin, UnknownBuiltin};
-pub use check::ScenarioError;
+pub use error::ScenarioError;
 pub use excitation::{Excitation, ExcitationKind};
 pub use hidden::Hidden;
 pub use imposed::Specimen;

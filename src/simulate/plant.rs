@@ -4,7 +4,7 @@
 //! in two where the law switches within it. A value between two points of the inner grid comes from a shortened step
 //! that is then thrown away, so that what a plant shows at t does not depend on the way there.
 
-use super::check::ScenarioError;
+use super::error::ScenarioError;
 use super::excitation::ExcitationKind;
 use super::imposed;
 use super::noise::{Stream, standard_normal};

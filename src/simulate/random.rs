@@ -5,7 +5,7 @@
 //! (limit cycle) or −0.8 to −0.3 (focus) by turns, C 0.7–1.4, P 0.8–1.8, ω 0.8–1.4. Five to seven stages of 12 to 25 s,
 //! switches at multiples of 0.1 ms, so that most fall between two samples.
 
-use super::builtin::{duffing, van_der_pol};
+use super::plants::{duffing, van_der_pol};
 use super::scenario::Stage;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,9 +1,9 @@
 //! What a plant is: its terms, its stages, its excitation, its sensors.
 
-use super::check::ScenarioError;
 use super::excitation::Excitation;
 use super::hidden::Hidden;
-use crate::law::{State, Term, TermError};
+use super::term_names;
+use crate::law::{State, Term};
 use serde::{Deserialize, Serialize};
 
 /// A time from which the law and the sine excitation have these numbers.
@@ -105,25 +105,6 @@ impl Scenario {
         Scenario { seed, ..self }
     }
 
-    /// Reads a scenario file.
-    ///
-    /// # Errors
-    /// [`ScenarioError`] names the key or stage at fault.
-    pub fn from_toml(text: &str) -> Result<Scenario, ScenarioError> {
-        let scenario: Scenario =
-            toml::from_str(text).map_err(|error| ScenarioError::Syntax { message: error.to_string() })?;
-        scenario.check()?;
-        Ok(scenario)
-    }
-
-    /// Writes a file that [`Scenario::from_toml`] reads back to the same scenario.
-    ///
-    /// # Errors
-    /// [`ScenarioError::Syntax`] where TOML cannot hold a number (a seed above 2⁶³).
-    pub fn to_toml(&self) -> Result<String, ScenarioError> {
-        toml::to_string(self).map_err(|error| ScenarioError::Syntax { message: error.to_string() })
-    }
-
     /// Whether the law has no inertia: a machine imposes q, which the excitation gives, and F is the output.
     pub fn is_force_law(&self) -> bool {
         self.terms.iter().chain(&self.hidden.terms().collect::<Vec<_>>()).all(|term| !term.is_inertial())
@@ -142,21 +123,5 @@ impl Scenario {
     /// The instants at which the law switches, s.
     pub fn switch_times(&self) -> Vec<f64> {
         self.stages.iter().skip(1).map(|stage| stage.start).collect()
-    }
-}
-
-/// Terms by their canonical names.
-mod term_names {
-    use super::{Term, TermError};
-    use serde::{Deserialize, Deserializer, Serializer, de::Error};
-
-    pub fn serialize<S: Serializer>(terms: &[Term], serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(terms.iter().map(|term| term.name()))
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Term>, D::Error> {
-        let names = Vec::<String>::deserialize(deserializer)?;
-        let terms: Result<Vec<Term>, TermError> = names.iter().map(|name| Term::parse(name)).collect();
-        terms.map_err(D::Error::custom)
     }
 }

@@ -1,4 +1,4 @@
-//! Chores of the project: `cargo xtask crosscheck | test | fmu | bench | study | real | picture`.
+//! Chores of the project, and the measuring programs behind the figures of its documents: `cargo xtask --help`.
 
 mod command;
 mod crosscheck;
@@ -22,11 +22,18 @@ usage: cargo xtask CHORE
                      steps plant and identifier FMUs together under fmpy, has the command line find
                      a hidden effect, gates the figures,
                      writes target/crosscheck/report.html and report.json
-  test               every test
+  test               every test, also those of the measuring programs
   fmu                builds SwitchedIdentifier.fmu, Duffing.fmu, VanDerPol.fmu into target/fmu,
                      and modelDescription.xml at the root anew
   bench [ARGUMENT..] cost per sample by phase, terms and window; arguments go to the
                      benchmark (--help lists them)
+  figures [SEEDS] [SCENARIO] | --against-limits [FIRST..END] [ROW] [--only TEXT] [--threads N]
+                     errors, delays, missed switches and false alarms of the built-in scenarios; beside
+                     what any method could reach
+  effects [--help]   the benchmark of hidden effects: which a diagnosis finds, at what strength and noise
+  known-laws [SEEDS] how soon laws that return are known
+  dropbear FOLDER [PICTURE.svg]
+                     a real record that switches and drifts, FOLDER that of dropbear.csv
   study [--help]     the published method, ours and what is possible: measures what is missing in
                      target/study, writes docs/study.md and its pictures
   real [--only NAME].. [--json OUT] [--switchid PATH]
@@ -34,6 +41,9 @@ usage: cargo xtask CHORE
                      independent regression's answers; status 1 where a figure misses its floor.
                      NAME is a record, transfer or silverbox; PATH is a built command line
   picture            draws docs/switching.svg anew: motion, true and identified coefficients, alarms";
+
+/// The crate of the measuring programs.
+const MEASURE: &str = "switchid-measure";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -48,12 +58,16 @@ fn main() -> ExitCode {
 
 fn chore(arguments: &[String]) -> Result<(), Error> {
     let (name, rest) = arguments.split_first().ok_or_else(|| Error::Usage { text: "which chore?".into() })?;
+    // `cargo xtask effects -- --draws 1` says the same as without the dashes
+    let rest = rest.strip_prefix(&["--".to_string()]).unwrap_or(rest);
     match (name.as_str(), rest) {
         ("crosscheck", rest) => crosscheck::crosscheck(rest),
         ("test", []) => test::test(),
         ("fmu", []) => fmu::renew(),
-        ("bench", rest) => cargo(&["bench", "--package", "switchid", "--bench", "step", "--"], rest),
-        ("study", rest) => cargo(&["run", "--quiet", "--release", "--example", "study", "--"], rest),
+        ("bench", rest) => cargo(&["bench", "--package", MEASURE, "--bench", "step", "--"], rest),
+        (program @ ("figures" | "study" | "effects" | "known-laws" | "dropbear"), rest) => {
+            cargo(&["run", "--quiet", "--release", "--package", MEASURE, "--bin", program, "--"], rest)
+        }
         ("real", rest) => real::real(rest),
         ("picture", []) => picture::picture(),
         ("--help" | "-h" | "help", _) => {

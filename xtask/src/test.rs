@@ -16,7 +16,7 @@ const CHECK: &str = "switchid-fmu-check";
 /// # Errors
 /// [`Error::Steps`]; [`Error::Data`] when real records are missing in CI.
 pub fn test() -> Result<(), Error> {
-    let mut steps = Steps::new(13);
+    let mut steps = Steps::new(14);
     steps.check("real records", real_records);
     steps.check("format", || cargo_run(&["fmt", "--all", "--check"]));
     steps.check("clippy", || cargo_run(&clippy(&["--workspace", "--exclude", CHECK, "--all-targets"])));
@@ -26,6 +26,7 @@ pub fn test() -> Result<(), Error> {
     });
     steps.check("documentation", documentation);
     steps.check("Rust tests", || cargo_run(&["test", "--release", "--quiet", "--no-fail-fast"]));
+    steps.check("measuring programs", || cargo_run(&["test", "--release", "--quiet", "--package", "switchid-measure"]));
     steps.check("FMUs", fmu::build);
     steps.check("FMUs through the fmi crate", fmi_crate);
     steps.check("command line of the cross-check", fmu::build_command);

@@ -1,5 +1,6 @@
 //! `switchid diagnose`: which effect a model lacks.
 
+mod found;
 mod report;
 mod text;
 
@@ -10,8 +11,9 @@ use super::error::CommandError;
 use super::input::{Input, ModelArguments};
 use super::output;
 use super::progress::Waiting;
-use crate::diagnose::{Clock, Diagnosis, Finding, StageDiagnosis, diagnose_stages};
+use crate::diagnose::diagnose_stages;
 use clap::Args;
+use found::Found;
 
 const EXAMPLE: &str = r#"Examples:
   switchid diagnose recording.csv --model model.toml
@@ -37,15 +39,6 @@ pub(super) struct Arguments {
     /// Print one JSON document instead of text
     #[arg(long)]
     json: bool,
-}
-
-/// What the command found.
-struct Found {
-    /// The diagnosis that says most: of all recordings together, or of one stage.
-    principal: Diagnosis,
-    finding: Finding,
-    stages: Vec<StageDiagnosis>,
-    clock: Option<Clock>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {

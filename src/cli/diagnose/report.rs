@@ -2,7 +2,7 @@
 
 use super::super::input::Input;
 use super::super::output::Pairs;
-use super::Found;
+use super::found::Found;
 use super::text;
 use crate::diagnose::{Candidate, Clock, Diagnosis, Doubt, StageDiagnosis, Target, WindowError};
 use serde::Serialize;

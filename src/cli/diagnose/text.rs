@@ -1,7 +1,7 @@
 //! A diagnosis in words: what it comes to, how sure, what would decide, then what it rests on.
 
 use super::super::input::Input;
-use super::Found;
+use super::found::Found;
 use crate::cli::words::{chance, effect_of, number, percent};
 use crate::diagnose::{Candidate, Clock, Diagnosis, Doubt, Finding, Law, StageDiagnosis};
 use crate::law::{Catalogue, SiUnit, Units, equation};

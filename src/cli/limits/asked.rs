@@ -1,15 +1,48 @@
 //! What the user asked for: noise and changes by name.
 
-use super::super::error::CommandError;
-use super::super::input::is_noiseless;
-use super::Arguments;
+use crate::cli::error::CommandError;
+use crate::cli::input::{ModelArguments, is_noiseless};
 use crate::evidence::Noise;
-use crate::identify::Recording;
+use crate::identify::{Recording, Settings};
 use crate::law::{Model, ModelError, Term};
 use crate::limits::{LimitsError, Sensors};
+use clap::Args;
 
 /// Place of F among the channels.
 const FORCE: usize = 2;
+
+const EXAMPLE: &str = r#"Examples:
+  switchid limits recording.csv --model model.toml
+  switchid limits recording.csv@0:12 --model model.toml --noise q=0.001,qd=0.01 --json
+  switchid limits recording.csv --model model.toml --change linear_damping=0.6 --change q^3=4
+  switchid limits damper.csv --model damper.toml --noise F=0.5
+
+The limit is the Cramér–Rao bound: no unbiased method errs less, on average over records like this one, under independent Gaussian
+sensor noise of the given std. A term that the model gives as a number counts as known; where all are numbers, all are sought.
+Of a model without inertia F is the output: its noise counts, and the motion as known.
+Everything else comes from a fit: coefficients, the motion, and the sensors' noise where --noise does not name it."#;
+
+/// Say what any method could reach on a recording: std of the coefficients, shortest record, earliest sight of a switch
+#[derive(Args)]
+#[command(after_help = EXAMPLE)]
+pub(in crate::cli) struct Arguments {
+    /// The recording (CSV with a header, MAT or Parquet), or a section of it: DATA@t0:t1 in seconds
+    pub(super) data: String,
+    #[command(flatten)]
+    pub(super) model: ModelArguments,
+    /// Std of the sensors' noise, SI units: q=0.001,qd=0.01; else estimated
+    #[arg(long, value_name = "CHANNEL=STD", value_delimiter = ',')]
+    noise: Vec<String>,
+    /// A coefficient's value behind a switch, by term or effect id: q^3=4; several make one change
+    #[arg(long, value_name = "TERM=VALUE")]
+    change: Vec<String>,
+    /// Mean time between two false alarms that a detector is allowed
+    #[arg(long, value_name = "S", allow_negative_numbers = true, default_value_t = Settings::default().false_alarm_interval)]
+    false_alarm_interval: f64,
+    /// Print one JSON document instead of text
+    #[arg(long)]
+    pub(super) json: bool,
+}
 
 /// Options, read.
 pub(super) struct Asked {

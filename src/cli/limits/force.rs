@@ -3,7 +3,7 @@
 use super::super::error::CommandError;
 use super::super::input::Input;
 use super::asked::Asked;
-use super::{Limits, pointwise, warnings};
+use super::found::{Limits, pointwise, warnings};
 use crate::identify::{BuildError, ForceFit, fit_force_law};
 use crate::law::{Given, Term};
 use crate::limits::{Detection, Imposed, Law, LimitsError, force_bound, force_detection, level};

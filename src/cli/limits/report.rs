@@ -2,7 +2,7 @@
 
 use super::super::output::Pairs;
 use super::super::words::{number, percent};
-use super::Limits;
+use super::found::Limits;
 use crate::law::{Hold, Term, equation};
 use crate::limits::Detection;
 use serde::Serialize;

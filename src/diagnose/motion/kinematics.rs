@@ -4,8 +4,8 @@
 //! motion it must take of q̇ too, else s comes out too large: the integral of q̇ goes through the same smoother as q. A q̇ that is computed
 //! from q, by differences and whatever filter, has the noise of q in it: what is left of q̇ is then a linear function of what is left of q.
 
-use super::Track;
 use super::spline::{Sensors, Spline};
+use super::track::Track;
 use crate::diagnose::Piece;
 use nalgebra::{DMatrix, DVector};
 

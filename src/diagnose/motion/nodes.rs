@@ -2,7 +2,8 @@
 //!
 //! Nodes are as close as the readings or closer; several make a cell, over which everything is summed before it meets a test function.
 
-use super::{Motion, readings};
+use super::smoothed::Motion;
+use super::track::readings;
 use crate::diagnose::Piece;
 use crate::law::{Hold, NODES, Trajectory};
 

@@ -1,6 +1,6 @@
 //! The entries, in the order of the design.
 
-use super::{Entry, Sign};
+use super::entry::{Entry, Sign};
 use crate::law::{Effect, Term};
 
 pub(super) const ENTRIES: [Entry; 22] = [

@@ -1,54 +1,11 @@
 //! The catalogue of physical effects: what each one is, what it looks like when a model lacks it, and what may be taken for it.
 
 mod entries;
+mod entry;
 
-use super::{Effect, InnerParameter, Term};
+pub use entry::{Entry, Sign};
 
-/// The sign that physics allows a coefficient on the left-hand side.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sign {
-    /// A negative coefficient would be a source of energy, or no such thing exists.
-    Positive,
-    /// Either sign.
-    Any,
-}
-
-impl Sign {
-    /// Whether a coefficient may have this value.
-    pub fn allows(self, coefficient: f64) -> bool {
-        self == Sign::Any || coefficient > 0.0
-    }
-}
-
-/// An effect of the catalogue.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Entry {
-    /// Its stable id.
-    pub id: &'static str,
-    /// The term, inner parameters at their defaults.
-    pub term: Term,
-    /// What stands on the left-hand side behind the coefficient.
-    pub equation: &'static str,
-    /// The sign that physics allows the coefficient.
-    pub sign: Sign,
-    /// What a residual looks like that lacks it, one sentence.
-    pub residual: &'static str,
-    /// Why a system may have it, one sentence.
-    pub reason: &'static str,
-    /// Where it is described.
-    pub reference: &'static str,
-    /// Effects that records of small amplitude, few frequencies or much noise cannot tell from it.
-    pub look_alikes: &'static [&'static str],
-    /// Effects that are this one for a limit of this one's inner parameters.
-    pub contains: &'static [&'static str],
-}
-
-impl Entry {
-    /// The inner parameters.
-    pub fn inner(&self) -> &'static [InnerParameter] {
-        self.term.effect().map_or(&[], Effect::inner)
-    }
-}
+use super::Term;
 
 /// The catalogue.
 #[derive(Clone, Copy, Debug)]
@@ -80,7 +37,7 @@ impl Catalogue {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::{Inner, Monomial};
+    use crate::law::{Effect, Inner, Monomial};
 
     #[test]
     fn every_effect_stands_once_under_its_own_id() {

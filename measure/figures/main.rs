@@ -1,4 +1,4 @@
-//! The README's table of figures: `cargo run --release --example figures [SEEDS] [SCENARIO]`.
+//! The table of figures: `cargo xtask figures [SEEDS] [SCENARIO]`.
 //!
 //! Every built-in scenario through the library, without noise and with sensor noise 0.01 (the publication's two noise cases with
 //! theirs), over many seeds. The first is the documented scenario; the others draw stages, excitation and noise

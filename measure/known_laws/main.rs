@@ -1,4 +1,4 @@
-//! The README's table of known laws: `cargo run --release --example known_laws [SEEDS]`.
+//! The table of known laws: `cargo xtask known-laws [SEEDS]`.
 //!
 //! Three laws take turns, A B A C B A C, drawn with their excitation as in the random built-in scenarios, and recorded with
 //! sensor noise. A law that returns is *known* from when its number stands with `valid` to the

@@ -1,4 +1,5 @@
-//! Figures beside what any method could reach: `cargo run --release --example figures -- --against-limits [FIRST..END] [ROW] [--only TEXT] [--threads N]`.
+//! Figures beside what any method could reach:
+//! `cargo xtask figures --against-limits [FIRST..END] [ROW] [--only TEXT] [--threads N]`.
 //!
 //! Every row draws its scenarios and its noise from the seeds FIRST to END − 1, so that a row can be measured piece by piece;
 //! with `--only TEXT` those of its cases alone whose label holds the text.

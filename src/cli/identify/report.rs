@@ -1,8 +1,8 @@
 //! The JSON document of `switchid identify`.
 
-use super::identify::{Run, noise, stages};
-use super::output::Pairs;
-use super::stage_limit::StageLimit;
+use super::found::{Run, noise, stages};
+use crate::cli::output::Pairs;
+use crate::cli::stage_limit::StageLimit;
 use crate::identify::Stage;
 use crate::law::{Units, unit_of};
 use serde::Serialize;

@@ -1,5 +1,5 @@
-//! A real record that switches and drifts: `cargo run --release --example dropbear FOLDER [PICTURE.svg]`, FOLDER that of
-//! `dropbear.csv`. Prints the figures of docs/dropbear.md and draws its picture.
+//! A real record that switches and drifts: `cargo xtask dropbear FOLDER [PICTURE.svg]`, FOLDER that of `dropbear.csv`.
+//! Prints the figures of docs/dropbear.md and draws its picture.
 
 mod measure;
 mod plot;

@@ -8,8 +8,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Where the library's sources are, from the workspace's root.
-const SOURCES: &str = "src";
+/// Where the library's sources are, from this crate's folder.
+const SOURCES: &str = "../src";
 
 /// Points with their outcomes.
 type Measured<F> = Vec<(<F as Figure>::Point, <F as Figure>::Outcome)>;

@@ -1,4 +1,4 @@
-//! The benchmark of hidden effects: `cargo run --release --example hidden_effects -- [--help]`.
+//! The benchmark of hidden effects: `cargo xtask effects [--help]`.
 //!
 //! Every effect of the catalogue hidden in turn, pairs of them, complete models, and effects that the catalogue does
 //! not have, at several strengths and noises; excitation, channels, scales and all numbers are drawn from the seed. A

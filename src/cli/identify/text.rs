@@ -1,0 +1,153 @@
+//! What the identifier found, in words.
+
+use super::found::{Run, noise, stages};
+use crate::cli::stage_limit::StageLimit;
+use crate::cli::words::percent;
+use crate::identify::Stage;
+use crate::law::{Term, Units, unit_of};
+use std::fmt::Write;
+
+/// Least width of the column of terms.
+const TERM: usize = 12;
+
+/// Shortest time that one decimal shows, s.
+const SHOWN: f64 = 0.05;
+
+pub(super) fn text(run: &Run) -> String {
+    let mut text = head(run);
+    text += "\nstage       start           ±         end    detected  identified   s\n";
+    for (index, stage) in run.found.stages.iter().enumerate() {
+        let (detected, identified) = (time(stage.detected), time(stage.identified));
+        let std = stage.start_std.map_or_else(|| "–".into(), |std| format!("{std:.4}"));
+        let _ = writeln!(
+            text,
+            "{:>5} {:>11.3} {std:>11} {:>11.3} {detected:>11} {identified:>11}",
+            index + 1,
+            stage.start,
+            stage.end
+        );
+    }
+    for (index, (stage, limit)) in stages(run).enumerate() {
+        let law = law(stage, limit, run.settings.channels.excitation, &run.opened.units);
+        let drifting = if stage.drifting { " (drifting; its last coefficients)" } else { "" };
+        let again = again(&run.found.stages[..index], stage);
+        let _ = write!(text, "\nstage {}{again}{drifting}: {law}", index + 1);
+    }
+    text
+}
+
+/// ` (law 1 again)` where the law was known when the stage began.
+fn again(before: &[Stage], stage: &Stage) -> String {
+    let seen = stage.recognised || before.iter().any(|other| other.law_number == stage.law_number);
+    stage.law_number.filter(|_| seen).map_or_else(String::new, |number| format!(" (law {number} again)"))
+}
+
+fn head(run: &Run) -> String {
+    let recording = &run.opened.recording;
+    let (first, last) = (recording.sample(0).t, recording.sample(recording.count() - 1).t);
+    let mut text = format!("{}: {} samples from {first} s to {last} s\n", recording.source(), recording.count());
+    for column in &run.opened.columns {
+        let _ = writeln!(text, "  {column}");
+    }
+    text += &match run.gives_force {
+        true => "F is the output: F = law(q, q̇)\n".into(),
+        false => format!("between samples: {} ({})\n", run.settings.hold, run.hold_from),
+    };
+    let noise: Vec<String> = noise(&run.found).iter().map(|(channel, std)| format!("{channel} {std:.3e}")).collect();
+    let noise = if noise.is_empty() { "not known".into() } else { noise.join(", ") };
+    let _ = writeln!(text, "sensor noise (std): {noise}");
+    text
+}
+
+/// The law on one line, its coefficients with their std, units and what any method could reach, and what is not known.
+fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -> String {
+    let unknown = "cannot be determined from these data";
+    let mut text = stage.law(forced).unwrap_or_else(|| unknown.into()) + "\n";
+    let longest = stage.known().map(|(known, _)| known.term.name().chars().count()).max();
+    let width = longest.unwrap_or(0).max(TERM);
+    let unit_width = stage.known().map(|(known, _)| unit(known.term, units).chars().count()).max().unwrap_or(0);
+    for (known, std) in stage.known() {
+        let line = format!(
+            "  {:<width$} {:>14.6e} ± {std:.1e} {:<unit_width$}{}",
+            known.term.name(),
+            known.value,
+            unit(known.term, units),
+            times_limit(known.term, std, limit)
+        );
+        text = text + line.trim_end() + "\n";
+    }
+    let open: Vec<String> = stage
+        .coefficients
+        .iter()
+        .filter(|entry| entry.std.is_none() && entry.needed.is_none())
+        .map(|entry| entry.term.name())
+        .collect();
+    if !open.is_empty() {
+        let _ = writeln!(text, "  not known: {}", open.join(", "));
+    }
+    text += &lacking(stage);
+    text += &explained(stage);
+    if limit.is_some_and(|limit| !limit.explained()) {
+        text += "  the law leaves more than sensor noise: no comparison with what any method could reach\n";
+    }
+    for combination in &stage.unidentifiable {
+        let _ = writeln!(text, "  no data of this stage determine {combination}");
+    }
+    text
+}
+
+/// What share of the force the law explains, and whether it is validated; empty where that is not told.
+fn explained(stage: &Stage) -> String {
+    let validated = match stage.identified.filter(|_| stage.valid) {
+        Some(_) => "",
+        None => {
+            "; it is not validated: what it leaves is no white noise, or the record too short; the std are those between parts of \
+             the record"
+        }
+    };
+    let line = |share: f64| format!("  the law explains {} of the variance of the force{validated}\n", percent(share));
+    stage.explained.map_or_else(String::new, line)
+}
+
+/// `q^3: not known yet, about 1.4 s more of such motion`, a line for each coefficient that a law to vouch for needs better.
+fn lacking(stage: &Stage) -> String {
+    let last = stage.lacking().map(|(_, seconds)| seconds).fold(0.0, f64::max);
+    let line = |(term, seconds): (Term, f64)| {
+        let known = stage.known().any(|(known, _)| known.term == term);
+        let what = if known { "not known well yet" } else { "not known yet" };
+        format!("  {}: {what}, {} more of such motion\n", term.name(), more(seconds, last))
+    };
+    stage.lacking().map(line).collect()
+}
+
+/// `about 1.4 s`, never 0.0 s: a term that lacks next to nothing waits for the last one, with which the law is known.
+fn more(seconds: f64, last: f64) -> String {
+    let shown = |seconds: &f64| *seconds >= SHOWN;
+    let seconds = Some(seconds).filter(shown).or(Some(last).filter(shown));
+    seconds.map_or_else(|| "less than 0.1 s".into(), |seconds| format!("about {seconds:.1} s"))
+}
+
+/// `  (1.1 times the limit)`; empty where the limit is not known or the law is not complete.
+fn times_limit(term: Term, std: f64, limit: Option<&StageLimit>) -> String {
+    let least = limit.filter(|limit| limit.explained()).and_then(|limit| limit.std(term));
+    least.map_or_else(String::new, |least| format!("  ({:.2} times the limit)", std / least))
+}
+
+fn unit(term: Term, units: &Units) -> String {
+    unit_of(term, units).filter(|unit| unit != "1").unwrap_or_default()
+}
+
+fn time(t: Option<f64>) -> String {
+    t.map_or_else(|| "–".into(), |t| format!("{t:.3}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::more;
+
+    #[test]
+    fn what_a_term_lacks_is_never_nothing() {
+        assert_eq!([more(1.44, 3.0), more(0.01, 3.0)], ["about 1.4 s", "about 3.0 s"]);
+        assert_eq!(more(0.01, 0.04), "less than 0.1 s");
+    }
+}

@@ -1,0 +1,156 @@
+//! The motion of a recording, its sensors, and how fast it is.
+
+use super::kinematics::Kinematics;
+use super::noise::sensor_noise;
+use super::spline::{Sensors, Spline};
+use super::track::{Track, follow, readings, track};
+use crate::diagnose::Piece;
+use crate::diagnose::piece::thinned;
+use crate::identify::Recording;
+use crate::law::{Hold, State};
+use std::f64::consts::{PI, TAU};
+
+/// Ratio between the cutoffs that are tried.
+const RATIO: f64 = 1.5;
+
+/// Factor by which the likeliest cutoff is raised: one that is too low biases coefficients, one that is too high lets a little more noise in.
+const MARGIN: f64 = 1.5;
+
+/// Samples from which the cutoff is chosen, at most.
+const LOOKED_AT: usize = 4000;
+
+/// Highest cutoff relative to half the sampling frequency.
+const NYQUIST: f64 = 0.9;
+
+/// Angular frequency up to which the motion counts for its period, in its own: what the shortest window of the judge resolves.
+const RESOLVED: f64 = 10.0;
+
+/// Smallest noise std ÷ range of a channel: rounding of the numbers in a file.
+const ROUNDED: f64 = 1e-7;
+
+/// Factor on the variance of a reading that is not to be taken.
+const UNREAD: f64 = 1e12;
+
+/// The motion of one recording.
+#[derive(Clone, Debug)]
+pub(in crate::diagnose) struct Motion {
+    /// What q̇ is of q; none where one of them is absent.
+    pub(in crate::diagnose) kinematics: Option<Kinematics>,
+    /// How its readings are taken.
+    pub(in crate::diagnose) sensors: Sensors,
+    /// Its pieces.
+    pub(in crate::diagnose) pieces: Vec<Piece>,
+    /// Their motions.
+    pub(in crate::diagnose) tracks: Vec<Track>,
+}
+
+impl Sensors {
+    /// With the likeliest cutoff itself.
+    pub(in crate::diagnose) fn without_margin(self) -> Sensors {
+        Sensors { cutoff: self.cutoff / MARGIN, ..self }
+    }
+}
+
+impl Motion {
+    /// Of a recording whose excitation did this between samples. None where no piece has samples enough.
+    pub(in crate::diagnose) fn of(recording: &Recording, hold: Hold) -> Option<Motion> {
+        let pieces = Piece::all(recording, hold);
+        let pieces: Vec<Piece> = pieces.into_iter().filter(|piece| piece.len() >= Recording::MINIMUM).collect();
+        let first = pieces.first()?;
+        let has = first.measured().map(|channel| channel.is_some());
+        let noise = noise_levels(&pieces);
+        let blank = Sensors { noise, lag: 0.0, scale: 1.0, cutoff: 1.0 };
+        let single = [has[0], has[1] && !has[0]];
+        let sensors = likeliest(&pieces, blank, single);
+        let tracks = follow(&pieces, sensors, single);
+        let motion = Motion { kinematics: None, sensors, pieces, tracks };
+        Some(if has == [true, true] { motion.with_velocity() } else { motion })
+    }
+
+    /// With the readings of q̇, where they are a measurement of their own.
+    fn with_velocity(self) -> Motion {
+        let Some(kinematics) = Kinematics::of(&self.pieces, &self.tracks, self.sensors) else { return self };
+        if kinematics.is_derivative || !kinematics.is_velocity() {
+            return Motion { kinematics: Some(kinematics), ..self };
+        }
+        let both = [true, true];
+        let sensors = Sensors { lag: kinematics.lag, scale: kinematics.scale, ..self.sensors };
+        let sensors = likeliest(&self.pieces, sensors, both);
+        let tracks = follow(&self.pieces, sensors, both);
+        Motion { kinematics: Some(kinematics), sensors, tracks, ..self }
+    }
+
+    /// The motion as every second reading shows it, from the first or from the second on.
+    pub(in crate::diagnose) fn half(&self, first: usize) -> Motion {
+        let tracks = self.pieces.iter().zip(&self.tracks).map(|(piece, whole)| {
+            let doubt = [0, 1].map(|channel| {
+                let usual = |k: usize| whole.doubt[channel].get(k).copied().unwrap_or(1.0);
+                (0..piece.len()).map(|k| if k % 2 == first { usual(k) } else { UNREAD }).collect()
+            });
+            Track { share: 2.0, ..track(piece, self.sensors, whole.read, doubt) }
+        });
+        Motion { tracks: tracks.collect(), ..self.clone() }
+    }
+
+    /// (q, q̇) at every sample, piece by piece.
+    pub(in crate::diagnose) fn states(&self) -> impl Iterator<Item = Vec<State>> {
+        let state = |own: &[f64; 4]| State { q: own[0], qd: own[1] };
+        self.tracks.iter().map(move |track| track.states.iter().map(state).collect())
+    }
+
+    /// Σ ẋ² and Σ ẍ² of the motion followed up to an angular frequency, rad/s.
+    fn powers(&self, cutoff: f64) -> [f64; 2] {
+        let read = self.tracks.first().map_or([true; 2], |track| track.read);
+        let cutoff = cutoff.min(self.sensors.cutoff);
+        let tracks = follow(&self.pieces, Sensors { cutoff, ..self.sensors }, read);
+        let states = || tracks.iter().flat_map(|track| &track.states);
+        [1, 2].map(|order| states().map(|state| state[order] * state[order]).sum())
+    }
+}
+
+/// T₀ = 2π rms q̇ ÷ rms q̈, s, of the motion followed up to ten times its own frequency: what lies beyond is no motion that a window of
+/// the judge could see. Not finite where nothing moves.
+pub(in crate::diagnose) fn period(motions: &[Motion]) -> f64 {
+    let highest = motions.iter().map(|motion| motion.sensors.cutoff).fold(0.0, f64::max);
+    let (mut cutoff, mut period) = (highest, f64::NAN);
+    for _ in 0..20 {
+        let sums = motions.iter().map(|motion| motion.powers(cutoff)).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+        period = TAU * (sums[0] / sums[1]).sqrt();
+        let next = RESOLVED * TAU / period;
+        if next.is_nan() || next >= 0.97 * cutoff {
+            break;
+        }
+        cutoff = next;
+    }
+    period
+}
+
+/// Noise std of both channels, at least what the numbers of a file are rounded to.
+fn noise_levels(pieces: &[Piece]) -> [f64; 2] {
+    let noise = sensor_noise(pieces);
+    [0, 1].map(|channel| {
+        let values = || pieces.iter().filter_map(|piece| piece.measured()[channel]).flatten();
+        let [low, high] =
+            [values().fold(f64::INFINITY, |a, b| a.min(*b)), values().fold(f64::NEG_INFINITY, |a, b| a.max(*b))];
+        noise[channel].max(ROUNDED * (high - low)).max(f64::MIN_POSITIVE.sqrt())
+    })
+}
+
+/// The sensors with the cutoff under which the readings are likeliest, with a margin.
+fn likeliest(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> Sensors {
+    let parts = thinned(pieces, LOOKED_AT);
+    let duration = |piece: &Piece| piece.t[piece.len() - 1] - piece.t[0];
+    let distance = pieces.iter().map(|piece| duration(piece) / (piece.len() - 1) as f64).fold(f64::INFINITY, f64::min);
+    let top = NYQUIST * PI / distance;
+    // a motion slower than the parts that are looked at is a polynomial in each of them, whatever the cutoff
+    let least = 2.0 * TAU / parts.iter().map(duration).fold(0.0, f64::max);
+    let deviance = |cutoff: &f64| -> f64 {
+        let sensors = Sensors { cutoff: *cutoff, ..sensors };
+        let of = |piece: &Piece| Spline::new(&piece.t, sensors, read, [&[], &[]]).deviance(readings(piece, read));
+        parts.iter().map(of).sum()
+    };
+    let cutoffs = std::iter::successors(Some(top), |cutoff| Some(cutoff / RATIO)).take_while(|cutoff| *cutoff > least);
+    let best = cutoffs.map(|cutoff| (deviance(&cutoff), cutoff)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let cutoff = best.map_or(top, |(_, cutoff)| cutoff);
+    Sensors { cutoff: (MARGIN * cutoff).min(top), ..sensors }
+}
