@@ -33,6 +33,7 @@ mod trials;
 mod usual;
 mod window;
 
+pub use crate::evidence::Missing;
 pub use force_law::{ForceFit, fit_force_law};
 pub use identification::{Identification, Stage, choose_hold, identify_knowing, identify_recording, settings_for};
 pub use identifier::{BuildError, Coefficient, Identifier, Output, Sample, Skipped, Status};

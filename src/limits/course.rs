@@ -20,7 +20,7 @@ pub struct Course {
     pub states: Vec<State>,
 }
 
-/// Std of the sensors' noise, q and q̇; `None` for a quantity that is not measured.
+/// Std of the sensors' noise, q in m and q̇ in m/s; `None` for a quantity that is not measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensors(pub [Option<f64>; 2]);
 
@@ -44,7 +44,7 @@ impl Sensors {
 }
 
 impl Course {
-    /// A law's own motion from a state.
+    /// A law's own motion from a state: at the times `t`, s, under one drive fewer than times.
     pub fn own(motion: &Motion, start: State, t: Vec<f64>, drives: Vec<Drive>) -> Course {
         let mut course = Course { t, drives, states: vec![start] };
         for k in 0..course.drives.len() {

@@ -79,7 +79,7 @@ impl Scenario {
     /// oscillations up to 1 Hz, by less than 1e-8 up to 10 Hz.
     pub const INNER_STEP: f64 = 5e-4;
 
-    /// A scenario with the default grid, no sensor noise, starting at rest.
+    /// A scenario of `duration` s with the default grid, no sensor noise, starting at rest.
     pub fn new(name: &str, terms: Vec<Term>, stages: Vec<Stage>, duration: f64) -> Scenario {
         Scenario {
             name: name.into(),

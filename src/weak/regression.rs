@@ -39,7 +39,7 @@ pub struct Regression {
 /// A least-squares solution of minimal norm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
-    /// θ, n.
+    /// θ, n of them, in the units of the rows.
     pub coefficients: Vec<f64>,
     /// Diagonal of (AᵀA)⁺, n: times the residual's variance it is the variance of θ, were the rows independent.
     pub spread: Vec<f64>,
@@ -52,7 +52,7 @@ pub struct Fit {
     /// Length of the right side ÷ length of the unknown's column, n: the value at which its term alone would be as large as the
     /// right side; infinite for a column of zeros.
     pub reach: Vec<f64>,
-    /// RMS of the residual over the rows.
+    /// RMS of the residual over the rows, in their unit.
     pub residual: f64,
     /// Right singular vectors that do not count, one row of n for each.
     null: Vec<f64>,

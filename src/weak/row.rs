@@ -13,13 +13,13 @@ const GAUSS: [(f64, f64); 3] =
 pub struct Section<'a> {
     /// Time, s.
     pub t: &'a [f64],
-    /// Displacement.
+    /// Displacement, m.
     pub q: &'a [f64],
-    /// Velocity.
+    /// Velocity, m/s.
     pub qd: &'a [f64],
     /// Whether the velocity is measured; where it is an estimate, as few integrals as possible use it.
     pub qd_measured: bool,
-    /// Excitation.
+    /// Excitation, N.
     pub excitation: &'a [f64],
     /// What the excitation did between samples.
     pub hold: Hold,
@@ -28,11 +28,11 @@ pub struct Section<'a> {
 /// Computes weak equations for a set of terms.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// The integral of each term against φ.
+    /// The integral of each term against φ, SI units times s.
     pub terms: Vec<f64>,
     /// What white sensor noise of std 1 on each sample of (q, q̇) adds to the variance of each term's integral.
     pub noise: Vec<[f64; 2]>,
-    /// The integral of the excitation against φ.
+    /// The integral of the excitation against φ, N s.
     pub excitation: f64,
     /// ∫ φ² dt, s.
     pub norm: f64,
