@@ -142,7 +142,8 @@ impl Record {
     /// ∫ φ f dt of a term.
     pub(in crate::diagnose) fn term(&self, term: Term, timing: Timing) -> Column {
         match term {
-            Term::Inertia => self.measured_inertia(timing.hold),
+            // the readings' noise in a column that explains would make its coefficient too small
+            Term::Inertia => self.column(1, |(.., nodes)| nodes.integrals(&nodes.qd), -1.0),
             _ => self.column(0, |piece| piece.2.integrals(&self.series(term, piece, timing)), 1.0),
         }
     }
