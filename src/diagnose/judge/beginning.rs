@@ -4,18 +4,33 @@
 //! e^(−ζωt) (a cos ω_d t + b sin ω_d t) in every piece, which is linear in a and b: they are fitted beside the law once, and its column is then
 //! that of the mass as it moved.
 
-use super::record::{Column, Record};
+use super::record::{Column, Record, Timing};
 use super::regression::{self, Normal};
 use super::windows::PRINCIPAL;
 use crate::law::{Effect, Term};
 
+/// Amplitude of a free response, in RMS of what the record drives the mass to, beyond which it is no hidden mass's: it moved no more before
+/// the record than in it, and one in 10⁴ Gaussian amplitudes is larger.
+const LARGEST: f64 = 4.3;
+
 /// The column of a hidden resonator, at that place among a law's, with what it did before the record began; none of another term.
-pub(super) fn begun(record: &Record, term: Term, left: &[Column], place: usize, right: &Column) -> Option<Column> {
+pub(super) fn begun(
+    record: &Record,
+    (term, timing): (Term, Timing),
+    left: &[Column],
+    place: usize,
+    right: &Column,
+) -> Option<Column> {
     let responses = responses(record, term)?;
     let columns: Vec<&[f64]> = left.iter().chain(&responses).map(|column| column[PRINCIPAL].as_slice()).collect();
     let right = &right[PRINCIPAL];
     let solution = Normal::of(&columns, right, &vec![1.0; right.len()]).solve()?;
     let coefficient = Some(solution[place]).filter(|value| *value != 0.0)?;
+    let usual = record.rms(term, timing);
+    let amplitudes = solution[left.len()..].chunks_exact(2).map(|pair| (pair[0].hypot(pair[1]) / coefficient).abs());
+    if amplitudes.fold(0.0, f64::max) > LARGEST * usual {
+        return None;
+    }
     let mut column = left[place].clone();
     for (response, value) in responses.iter().zip(&solution[left.len()..]) {
         regression::add(&mut column, response, value / coefficient);

@@ -70,17 +70,11 @@ impl Equation {
             Equation { terms: terms.to_vec(), target, timing, right, spread, functions, tells, takes_delay, left };
         for index in 0..terms.len() {
             let begun = equation.place(index).and_then(|place| {
-                Some((place, beginning::begun(record, terms[index], &equation.left, place, &equation.right)?))
+                Some((place, beginning::begun(record, (terms[index], timing), &equation.left, place, &equation.right)?))
             });
             begun.into_iter().for_each(|(place, column)| equation.left[place] = column);
         }
         equation
-    }
-
-    /// The column of one more term that has a memory, as it was when the record began; none of a term without.
-    pub(in crate::diagnose) fn begun(&self, record: &Record, term: Term, column: &Column) -> Option<Column> {
-        let left: Vec<Column> = self.left.iter().chain([column]).cloned().collect();
-        beginning::begun(record, term, &left, self.left.len(), &self.right)
     }
 
     /// Which column a term has; none where it is the target or stands in the excitation's.
@@ -187,6 +181,11 @@ impl Equation {
 }
 
 impl Equation {
+    /// The inertia among coefficients of the terms.
+    pub(super) fn inertia(&self, coefficients: &[f64]) -> Option<f64> {
+        self.terms.iter().position(|term| *term == Term::Inertia).map(|index| coefficients[index])
+    }
+
     /// The regression's solution that these coefficients of the terms are; none where a free inertia is 0.
     pub(in crate::diagnose) fn solution(&self, coefficients: &[f64], forced: bool) -> Option<Vec<f64>> {
         let place = self.terms.iter().position(|term| *term == Term::Inertia);

@@ -5,6 +5,7 @@
 //! stand what the sensors alone would leave ([`floor`]) and how likely a gain is by chance ([`significance`]).
 
 mod beginning;
+mod drift;
 mod equation;
 mod estimate;
 mod floor;
@@ -15,6 +16,7 @@ mod regression;
 mod significance;
 mod windows;
 
+pub(super) use drift::{Drift, drift};
 pub use equation::Target;
 pub(super) use equation::{Equation, delay_of};
 pub(super) use estimate::{Estimate, estimate};

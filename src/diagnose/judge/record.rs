@@ -33,6 +33,8 @@ pub(in crate::diagnose) struct Record {
     pub(in crate::diagnose) duration: f64,
     /// Whether there is an excitation.
     pub(in crate::diagnose) forced: bool,
+    /// Whether F is the output: an inertia is then a term that explains, in which the readings' noise would make its coefficient too small.
+    pub(in crate::diagnose) is_output: bool,
     /// The user's effects.
     pub(in crate::diagnose) expressions: Vec<Expression>,
     /// By hold and piece, the excitation's integral, once it was asked for.
@@ -69,13 +71,16 @@ impl Record {
         let windows = [0, 1, 2].map(|which| Windows::new(which, &cells, cell, sample_time));
         let duration = cells.iter().sum::<usize>() as f64 * cell;
         let impulses = Default::default();
-        let record = Record { motions, nodes, windows, period, sample_time, duration, forced, expressions, impulses };
+        let is_output = false;
+        let record =
+            Record { motions, nodes, windows, period, sample_time, duration, forced, is_output, expressions, impulses };
         record.windows.iter().any(|windows| windows.rows() > 0).then_some(record)
     }
 
     /// The same record under other motions at the same instants.
     pub(super) fn moved(&self, motions: Vec<Motion>) -> Option<Record> {
-        Record::cut(motions, self.period, self.sample_time, self.forced, self.expressions.clone())
+        let record = Record::cut(motions, self.period, self.sample_time, self.forced, self.expressions.clone())?;
+        Some(Record { is_output: self.is_output, ..record })
     }
 
     /// The same record as every second reading of each channel shows it: the even ones, and the odd ones. What noise the two have is not
@@ -142,8 +147,8 @@ impl Record {
     /// ∫ φ f dt of a term.
     pub(in crate::diagnose) fn term(&self, term: Term, timing: Timing) -> Column {
         match term {
-            // the readings' noise in a column that explains would make its coefficient too small
-            Term::Inertia => self.column(1, |(.., nodes)| nodes.integrals(&nodes.qd), -1.0),
+            Term::Inertia if self.is_output => self.column(1, |(.., nodes)| nodes.integrals(&nodes.qd), -1.0),
+            Term::Inertia => self.measured_inertia(timing.hold),
             _ => self.column(0, |piece| piece.2.integrals(&self.series(term, piece, timing)), 1.0),
         }
     }
@@ -163,6 +168,34 @@ impl Record {
         };
         self.add(0, &self.nodes.iter().enumerate().map(own).collect(), 1.0, &mut column);
         column
+    }
+
+    /// What a law of these terms and coefficients gains by a displacement of τ to that power in one recording, τ from −1 at its beginning to 1
+    /// at its end: Σ θ ∂f ÷ ∂q τ^power. Terms with a memory gain nothing.
+    pub(super) fn leaning(&self, law: &[(Term, f64)], motion: usize, power: usize) -> Column {
+        let own = |(index, _, nodes): &(usize, usize, Nodes)| {
+            if *index != motion {
+                return vec![[0.0; 2]; nodes.cells()];
+            }
+            let [from, to] = self.motions[motion].span();
+            let value = |(t, q, qd): (f64, f64, f64)| {
+                let slopes = law.iter().map(|(term, coefficient)| coefficient * term.gradient(q, qd, 0.0).0);
+                let slope: f64 = slopes.filter(|slope| slope.is_finite()).sum();
+                slope * (2.0 * (t - from) / (to - from) - 1.0).powi(power as i32)
+            };
+            nodes.integrals(&nodes.states().map(value).collect::<Vec<f64>>())
+        };
+        self.column(0, own, 1.0)
+    }
+
+    /// RMS of a term per unit of its coefficient.
+    pub(super) fn rms(&self, term: Term, timing: Timing) -> f64 {
+        let squares = self.nodes.iter().map(|piece| {
+            let series = self.series(term, piece, timing);
+            [series.iter().map(|value| value * value).sum::<f64>(), series.len() as f64]
+        });
+        let [sum, count] = squares.fold([0.0; 2], |sums, own| [sums[0] + own[0], sums[1] + own[1]]);
+        (sum / count).sqrt()
     }
 
     /// Whether a term holds q̈ itself.

@@ -56,6 +56,11 @@ impl Nodes {
         self.t.len() / self.per_cell
     }
 
+    /// Time, s, displacement and velocity at every node.
+    pub(in crate::diagnose) fn states(&self) -> impl Iterator<Item = (f64, f64, f64)> {
+        self.t.iter().zip(&self.q).zip(&self.qd).map(|((t, q), qd)| (*t, *q, *qd))
+    }
+
     /// Time since the piece began at every node, s.
     pub(in crate::diagnose) fn elapsed(&self) -> impl Iterator<Item = f64> {
         self.t.iter().map(|t| t - self.start)

@@ -76,6 +76,13 @@ impl Motion {
         Motion { kinematics: Some(kinematics), sensors, tracks, ..self }
     }
 
+    /// Where it begins and ends, s.
+    pub(in crate::diagnose) fn span(&self) -> [f64; 2] {
+        let ends = self.pieces.first().and_then(|piece| piece.t.first());
+        let last = self.pieces.last().and_then(|piece| piece.t.last());
+        [ends, last].map(|t| t.copied().unwrap_or_default())
+    }
+
     /// The smoothed motion as its sensors would read it without noise.
     pub(in crate::diagnose) fn as_followed(&self) -> Motion {
         let mut motion = self.clone();

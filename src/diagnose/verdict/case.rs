@@ -66,8 +66,9 @@ impl Case {
         hold: Option<Hold>,
         inertia: f64,
     ) -> Option<Case> {
-        let record = Record::new(recordings, expressions)?;
         let is_output = !terms.contains(&Term::Inertia);
+        let mut record = Record::new(recordings, expressions)?;
+        record.is_output = is_output;
         let bootstrap = Bootstrap::of(&record, record.force_noise(is_output))?;
         let folds = Folds::new(&record);
         let mut case =

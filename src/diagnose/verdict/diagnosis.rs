@@ -194,7 +194,8 @@ fn delay(case: &Case, terms: &[Term], others: &[Entry]) -> Option<Entry> {
     // the column beside it may take any delay back, and find the record late instead
     let [step, std] = standing.estimate.delay?;
     let whole = standing.equation.timing.delay + step;
-    if whole <= (0.5 * case.record.sample_time).max(SURE * std) {
+    // half a sample is also what a held force is late when it is read as a straight line
+    if whole <= 0.5 * case.record.sample_time + SURE * std {
         return None;
     }
     let score = standing.held.score(&before);
@@ -284,7 +285,7 @@ pub(super) fn doubt_of_gain(
 }
 
 /// Whether a gain takes a third of the error's energy in every window that leaves more than the sensors do, of two at least.
-fn is_large(before: &HeldOut, after: &HeldOut, floor: &[f64; COUNT]) -> bool {
+pub(super) fn is_large(before: &HeldOut, after: &HeldOut, floor: &[f64; COUNT]) -> bool {
     let errors = before.errors.iter().zip(&after.errors).zip(floor);
     let beyond = errors.filter(|((before, _), floor)| **before > ADEQUATE * **floor);
     let ratios: Vec<f64> = beyond.map(|((before, after), _)| after / before).collect();

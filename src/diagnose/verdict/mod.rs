@@ -2,6 +2,7 @@
 
 mod case;
 mod diagnosis;
+mod drifting;
 mod errors;
 mod exchange;
 mod improve;

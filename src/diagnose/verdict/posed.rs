@@ -2,6 +2,7 @@
 
 use super::case::{Case, Standing};
 use super::diagnosis::{Diagnosis, diagnose};
+use super::drifting::{steadied, wandering};
 use super::errors::{TIE, WindowError};
 use super::improve::{Addition, Improvement, add, improve};
 use super::law::Law;
@@ -17,6 +18,8 @@ use crate::law::{Effect, Given, Hold, Inner, Model, ModelTerm, Term};
 pub struct Posed {
     case: Case,
     terms: Vec<Term>,
+    /// How much the displacement of each recording wandered, m, before that was taken out; empty where none does.
+    wandering: Vec<f64>,
 }
 
 impl Posed {
@@ -26,7 +29,9 @@ impl Posed {
         let all: Vec<Term> = model.terms.iter().map(|entry| entry.term).collect();
         let inertia = model.terms.iter().find(|entry| entry.term == Term::Inertia);
         let inertia = inertia.map_or(1.0, |entry| if let Given::Known(value) = entry.given { value } else { 1.0 });
-        let case = Case::new(recordings, &all, &model.expressions, hold.or(model.hold), inertia)?;
+        let posed =
+            |recordings: &[&Recording]| Case::new(recordings, &all, &model.expressions, hold.or(model.hold), inertia);
+        let case = posed(recordings)?;
         let is_open = |entry: &&ModelTerm| entry.open.contains(&true);
         let (open, settled): (Vec<&ModelTerm>, Vec<&ModelTerm>) = model.terms.iter().partition(is_open);
         let settled = settled.into_iter().map(|entry| entry.term).collect();
@@ -34,7 +39,10 @@ impl Posed {
         let maybe: Vec<Term> =
             model.terms.iter().filter(|entry| entry.given == Given::Maybe).map(|entry| entry.term).collect();
         let terms = without_idle(&case, terms, &maybe)?;
-        Some(Posed { case, terms })
+        Some(match steadied(&case, recordings, &terms, posed) {
+            Some((case, drifts)) => Posed { case, terms, wandering: drifts.iter().map(wandering).collect() },
+            None => Posed { case, terms, wandering: Vec::new() },
+        })
     }
 
     /// Which effect the model lacks.
@@ -75,7 +83,7 @@ impl Posed {
 
     /// How the sensors keep time, as this law has it.
     pub fn clock(&self, law: &Law) -> Clock {
-        Clock::of(&self.case, law)
+        Clock::of(&self.case, law, &self.wandering)
     }
 
     /// The law's terms: the model's, its open inner parameters fitted, without "maybe" terms that explain nothing.

@@ -24,13 +24,15 @@ pub struct Clock {
     pub is_velocity: Option<bool>,
     /// Whether the law leaves clearly less with the delay of F than without.
     pub force_is_clear: bool,
+    /// How much q wandered over the first recording, m, before its drift was taken out; none where it does not.
+    pub wandering: Option<f64>,
     /// Usual distance of two samples, s.
     sample_time: f64,
 }
 
 impl Clock {
     /// Of the first recording, as a law has it; what an effect of the law takes is no sensor's.
-    pub(in crate::diagnose) fn of(case: &Case, law: &Law) -> Clock {
+    pub(in crate::diagnose) fn of(case: &Case, law: &Law, wandering: &[f64]) -> Clock {
         let taken = law.terms.iter().find_map(|term| delay_of(*term)).unwrap_or(0.0);
         let kinematics = case.record.motions.first().and_then(|motion| motion.kinematics);
         Clock {
@@ -40,6 +42,7 @@ impl Clock {
             is_derivative: kinematics.map(|found| found.is_derivative),
             is_velocity: kinematics.map(|found| found.is_velocity()),
             force_is_clear: is_clear(case, law),
+            wandering: wandering.first().copied(),
             sample_time: case.record.sample_time,
         }
     }
@@ -49,6 +52,11 @@ impl Clock {
         let late = |[delay, std]: [f64; 2]| delay.abs() > SURE * std && delay.abs() > 0.5 * self.sample_time;
         let milliseconds = |[delay, std]: [f64; 2]| format!("{:.2} ± {:.2} ms", 1e3 * delay.abs(), 1e3 * std);
         let mut said = Vec::new();
+        if let Some(wandering) = self.wandering {
+            said.push(format!(
+                "q drifts by {wandering:.3e} over the record: taken out before anything was judged; mend its sensor"
+            ));
+        }
         match (self.is_derivative, self.is_velocity) {
             (Some(true), _) => said.push("qd is computed from q: it is no second measurement".into()),
             (_, Some(false)) => {

@@ -1,0 +1,77 @@
+//! A displacement whose sensor drifts, seen before any effect is: no effect knows the time.
+
+use super::case::{Case, Standing};
+use super::diagnosis::{Doubt, diagnose, is_large};
+use super::errors::{TIE, are_adequate};
+use crate::diagnose::judge::{COUNT, Drift, drift};
+use crate::identify::Recording;
+use crate::law::Term;
+
+/// Ratio of residuals below which a drift is worth another look: a third of the energy.
+const WORTH: f64 = 0.816;
+
+/// T₀ that a record must be long at least: in fewer a cubic in time follows the motion itself.
+const LONG: f64 = 10.0;
+
+/// The recordings without the drift that a law of these terms sees in them; none where nothing drifts so much, or an effect explains as much.
+/// Where F is the output a drift of q is one of F as well, and none is claimed. `posed` puts recordings under judgement.
+pub(super) fn steadied(
+    case: &Case,
+    recordings: &[&Recording],
+    terms: &[Term],
+    posed: impl Fn(&[&Recording]) -> Option<Case>,
+) -> Option<(Case, Vec<Drift>)> {
+    let standing = case.stand(terms)?;
+    let long = case.record.duration > LONG * case.record.period && case.record.motions.len() == recordings.len();
+    if !long || !terms.contains(&Term::Inertia) || are_adequate(&case.errors_of(&standing)) {
+        return None;
+    }
+    let (mut drifts, ratio) = of(case, &standing)?;
+    if ratio > WORTH {
+        return None;
+    }
+    let effects = diagnose(case, terms)?;
+    let steady = |drifts: &[Drift]| -> Option<(Case, Standing)> {
+        let without: Option<Vec<Recording>> =
+            recordings.iter().zip(drifts).map(|(recording, drift)| without(recording, drift)).collect();
+        let case = posed(&without?.iter().collect::<Vec<_>>())?;
+        let standing = case.stand(terms)?;
+        Some((case, standing))
+    };
+    // the law's coefficients were those under the drift: a second look with its own
+    let (first, stands) = steady(&drifts)?;
+    let (more, _) = of(&first, &stands)?;
+    drifts.iter_mut().zip(more).for_each(|(sum, more)| sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more));
+    let (second, stands) = steady(&drifts)?;
+    let may_be = |doubt: Option<Doubt>| matches!(doubt, None | Some(Doubt::Chance | Doubt::Trap));
+    let best = effects.candidates.iter().filter(|candidate| may_be(candidate.doubt)).map(|candidate| candidate.score);
+    let beats = stands.held.score(&standing.held) < best.fold(0.0, f64::min) - TIE * COUNT as f64;
+    (beats && is_large(&standing.held, &stands.held, &standing.floor)).then_some((second, drifts))
+}
+
+fn of(case: &Case, standing: &Standing) -> Option<(Vec<Drift>, f64)> {
+    drift(&case.record, &standing.equation, &standing.estimate.coefficients)
+}
+
+/// A recording whose displacement reads so much less.
+fn without(recording: &Recording, drift: &Drift) -> Option<Recording> {
+    let has = recording.channels();
+    let samples: Vec<_> = (0..recording.count()).map(|index| recording.sample(index)).collect();
+    let t = recording.t();
+    let [from, to] = [t.first()?, t.last()?];
+    let at = |t: f64| {
+        let place = 2.0 * (t - from) / (to - from) - 1.0;
+        drift.iter().rev().fold(0.0, |sum, coefficient| sum * place + coefficient)
+    };
+    let q = samples.iter().map(|sample| sample.q - at(sample.t)).collect();
+    let qd = has.qd.then(|| samples.iter().map(|sample| sample.qd).collect());
+    let excitation = has.excitation.then(|| samples.iter().map(|sample| sample.excitation).collect());
+    Recording::new(recording.source(), t.to_vec(), has.q.then_some(q), qd, excitation).ok().filter(|_| has.q)
+}
+
+/// How much a displacement wanders over its recording, m.
+pub(super) fn wandering(drift: &Drift) -> f64 {
+    let at = |step: i32| drift.iter().rev().fold(0.0, |sum, own| sum * (f64::from(step) / 50.0 - 1.0) + own);
+    let all = || (0..=100).map(at);
+    all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
+}
