@@ -12,6 +12,7 @@ mod judge;
 mod outside;
 mod plant;
 mod problem;
+mod run;
 mod secret;
 mod sensors;
 mod through_fmu;
