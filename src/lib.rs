@@ -93,6 +93,7 @@ pub mod cli;
 #[cfg(feature = "cli")]
 pub mod data;
 pub mod diagnose;
+mod estimation;
 mod evidence;
 #[cfg(feature = "fmu")]
 pub mod fmu;

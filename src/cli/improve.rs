@@ -64,7 +64,6 @@ struct Report {
 #[derive(Serialize)]
 struct StepReport {
     effect: Option<String>,
-    removed: Vec<String>,
     ties: Vec<Vec<String>>,
     error: f64,
     errors: Vec<WindowReport>,
@@ -149,7 +148,6 @@ fn validated(law: &Law, input: &Input, others: Option<&Input>) -> Option<[Window
 fn report(arguments: &Arguments, found: &Found, input: &Input) -> Report {
     let step = |(step, validation): (&Step, &Option<[WindowError; 3]>)| StepReport {
         effect: step.effect.clone(),
-        removed: step.removed.clone(),
         ties: step.ties.clone(),
         error: step.error(),
         errors: WindowReport::all(&step.errors, step.law.target),
@@ -200,13 +198,9 @@ fn text(arguments: &Arguments, found: &Found, input: &Input) -> String {
     text + &format!("\nwritten: {}\n", arguments.output.display())
 }
 
-/// `+ coulomb_friction (− linear_damping)`.
+/// `+ coulomb_friction`.
 fn title(step: &Step) -> String {
-    let added = step.effect.as_ref().map_or_else(|| "the model as it came".into(), |effect| format!("+ {effect}"));
-    match step.removed.as_slice() {
-        [] => added,
-        removed => format!("{added} (− {})", removed.join(", ")),
-    }
+    step.effect.as_ref().map_or_else(|| "the model as it came".into(), |effect| format!("+ {effect}"))
 }
 
 fn stairs(found: &Found) -> Vec<(String, f64)> {

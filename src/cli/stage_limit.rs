@@ -2,7 +2,7 @@
 
 use super::input::is_noiseless;
 use crate::diagnose::{Evidence, Fit, Form, is_evident, refit};
-use crate::evidence::Noise;
+use crate::estimation::Noise;
 use crate::identify::{Identification, Recording, Settings, Stage, fit_force_law};
 use crate::law::{Model, Term};
 use crate::limits::{Bound, Course, Imposed, Law, Sensors, Start, bound, force_bound};

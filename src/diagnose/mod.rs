@@ -12,7 +12,7 @@ mod piece;
 mod scale;
 mod verdict;
 
-pub use crate::evidence::Noise;
+pub use crate::estimation::Noise;
 pub use candidates::same_effect;
 pub use compare::{
     Bounds, Comparison, Error, Estimate, Fail, Held, Judged, NOISE_RATIO, Options, Over, Side, Verdict, compare,

@@ -1,6 +1,6 @@
 //! A stretch of a recording without gaps, made ready for the filter.
 
-use crate::evidence::Observation;
+use crate::estimation::Observation;
 use crate::identify::Recording;
 use crate::law::{BandLimited, Drive, Hold, NODES, REACH, State};
 use crate::limits::Course;

@@ -1,6 +1,12 @@
 //! A whole recording through the streaming identifier: its stages, one after the other.
 
-use super::{BuildError, Coefficient, Identifier, Method, Recording, SavedLaws, Settings, Skipped};
+use super::check::BuildError;
+use super::identifier::Identifier;
+use super::library::SavedLaws;
+use super::recording::Recording;
+use super::report::Coefficient;
+use super::sample::Skipped;
+use super::settings::{Method, Settings};
 use crate::law::{Hold, Model, Term, equation};
 use std::ops::Range;
 
@@ -78,16 +84,6 @@ pub struct Identification {
 
 /// How often the list of what cannot be determined is renewed, samples.
 const RENEW_UNIDENTIFIABLE: usize = 64;
-
-/// Times the shortest distance of two samples, a `sample_time` under which none comes too soon.
-const NEVER_TOO_SOON: f64 = 1.9;
-
-/// Settings that fit a recording: its channels, a `sample_time` that is its own and thins nothing, a window that holds enough samples.
-pub fn settings_for(recording: &Recording, base: Settings) -> Settings {
-    let sample_time = recording.sample_time().min(NEVER_TOO_SOON * recording.shortest_interval());
-    let max_window = base.max_window.clamp(2e3 * sample_time, 1e6 * sample_time);
-    Settings { channels: recording.channels(), sample_time, max_window, ..base }
-}
 
 /// Samples after which holds are compared; the last time for good.
 const HOLD_TRIALS: [usize; 3] = [1500, 3000, 6000];

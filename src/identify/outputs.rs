@@ -1,6 +1,7 @@
 //! What an identifier publishes, by name: outputs of the FMU, columns of the command line's trace.
 
-use super::identifier::{Identifier, Status};
+use super::identifier::Identifier;
+use super::report::Status;
 use crate::law::Term;
 use serde::{Deserialize, Serialize};
 

@@ -1,8 +1,12 @@
 //! A recording: what was measured, sample by sample.
 
-use super::{Channels, Sample};
+use super::sample::Sample;
+use super::settings::{Channels, Settings};
 use std::ops::Range;
 use thiserror::Error;
+
+/// Times the shortest distance of two samples, a `sample_time` under which none comes too soon.
+const NEVER_TOO_SOON: f64 = 1.9;
 
 /// Measured signals over increasing time, SI units; each signal has as many values as there are times.
 #[derive(Clone, Debug, PartialEq)]
@@ -217,6 +221,13 @@ impl Recording {
 
 fn is_constant(values: &[f64]) -> bool {
     values.iter().all(|value| *value == values[0])
+}
+
+/// Settings that fit a recording: its channels, a `sample_time` that is its own and thins nothing, a window that holds enough samples.
+pub fn settings_for(recording: &Recording, base: Settings) -> Settings {
+    let sample_time = recording.sample_time().min(NEVER_TOO_SOON * recording.shortest_interval());
+    let max_window = base.max_window.clamp(2e3 * sample_time, 1e6 * sample_time);
+    Settings { channels: recording.channels(), sample_time, max_window, ..base }
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The last samples, in a ring whose memory is fixed at construction.
 
-use super::identifier::Sample;
+use super::sample::Sample;
 use super::settings::Channels;
-use crate::evidence::Observation;
+use crate::estimation::Observation;
 use crate::law::{BandLimited, Drive, Hold, REACH, look_ahead};
 use serde::{Deserialize, Serialize};
 

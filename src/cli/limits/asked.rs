@@ -2,7 +2,7 @@
 
 use crate::cli::error::CommandError;
 use crate::cli::input::{ModelArguments, is_noiseless};
-use crate::evidence::Noise;
+use crate::estimation::Noise;
 use crate::identify::{Recording, Settings};
 use crate::law::{Model, ModelError, Term};
 use crate::limits::{LimitsError, Sensors};

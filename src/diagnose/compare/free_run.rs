@@ -5,7 +5,7 @@
 
 use super::memory_run::MemoryRun;
 use super::rows::Prepared;
-use crate::evidence::Observation;
+use crate::estimation::Observation;
 use crate::law::{Compiled, Expression, Motion, State};
 use std::ops::Range;
 

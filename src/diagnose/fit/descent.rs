@@ -11,7 +11,7 @@ use super::solve::{Solved, solve, solve_damped};
 use super::start;
 use crate::diagnose::piece::Piece;
 use crate::diagnose::scale::Scale;
-use crate::evidence::{Noise, Pass, RIVALS};
+use crate::estimation::{Noise, Pass, RIVALS};
 use crate::law::{Effect, State, Term};
 use nalgebra::{DMatrix, DVector};
 

@@ -2,7 +2,7 @@
 
 use super::means::is_series;
 use super::outcome::Sums;
-use crate::evidence::Noise;
+use crate::estimation::Noise;
 use crate::law::{Expression, State, Term};
 use nalgebra::DMatrix;
 

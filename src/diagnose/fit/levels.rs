@@ -2,7 +2,7 @@
 
 use super::outcome::Outcome;
 use super::start;
-use crate::evidence::{Noise, RIVALS};
+use crate::estimation::{Noise, RIVALS};
 
 /// Gain in log-likelihood, nats, that another level of process noise must promise.
 pub(super) const GAIN: f64 = 0.1;

@@ -7,7 +7,7 @@
 
 use super::outcome::{self, Law, Outcome, Place, Tangent};
 use crate::diagnose::piece::Piece;
-use crate::evidence::{Channel, Filter, Innovation, Noise, Observation, Pass, Track};
+use crate::estimation::{Channel, Filter, Innovation, Noise, Observation, Pass, Track};
 use crate::law::{Line, Motion, State, Term};
 
 type Vector = [f64; 3];

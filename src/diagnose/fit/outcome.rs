@@ -1,7 +1,7 @@
 //! What a run of the filter over a piece needs and leaves.
 
 use crate::diagnose::piece::Piece;
-use crate::evidence::{Channel, Filter, Innovation, LogSum, Noise, Observation};
+use crate::estimation::{Channel, Filter, Innovation, LogSum, Noise, Observation};
 use crate::law::{Drive, Line, NODES, State, Term};
 use nalgebra::{DMatrix, DVector};
 

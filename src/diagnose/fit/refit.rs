@@ -8,7 +8,7 @@ use super::descent::Descent;
 use super::form::{Fit, Form};
 use super::start;
 use crate::diagnose::piece::Piece;
-use crate::evidence::{Noise, Pass};
+use crate::estimation::{Noise, Pass};
 
 /// Guesses from which a fit begins, at most.
 const STARTS: usize = 4;

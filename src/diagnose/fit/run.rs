@@ -7,7 +7,7 @@
 use super::loop_run;
 use super::outcome::{Law, Outcome, Place, Step, beside, first_state};
 use crate::diagnose::piece::Piece;
-use crate::evidence::{Channel, Pass, gains};
+use crate::estimation::{Channel, Pass, gains};
 use crate::law::{Line, Motion, Term};
 
 /// Sensitivities of the state to a set of forces that are given as series.

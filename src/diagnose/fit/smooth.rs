@@ -6,7 +6,7 @@
 //! measurements, which a damped motion does not bear.
 
 use super::outcome::Step;
-use crate::evidence::{Channel, Filter, Innovation};
+use crate::estimation::{Channel, Filter, Innovation};
 use crate::law::State;
 
 /// States at every sample of a piece that begins with `first`, one step for each sample after.

@@ -3,7 +3,7 @@
 use super::form::{Form, Parts};
 use super::means::is_series;
 use crate::diagnose::piece::Piece;
-use crate::evidence::Noise;
+use crate::estimation::Noise;
 use crate::law::Term;
 use crate::weak::{Fit, Regression, Row, Section, Variation};
 

@@ -5,7 +5,7 @@ use super::errors::TIE;
 use super::law::Law;
 use crate::diagnose::fit::{Evidence, Form, refit};
 use crate::diagnose::judge::COUNT;
-use crate::evidence::Noise;
+use crate::estimation::Noise;
 use crate::identify::Recording;
 use crate::law::Term;
 use std::f64::consts::TAU;

@@ -12,7 +12,7 @@
 //! between false alarms at least its threshold, in samples (Pollak, *Annals of Statistics* 13, 1985).
 
 use super::sums::{Sums, dot};
-use crate::evidence::System;
+use crate::estimation::System;
 use serde::{Deserialize, Serialize};
 
 /// Most hypotheses.

@@ -4,9 +4,11 @@ use super::features::expect;
 use super::noise::ChannelNoise;
 use super::segment::Segment;
 use super::smoother::{Instant, LONGEST, Smoother};
-use crate::identify::identifier::check;
+use crate::identify::check::BuildError;
+use crate::identify::check::check;
 use crate::identify::problem::Problem;
-use crate::identify::{BuildError, Recording, Settings, settings_for};
+use crate::identify::recording::{Recording, settings_for};
+use crate::identify::settings::Settings;
 use crate::law::{Model, State};
 
 /// Times that the weights of the samples are renewed with the law that they gave.

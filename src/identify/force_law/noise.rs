@@ -5,7 +5,7 @@
 //! *Forecasting, Structural Time Series Models and the Kalman Filter*, 1989, 3.4.1).
 
 use super::kinematics::Kinematics;
-use crate::evidence::LogSum;
+use crate::estimation::LogSum;
 use serde::{Deserialize, Serialize};
 
 /// Ratios that are tried: the filter's corner frequency ω from a hundredth of a radian per sample, by factors of √10 …

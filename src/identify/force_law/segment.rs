@@ -4,17 +4,12 @@ use super::blocks::Blocks;
 use super::features::Known;
 use super::smoother::{Instant, LONGEST};
 use super::sums::{Sums, Weight, dot};
-use crate::evidence::System;
-use crate::identify::identifier::Coefficient;
+use crate::estimation::System;
 use crate::identify::problem::Problem;
+use crate::identify::report::Coefficient;
 use crate::identify::settings::Settings;
+use crate::identify::validation::VALIDATED;
 use serde::{Deserialize, Serialize};
-
-/// e of eq. (8) below which a law counts as known …
-const SETTLED: f64 = 0.05 * 0.05;
-
-/// … and the share of it that the stated covariance, an expectation, must stay below.
-const MARGIN: f64 = 0.5;
 
 /// Price of a term in twice the log-likelihood, ÷ ln of the number of samples (Schwarz's is 1; that of the tracker of
 /// motion).
@@ -324,7 +319,7 @@ impl Segment {
 
     /// Whether the law explains its record down to white noise, holds throughout it, and is known.
     pub fn is_valid(&self) -> bool {
-        let is_known = self.error().is_some_and(|error| error < MARGIN * SETTLED);
+        let is_known = self.error().is_some_and(|error| error < VALIDATED);
         self.established && self.blocks.verdict().is_known && !self.is_coloured() && is_known
     }
 

@@ -2,7 +2,7 @@
 //!
 //! They add and subtract, so that any stretch of a record is the difference of two sums.
 
-use crate::evidence::System;
+use crate::estimation::System;
 use serde::{Deserialize, Serialize};
 
 /// Part of a pivot's diagonal entry below which it is rounding: what the others leave of its term is nothing.

@@ -7,8 +7,9 @@ use super::segment::{COHERENT, Segment};
 use super::smoother::{Instant, LONGEST, Smoother};
 use super::sums::dot;
 use crate::identify::deviation::Deviation;
-use crate::identify::identifier::{Coefficient, Output, Sample, Status};
 use crate::identify::problem::Problem;
+use crate::identify::report::{Coefficient, Output, Status};
+use crate::identify::sample::Sample;
 use crate::identify::settings::Settings;
 use serde::{Deserialize, Serialize};
 

@@ -13,8 +13,9 @@ mod blocks;
 mod octave;
 mod regression;
 
-use super::identifier::{Coefficient, Sample};
 use super::problem::Problem;
+use super::report::Coefficient;
+use super::sample::Sample;
 use crate::law::Hold;
 use crate::weak::Functional;
 use octave::{ADVANCE, Octave, Sensors};

@@ -2,8 +2,8 @@
 
 use super::blocks::Blocks;
 use super::regression::{Errors, Estimate, FEWEST, Regression};
-use crate::identify::identifier::Sample;
 use crate::identify::problem::Problem;
+use crate::identify::sample::Sample;
 use crate::law::Term;
 use crate::weak::{Functional, Pole, signal};
 use serde::{Deserialize, Serialize};

@@ -6,7 +6,7 @@
 //! noise takes its known share out of the moments (errors in variables; Fuller, *Measurement Error Models*, 1987).
 
 use super::blocks::Blocks;
-use crate::evidence::System;
+use crate::estimation::System;
 use serde::{Deserialize, Serialize};
 
 /// Fewest blocks, and how many of each length are tried: the number that a variance needs for its own error to be below a half.

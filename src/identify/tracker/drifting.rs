@@ -1,98 +1,165 @@
-//! Coefficients that move: they are followed until they rest and a constant law is found again.
+//! Coefficients that move: put on trial at an alarm, followed until they rest and a constant law is found again.
 
-use super::{Phase, Tracker};
-use crate::identify::identifier::{Coefficient, Output, Status};
+use super::regime::{Event, Follower};
+use super::state::{Fitting, SWITCH_SIZE, Setup, Tracker};
+use crate::identify::drift::{Before, INSTANTS};
 use crate::identify::problem::Problem;
-use crate::identify::settings::Settings;
-use crate::identify::stage::TRUSTED;
+use crate::identify::validation::TRUSTED;
+use std::f64::consts::TAU;
+
+/// A trial begins this many natural periods before the switch that an alarm found.
+const BEFORE: f64 = 2.0;
 
 /// A constant law is sought in the record from this many variations back on.
 const REST: u64 = 4;
 
 impl Tracker {
-    /// Follows coefficients that move, and says so where the record does.
-    pub(super) fn track_drift(
-        &mut self,
-        problem: &Problem,
-        settings: &Settings,
-        published: &mut [Coefficient],
-        output: &mut Output,
-    ) {
-        if self.moving.is_following() {
+    /// Puts a drift on trial: instead of a switch at one of these samples the coefficients may have wandered.
+    pub(super) fn try_drift(&mut self, problem: &Problem, switch: [u64; INSTANTS]) {
+        let law = &self.monitor.law;
+        if self.augmented_drift.is_on_trial() || self.augmented_drift.is_following() || !law.explains {
             return;
         }
-        let thorough = output.drifting || !output.valid;
-        let least = self.least_noise();
-        if !problem.channels.q || !self.drift.step(problem, settings, &self.window, least, thorough) {
+        let last = self.last_interval();
+        let period = (TAU * self.segment.scales.natural_time() / last).min(self.window.capacity() as f64 / 8.0);
+        let earliest = self.segment.start.max(self.window.oldest());
+        let start = switch[0].saturating_sub((BEFORE * period) as u64).max(earliest);
+        let belief = &mut self.belief;
+        for (index, (reach, spread)) in belief.from.iter_mut().zip(&belief.spread).enumerate() {
+            *reach = if law.active[index] { spread / SWITCH_SIZE } else { 0.0 };
+        }
+        let before = Before {
+            all: &law.all,
+            reach: &belief.from,
+            noise: law.noise,
+            parts: law.run.parts,
+            period,
+            switch: switch.map(|number| number.max(start + 1)),
+            start,
+        };
+        self.augmented_drift.begin(problem, &self.window, &before);
+    }
+
+    /// Whether an alarm says that coefficients which have moved before move again.
+    pub(super) fn moves_again(&self) -> Option<Follower> {
+        match self.augmented_drift.is_following() {
+            true => Some(Follower::AugmentedFilters),
+            false => (self.drifted && self.weak_row_drift.is_moving()).then_some(Follower::WeakRows),
+        }
+    }
+
+    /// From now on no constant law is in use.
+    pub(super) fn begin_drift(&mut self, by: Follower) {
+        self.monitor.law.running = false;
+        self.monitor.bank.clear();
+        self.monitor.prediction.clear();
+        self.library.end_trials();
+        self.published.missing = None;
+        self.enter(Event::DriftFound(by));
+    }
+
+    /// Goes on with a trial of filters with coefficients in their state, and follows what it found until a constant law is validated.
+    pub(super) fn track_augmented(&mut self, setup: Setup) {
+        if self.augmented_drift.is_following() && !self.regime.is_drifting() {
+            self.augmented_drift.end();
+            self.weak_row_drift.restart(self.window.end());
+        }
+        let followed = self.augmented_drift.is_following();
+        if !self.augmented_drift.step(setup.problem, &self.window) {
+            if followed {
+                self.enter(Event::DriftLost);
+                self.lose();
+            }
             return;
         }
-        let moves = self.drift.is_moving() && self.drift.predicts();
-        let alone = || !self.explained && self.drift.has_no_rest(&self.window) && self.drift.spans(1.0);
-        let known = output.valid || self.doubted_from > self.stage.start;
-        let sure = if known { self.drifted } else { alone() };
-        if !output.drifting && moves && sure && self.drift.stated_error() < TRUSTED {
-            self.drifted = true;
-            self.begin_drift(output);
+        let drift = &self.augmented_drift;
+        if drift.found_drift() && !self.regime.is_drifting() && drift.stated_error() < TRUSTED {
+            self.augmented_drift.follow();
+            self.begin_drift(Follower::AugmentedFilters);
         }
-        if output.drifting {
-            self.publish_drift(problem, published, output);
-            match self.resting {
-                true if moves => self.resting = false,
-                false if self.drift.is_at_rest() => self.seek_rest(self.latest_variations()),
+        if self.augmented_drift.is_following() {
+            let drift = &self.augmented_drift;
+            self.published.set(setup.problem, |free| Some(drift.coefficient(free)));
+            let known = drift.stated_error() < TRUSTED;
+            self.enter(Event::DriftValidated(known, self.now()));
+            match (self.is_resting(), self.augmented_drift.rests_since()) {
+                (true, None) => self.enter(Event::DriftRests(false)),
+                (false, Some(since)) => self.seek_rest(since),
                 _ => {}
             }
         }
     }
 
-    /// Sensor variances under the law in use, where there is one. Differences of q tell its noise by themselves; those of q̇ hold the
-    /// increments of a rough excitation.
-    fn least_noise(&self) -> [f64; 2] {
-        let settled = self.phase == Phase::Refining && self.stage.settled();
-        [f64::INFINITY, if settled { self.stage.noise.sensor[1] } else { f64::INFINITY }]
+    /// Follows coefficients that move by weak rows, and finds that they do.
+    pub(super) fn track_weak_rows(&mut self, setup: Setup) {
+        if self.augmented_drift.is_following() {
+            return;
+        }
+        let Setup { problem, settings } = setup;
+        let thorough = self.regime.is_drifting() || !self.regime.is_valid();
+        let most = self.most_noise();
+        if !problem.channels.q || !self.weak_row_drift.step(problem, settings, &self.window, most, thorough) {
+            return;
+        }
+        let drift = &self.weak_row_drift;
+        let moves = drift.is_moving() && drift.predicts();
+        if !self.regime.is_drifting() && moves && self.is_sure_of_drift() && drift.stated_error() < TRUSTED {
+            self.drifted = true;
+            self.begin_drift(Follower::WeakRows);
+        }
+        if self.regime.is_drifting() {
+            self.publish_weak_rows(problem);
+            match self.is_resting() {
+                true if moves => self.enter(Event::DriftRests(false)),
+                false if self.weak_row_drift.is_at_rest() => {
+                    let latest = REST * self.weak_row_drift.length();
+                    self.seek_rest(self.window.end().saturating_sub(latest));
+                }
+                _ => {}
+            }
+        }
     }
 
-    /// From now on no constant law is monitored.
-    pub(super) fn begin_drift(&mut self, output: &mut Output) {
-        output.drifting = true;
-        self.resting = false;
-        self.live.running = false;
-        self.bank.clear();
-        self.deviation.clear();
-        self.forget_trials(output);
-        (output.missing, output.law_number, output.recognised) = (None, None, false);
+    /// Where a law of this record was validated, only coefficients that have drifted before do so again; where none was, they have to have
+    /// moved for so long that a constant law would have been found.
+    fn is_sure_of_drift(&self) -> bool {
+        let drift = &self.weak_row_drift;
+        let had_a_law = self.regime.is_valid() || self.history.refuted_at > self.segment.start;
+        match had_a_law {
+            true => self.drifted,
+            false => !self.history.explained && drift.has_no_rest(&self.window) && drift.spans(1.0),
+        }
     }
 
-    fn latest_variations(&self) -> u64 {
-        self.window.end().saturating_sub(REST * self.drift.length())
+    /// Most that the sensors' variances can be. Differences of q tell its noise by themselves; those of q̇ hold the increments of a rough
+    /// excitation: what the law in use says is less, where there is one.
+    fn most_noise(&self) -> [f64; 2] {
+        let settled = self.is_refining() && self.segment.settled();
+        [f64::INFINITY, if settled { self.segment.noise.sensor[1] } else { f64::INFINITY }]
+    }
+
+    fn is_resting(&self) -> bool {
+        self.regime.followed().is_some_and(|drift| drift.resting)
     }
 
     /// The coefficients have come to rest: a constant law is sought in the record since then.
-    pub(super) fn seek_rest(&mut self, since: u64) {
+    fn seek_rest(&mut self, since: u64) {
         let since = since.max(self.window.oldest());
-        self.resting = true;
-        self.phase = Phase::Gathering;
-        self.contest_from(since);
+        self.enter(Event::DriftRests(true));
+        self.fitting = Fitting::Starting;
+        self.begin_weak_rows(since);
     }
 
-    fn publish_drift(&mut self, problem: &Problem, published: &mut [Coefficient], output: &mut Output) {
-        for (index, coefficient) in published.iter_mut().enumerate() {
-            match problem.free.iter().position(|free| *free == index) {
-                None => (coefficient.value, coefficient.std) = (problem.known[index], Some(0.0)),
-                Some(free) if self.drift.determines(free) => {
-                    (coefficient.value, coefficient.std) =
-                        (self.drift.coefficients()[free], Some(self.drift.std(free)));
-                }
-                Some(_) => coefficient.std = None,
-            }
-        }
-        let physical = self.is_physical(problem, published[problem.inertia].value);
+    fn publish_weak_rows(&mut self, problem: &Problem) {
+        let drift = &self.weak_row_drift;
+        let told = |free: usize| drift.determines(free).then(|| (drift.coefficients()[free], drift.std(free)));
+        self.published.set(problem, told);
+        let physical = self.is_physical(problem, self.published.coefficients[problem.inertia].value);
         if !physical {
-            problem.free.iter().for_each(|index| published[*index].std = None);
+            self.published.forget_stds(problem);
         }
-        output.valid = physical && self.drift.predicts() && self.drift.stated_error() < TRUSTED;
-        output.status = if output.valid { Status::Tracking } else { Status::Acquiring };
-        if output.valid {
-            output.identified_time.get_or_insert(self.now());
-        }
+        let drift = &self.weak_row_drift;
+        let known = physical && drift.predicts() && drift.stated_error() < TRUSTED;
+        self.enter(Event::DriftValidated(known, self.now()));
     }
 }

@@ -1,107 +1,80 @@
 //! Laws seen before: recognised at an alarm or soon after it, left again when the record contradicts them.
 //!
 //! At the alarm the bank of hypotheses has seen the switch already, with the state carried on from before: each known law is weighed
-//! by it at once. Where that does not decide, the laws go on trial over the record since the stage's start.
+//! by it at once. Where that does not decide, the laws go on trial over the record since the segment's start.
 
-use super::doubt::Doubt;
-use super::{Phase, Tracker, alarm_level};
-use crate::identify::identifier::{Coefficient, Output, Status};
-use crate::identify::known::{KnownLaw, ROOM, Weighed};
+use super::regime::{Event, PostAlarm, Recognition, Validated};
+use super::sighting::Sight;
+use super::state::{Fitting, Setup, Tracker};
+use crate::identify::change::false_alarm_level;
+use crate::identify::library::{Mixture, ROOM, SavedLaw, SavedLaws, SavedLawsError, Verdict, Weighed};
 use crate::identify::problem::Problem;
-use crate::identify::saved::{SavedLaw, SavedLaws, SavedLawsError};
 use crate::identify::settings::Settings;
-use crate::identify::stage::VOUCHED;
-use crate::identify::trials::Verdict;
-use serde::{Deserialize, Serialize};
+use crate::identify::validation::VALIDATED;
 
-/// Evidence against any other law that makes a known one recognised in the step of the alarm, in alarm levels: it is more likely
+/// Evidence against any other law that makes a known one recognised in the step of the alarm, in false-alarm levels: it is more likely
 /// beforehand than all others together, and it is taken back when it was wrong.
 const AT_ALARM: f64 = 0.05;
 
 /// The same on trial, where the state is known from the new record alone.
 const ON_TRIAL: f64 = 0.25;
 
-/// Evidence against the next best known law, in alarm levels.
+/// Evidence against the next best known law, in false-alarm levels.
 const AMONG_KNOWN: f64 = 0.15;
 
 /// The bank goes on after an alarm for this many times as long as it had watched the switch.
-const LINGER: u64 = 3;
+const POST_ALARM: u64 = 3;
 
-/// Evidence of any other law at which a recognised one is left, in alarm levels.
+/// Evidence of any other law at which a recognised one is left, in false-alarm levels.
 const CONTRADICTED: f64 = 0.15;
 
-/// The time after an alarm in which the bank still speaks for known laws.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Lingering {
-    /// Number of the sample at which it ends.
-    until: u64,
-    /// Number of the law that was left.
-    number: Option<u32>,
-}
-
-/// A known law that stands out, and what speaks against it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Sight {
-    place: usize,
-    doubt: Doubt,
-}
-
-impl From<Verdict> for Sight {
-    fn from(verdict: Verdict) -> Sight {
-        Sight { place: verdict.place, doubt: Doubt::of(verdict.against_any, verdict.rival) }
-    }
-}
+/// Samples of known laws' trials in a step, all together: the budget of a law that has yet to converge.
+pub(super) const TRIAL_BUDGET: usize = 40;
 
 impl Tracker {
-    /// After an alarm the bank of hypotheses goes on for as long as it has watched the switch, about the law that was in use until
-    /// then: it carries the state over the switch, which the new record alone does not know.
-    pub(super) fn linger(&mut self, since: u64, number: Option<u32>) {
+    /// The time after an alarm in which the bank of hypotheses goes on, as long as it has watched the switch, about the law that was in use
+    /// until then: it carries the state over the switch, which the new record alone does not know.
+    pub(super) fn post_alarm(&mut self, since: u64) -> Option<PostAlarm> {
         let end = self.window.ready();
-        let until = end + LINGER * (end - since);
-        let others = self.known.laws().iter().any(|law| Some(law.number) != number);
-        match others {
-            true => self.lingering = Some(Lingering { until, number }),
-            false => self.end_lingering(),
+        let left = self.regime.law().map(|law| law.number);
+        let others = self.library.known.laws().iter().any(|law| Some(law.number) != left);
+        if !others {
+            self.monitor.bank.clear();
         }
+        others.then_some(PostAlarm { until: end + POST_ALARM * (end - since), left })
     }
 
     /// Weighs every known law by the bank after an alarm.
-    pub(super) fn weigh_after_alarm(&mut self, problem: &Problem, settings: &Settings) {
-        let Some(lingering) = self.lingering else { return };
-        while self.live.next < self.window.ready() {
-            let innovations = self.live.step(problem, &self.window.observation(self.live.next));
-            self.bank.step(&self.live.pass.map, &innovations);
-            self.live.next += 1;
+    fn weigh_after_alarm(&mut self, setup: Setup) {
+        let Some(post_alarm) = self.regime.post_alarm() else { return };
+        let monitor = &mut self.monitor;
+        while monitor.law.next < self.window.ready() {
+            let innovations = monitor.law.step(setup.problem, &self.window.observation(monitor.law.next));
+            monitor.bank.step(&monitor.law.run.map, &innovations);
+            monitor.law.next += 1;
         }
-        self.in_sight = self.in_sight(problem, settings, lingering.number);
-        if self.in_sight.is_none() && self.window.ready() >= lingering.until {
-            self.end_lingering();
+        self.library.in_sight = self.in_sight(setup, post_alarm.left);
+        if self.library.in_sight.is_none() && self.window.ready() >= post_alarm.until {
+            self.end_post_alarm();
         }
     }
 
-    pub(super) fn end_lingering(&mut self) {
-        self.lingering = None;
-        self.bank.clear();
-    }
-
-    /// No known law is on trial or in use any more.
-    pub(super) fn forget_trials(&mut self, output: &mut Output) {
-        self.trials.end();
-        self.lingering = None;
-        (self.recognised, self.confirmed, self.in_sight) = (None, false, None);
-        (self.trial_due, self.experience) = (None, 0);
-        (output.law_number, output.recognised) = (None, false);
+    pub(super) fn end_post_alarm(&mut self) {
+        self.enter(Event::PostAlarmEnded);
+        self.monitor.bank.clear();
     }
 
     /// The place of the known law that the bank's hypotheses speak for, other than the one of that number.
-    fn in_sight(&mut self, problem: &Problem, settings: &Settings, number: Option<u32>) -> Option<Sight> {
+    fn in_sight(&mut self, setup: Setup, number: Option<u32>) -> Option<Sight> {
         let nobody = (f64::NEG_INFINITY, 0.0, None);
         let (mut best, mut next) = (nobody, nobody);
-        for place in 0..self.known.laws().len() {
-            if Some(self.known.laws()[place].number) == number {
+        let Tracker { library, monitor, .. } = self;
+        for place in 0..library.known.laws().len() {
+            if Some(library.known.laws()[place].number) == number {
                 continue;
             }
-            let Weighed { known, any } = self.known.at_a_switch(place, problem, &self.live.all, &mut self.bank);
+            let Weighed { known, any } =
+                library.known.at_a_switch(place, setup.problem, &monitor.law.all, &mut monitor.bank);
             match known > best.0 {
                 true => (best, next) = ((known, any, Some(place)), best),
                 false if known > next.0 => next = (known, any, Some(place)),
@@ -109,146 +82,136 @@ impl Tracker {
             }
         }
         let (known, any, place) = best;
-        let level = alarm_level(settings);
+        let level = false_alarm_level(setup.settings);
         let place = place.filter(|_| known - any > AT_ALARM * level && known - next.0 > AMONG_KNOWN * level)?;
-        Some(Sight { place, doubt: Doubt::of(known - any, next.2.map(|rival| (rival, known - next.0))) })
+        Some(Sight { place, mixture: Mixture::of(known - any, next.2.map(|rival| (rival, known - next.0))) })
     }
 
-    /// Carries the trial of the known laws on; returns how many samples it ran, of [`super::BUDGET`] at most.
-    pub(super) fn try_known(
-        &mut self,
-        problem: &Problem,
-        settings: &Settings,
-        published: &mut [Coefficient],
-        output: &mut Output,
-    ) -> usize {
-        self.weigh_after_alarm(problem, settings);
-        if let Some(sight) = self.in_sight.take() {
-            self.recognise(problem, sight, published, output);
+    /// Carries the trial of the known laws on; returns how many samples it ran, of [`TRIAL_BUDGET`] at most.
+    pub(super) fn try_known(&mut self, setup: Setup) -> usize {
+        self.weigh_after_alarm(setup);
+        if let Some(sight) = self.library.in_sight.take() {
+            self.recognise(setup.problem, sight);
         }
-        let Tracker { trials, known, window, .. } = self;
-        let used = trials.advance(known, problem, window, self.recognised, super::BUDGET[1]);
-        self.run_recognised(problem);
-        let verdict = self.trials.weigh(&mut self.known, &self.window);
-        let level = alarm_level(settings);
+        let place = self.regime.recognition().map(|recognition| recognition.place);
+        let library = &mut self.library;
+        let used = library.trials.advance(&library.known, setup.problem, &self.window, place, TRIAL_BUDGET);
+        self.run_recognised(setup.problem);
+        let verdict = self.library.trials.weigh(&mut self.library.known, &self.window);
+        self.heed(setup, verdict);
+        used
+    }
+
+    /// What the trials say is followed.
+    fn heed(&mut self, setup: Setup, verdict: Option<Verdict>) {
+        let level = false_alarm_level(setup.settings);
         let stands_out =
             |verdict: &Verdict| verdict.against_any > ON_TRIAL * level && verdict.against_known() > AMONG_KNOWN * level;
         let found = verdict.filter(stands_out).map(Sight::from);
-        match (self.recognised, found) {
-            (Some(place), Some(found)) if place == found.place => self.confirmed = true,
+        match (self.regime.recognition().map(|recognition| recognition.place), found) {
+            (Some(place), Some(found)) if place == found.place => self.enter(Event::RecognitionConfirmed),
             (Some(place), _) if self.is_contradicted(place, verdict.is_some(), level) => {
-                self.withdraw(problem, self.stage.start, output);
-                self.in_sight = found;
+                self.withdraw(setup.problem, self.segment.start);
+                self.library.in_sight = found;
             }
             (Some(place), _) if verdict.is_some() => {
-                self.doubt =
-                    self.trials.on(place, &self.known).map_or(self.doubt, |verdict| Sight::from(verdict).doubt);
+                if let Some(verdict) = self.library.trials.on(place, &self.library.known) {
+                    self.enter(Event::RecognitionWeighed(Sight::from(verdict).mixture));
+                }
             }
-            (None, Some(found)) if !output.valid => self.recognise(problem, found, published, output),
+            (None, Some(found)) if !self.regime.is_valid() => self.recognise(setup.problem, found),
             _ => {}
         }
-        used
     }
 
     /// Whether the record rules the recognised law out, or what has just been weighed speaks for another one.
     fn is_contradicted(&self, place: usize, weighed: bool, level: f64) -> bool {
         let against = |verdict: Verdict| verdict.against_any.min(verdict.against_known()) < -CONTRADICTED * level;
-        self.trials.is_running() && self.trials.on(place, &self.known).is_none_or(|verdict| weighed && against(verdict))
+        let Tracker { library, .. } = self;
+        let verdict = library.trials.on(place, &library.known);
+        library.trials.is_running() && verdict.is_none_or(|verdict| weighed && against(verdict))
     }
 
-    /// The law in sight is the law in use from now on, until the stage's own estimate takes over from it.
-    fn recognise(&mut self, problem: &Problem, sight: Sight, published: &mut [Coefficient], output: &mut Output) {
-        let Sight { place, doubt } = sight;
-        (self.recognised, self.confirmed, self.doubt) = (Some(place), false, doubt);
-        self.end_lingering();
-        let law = &self.known.laws()[place];
-        self.stage.begin_known(problem, &self.window, self.stage.start, law, self.trials.noise(place), &self.scales);
-        (self.phase, self.challenging) = (Phase::Refining, false);
-        self.live.running = false;
-        self.spread.copy_from_slice(&law.spread);
-        self.bank.set_spread(&self.spread);
-        self.experience = law.samples;
-        self.publish_known(problem, law, published);
-        (output.law_number, output.recognised) = (Some(law.number), true);
-        output.valid = true;
-        output.identified_time = Some(self.now());
-        output.status = Status::Tracking;
+    /// The law in sight is the law in use from now on, until the segment's own estimate takes over from it.
+    fn recognise(&mut self, problem: &Problem, sight: Sight) {
+        let Sight { place, mixture } = sight;
+        self.end_post_alarm();
+        let law = &self.library.known.laws()[place];
+        let noise = self.library.trials.noise(place);
+        self.segment.begin_known(problem, &self.window, self.segment.start, law, noise, &self.belief.scales);
+        self.fitting = Fitting::Refining;
+        self.monitor.law.running = false;
+        self.belief.spread.copy_from_slice(&law.spread);
+        self.monitor.bank.set_spread(&self.belief.spread);
+        let recognition = Recognition { place, confirmed: false, mixture, samples: law.samples };
+        let (library, spread) = (&self.library, &self.belief.spread);
+        self.published.set(problem, |free| {
+            let value = law.coefficients[free];
+            let doubt = library.recognition_std(Some(recognition), free, value, spread[free]);
+            Some((value, law.variance(free).sqrt().hypot(doubt)))
+        });
+        let law = Validated { number: law.number, since: self.now() };
+        self.enter(Event::LawRecognised(law, recognition));
         self.run_recognised(problem);
     }
 
     /// Once the recognised law's run has caught up with the stream it is the law in use.
     fn run_recognised(&mut self, problem: &Problem) {
-        let Some(place) = self.recognised else { return };
-        if !self.live.running && self.trials.has_caught_up(place, &self.window) {
-            let law = &self.known.laws()[place];
-            let scales = &self.stage.scales;
-            self.live.adopt_known(problem, law, &mut self.trials, place, scales, &self.window);
+        let Some(Recognition { place, .. }) = self.regime.recognition() else { return };
+        let Tracker { library, monitor, segment, window, .. } = self;
+        if !monitor.law.running && library.trials.has_caught_up(place, window) {
+            let law = &library.known.laws()[place];
+            monitor.law.adopt_known(problem, law, &mut library.trials, place, &segment.scales, window);
+            monitor.prediction.restart(monitor.law.run.filter.state, window.sample(window.ready() - 1).t);
         }
     }
 
-    /// The record contradicts the recognised law: the stage is that of a new one after all.
-    fn withdraw(&mut self, problem: &Problem, start: u64, output: &mut Output) {
-        (self.recognised, self.confirmed) = (None, false);
-        self.retracted = true;
-        self.experience = 0;
-        (output.law_number, output.recognised) = (None, false);
-        (output.valid, output.identified_time) = (false, None);
-        self.live.running = false;
-        self.bank.clear();
-        self.contest_from(start);
-        match self.noise_weight > 0.0 {
-            true => {
-                output.status = Status::ReIdentifying;
-                self.set_spread(problem);
-                for ((change, centre), index) in self.change.iter_mut().zip(&mut self.centre).zip(&problem.free) {
-                    *centre = self.live.all[*index];
-                    *change = *centre;
-                }
-                self.begin_new_law(problem, start);
-            }
-            false => {
-                self.stage.start = start;
-                (output.status, self.phase) = (Status::Acquiring, Phase::Gathering);
-            }
+    /// The record contradicts the recognised law: the segment is that of a new one after all. Its coefficients are not known any more.
+    fn withdraw(&mut self, problem: &Problem, start: u64) {
+        self.enter(Event::RecognitionRefuted { after_another: self.follows_a_law() });
+        self.published.forget_stds(problem);
+        self.monitor.law.running = false;
+        self.monitor.bank.clear();
+        self.begin_weak_rows(start);
+        if !self.follows_a_law() {
+            self.segment.start = start;
+            self.fitting = Fitting::Starting;
+            return;
         }
+        self.set_spread(problem);
+        let belief = &mut self.belief;
+        for ((from, centre), index) in belief.from.iter_mut().zip(&mut belief.centre).zip(&problem.free) {
+            *centre = self.monitor.law.all[*index];
+            *from = *centre;
+        }
+        self.begin_new_law(problem, start);
     }
 
-    /// An alarm under a law that its trial has not confirmed yet speaks against the law, not for one more switch: the stage goes on as
+    /// An alarm under a law that its trial has not confirmed yet speaks against the law, not for one more switch: the segment goes on as
     /// that of another law.
-    pub(super) fn take_back(&mut self, problem: &Problem, output: &mut Output) {
-        let (start, wrong) = (self.stage.start, self.recognised);
-        self.withdraw(problem, start, output);
-        let sensor = self.live.noise.sensor.map(Some);
-        self.trials.begin(&self.known, problem, &self.window, start, sensor);
-        wrong.into_iter().for_each(|place| self.trials.rule_out(place));
-    }
-
-    /// Whether the law in use was recognised and its trial has not confirmed it yet.
-    pub(super) fn is_unconfirmed(&self) -> bool {
-        self.recognised.is_some() && !self.confirmed
+    pub(super) fn take_back(&mut self, problem: &Problem) {
+        let start = self.segment.start;
+        let wrong = self.regime.recognition().map(|recognition| recognition.place);
+        self.withdraw(problem, start);
+        let sensor = self.monitor.law.noise.sensor.map(Some);
+        self.library.trials.begin(&self.library.known, problem, &self.window, start, sensor);
+        wrong.into_iter().for_each(|place| self.library.trials.rule_out(place));
     }
 
     /// Whether the law in use was recognised and never was the record's: it has held for a shorter time than it has been left by now, or
-    /// against another law all the while there is no such evidence of a switch as an alarm asks. `beyond` is by how much it passes the level.
+    /// against another law all the while there is no such evidence of a switch as an alarm asks. `beyond` is by how much it passes the
+    /// threshold.
     pub(super) fn was_never_right(&mut self, instant: u64, now: u64, beyond: f64) -> bool {
-        let Some(place) = self.recognised else { return false };
-        let against = self.trials.evidence_against(place, &mut self.known, &self.window);
-        self.stage.length(instant) < now - instant || against.is_some_and(|against| against > beyond)
+        let Some(Recognition { place, .. }) = self.regime.recognition() else { return false };
+        let against = self.library.trials.evidence_against(place, &mut self.library.known, &self.window);
+        self.segment.length(instant) < now - instant || against.is_some_and(|against| against > beyond)
     }
 
-    /// Coefficients of a law that was taken back are not known any more.
-    pub(super) fn retract(&mut self, problem: &Problem, published: &mut [Coefficient]) {
-        if std::mem::take(&mut self.retracted) {
-            problem.free.iter().for_each(|index| published[*index].std = None);
-        }
-    }
-
-    /// Gives a law that is vouched for its number: that of the known law which it is, or a new one.
-    pub(super) fn number_law(&mut self, settings: &Settings, output: &mut Output) {
-        if output.law_number.is_none() {
-            let found = self.known.same_as(&self.stage, ON_TRIAL * alarm_level(settings));
-            output.law_number = Some(found.unwrap_or_else(|| self.known.new_number()));
-        }
+    /// The number of the known law that the segment's is, or a new one.
+    pub(super) fn number_law(&mut self, settings: &Settings) -> u32 {
+        let known = &mut self.library.known;
+        let found = known.same_as(&self.segment.estimate(), ON_TRIAL * false_alarm_level(settings));
+        found.unwrap_or_else(|| known.new_number())
     }
 
     /// Takes laws to recognise.
@@ -256,77 +219,63 @@ impl Tracker {
     /// # Errors
     /// [`SavedLawsError`].
     pub fn learn(&mut self, problem: &Problem, saved: &SavedLaws) -> Result<(), SavedLawsError> {
+        let known = &mut self.library.known;
         for law in &saved.laws {
-            let taken = self.known.position(law.number).is_some() || self.known.laws().len() == ROOM;
+            let taken = known.position(law.number).is_some() || known.laws().len() == ROOM;
             if taken {
                 return Err(SavedLawsError::TooMany { law: law.number, room: ROOM });
             }
-            self.known.push(&law.known(problem)?);
+            known.push(&law.known(problem)?);
         }
         Ok(())
     }
 
-    /// Every known law, the present one among them where it is vouched for.
-    pub fn known_laws(&self, problem: &Problem, output: &Output) -> SavedLaws {
+    /// Every known law, the present one among them where it is validated.
+    pub fn known_laws(&self, problem: &Problem) -> SavedLaws {
         let mut after = self.clone();
-        after.keep_law(problem, output);
-        let mut laws: Vec<SavedLaw> = after.known.laws().iter().map(|law| SavedLaw::of(law, problem)).collect();
+        after.keep_law(problem);
+        let mut laws: Vec<SavedLaw> = after.library.known.laws().iter().map(|law| SavedLaw::of(law, problem)).collect();
         laws.sort_by_key(|law| law.number);
         SavedLaws { laws }
     }
 
-    /// Keeps the law that is vouched for, as the stage has it.
-    pub(super) fn keep_law(&mut self, problem: &Problem, output: &Output) {
-        let known_better = self.recognised.is_none() || self.stage.settled();
-        let exact = self.stage.passes > 0 && self.stage.stated_error() < VOUCHED;
-        let number = output.law_number.filter(|_| output.valid && exact && known_better);
-        if let Some(number) = number {
+    /// Keeps the law that is validated, as the segment has it.
+    pub(super) fn keep_law(&mut self, problem: &Problem) {
+        let recognised = self.regime.recognition().is_some();
+        let known_better = !recognised || self.segment.settled();
+        let exact = self.segment.runs.closed > 0 && self.segment.stated_error() < VALIDATED;
+        if let Some(law) = self.regime.law().filter(|_| exact && known_better) {
             self.set_spread(problem);
-            let samples = self.stage.length(self.window.ready());
-            self.known.keep(number, &self.stage, samples, &self.spread, self.recognised.is_some());
+            let samples = self.record_length();
+            let Tracker { library, segment, belief, .. } = self;
+            library.known.keep(law.number, &segment.estimate(), samples, &belief.spread, recognised);
         }
     }
 
-    /// Leaves a recognised law that the stage's own estimate contradicts, once its trial is over; returns whether it did.
-    pub(super) fn leave(&mut self, problem: &Problem, settings: &Settings, output: &mut Output) -> bool {
-        let Some(place) = self.recognised.filter(|_| !self.trials.is_running()) else { return false };
-        let weighed = self.known.weigh(place, Some(&self.stage.coefficients), self.stage.record());
-        let against_any = (weighed.known - weighed.any) / self.stage.overdispersion;
-        let contradicted = against_any < -CONTRADICTED * alarm_level(settings);
+    /// Leaves a recognised law that the segment's own estimate contradicts, once its trial is over; returns whether it did.
+    pub(super) fn leave(&mut self, setup: Setup) -> bool {
+        let library = &mut self.library;
+        let recognition = self.regime.recognition().filter(|_| !library.trials.is_running());
+        let Some(Recognition { place, .. }) = recognition else { return false };
+        let weighed = library.known.weigh(place, Some(&self.segment.coefficients), self.segment.record());
+        let against_any = (weighed.known - weighed.any) / self.segment.fit.overdispersion;
+        let contradicted = against_any < -CONTRADICTED * false_alarm_level(setup.settings);
         if contradicted {
-            self.withdraw(problem, self.stage.start, output);
+            self.withdraw(setup.problem, self.segment.start);
         }
         contradicted
     }
 
     /// Puts the known laws on trial over a record that no alarm began, as soon as it has two samples.
-    pub(super) fn begin_trial(&mut self, problem: &Problem, settings: &Settings) {
-        let due = self.trial_due.filter(|start| self.window.end() >= start + 2);
+    pub(super) fn begin_trial(&mut self, setup: Setup) {
+        let Setup { problem, settings } = setup;
+        let due = self.library.trial_due.filter(|start| self.window.end() >= start + 2);
         if let Some(start) = due {
-            self.trial_due = None;
+            self.library.trial_due = None;
             let given = [settings.noise_q, settings.noise_qd].map(|std| (std > 0.0).then_some(std * std));
-            self.stage.start = start;
-            self.trials.begin(&self.known, problem, &self.window, start, given);
-            self.trials.set_left(None);
-        }
-    }
-
-    fn publish_known(&self, problem: &Problem, law: &KnownLaw, published: &mut [Coefficient]) {
-        for (coefficient, known) in published.iter_mut().zip(&problem.known) {
-            (coefficient.value, coefficient.std) = (*known, Some(0.0));
-        }
-        for (free, index) in problem.free.iter().enumerate() {
-            let (coefficient, value) = (&mut published[*index], law.coefficients[free]);
-            let std = law.variance(free).sqrt().hypot(self.recognition_std(free, value));
-            (coefficient.value, coefficient.std) = (value, Some(std));
-        }
-    }
-
-    /// What a free coefficient's std owes to the doubt whether the law was recognised rightly.
-    pub(super) fn recognition_std(&self, free: usize, value: f64) -> f64 {
-        match self.is_unconfirmed() && self.trials.is_running() {
-            true => self.doubt.variance(self.known.laws(), free, value, self.spread[free]).sqrt(),
-            false => 0.0,
+            self.segment.start = start;
+            self.library.trials.begin(&self.library.known, problem, &self.window, start, given);
+            self.library.trials.set_left(None);
         }
     }
 }

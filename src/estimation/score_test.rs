@@ -1,0 +1,180 @@
+//! What the law in use lacks most: the score test of effects that it does not have, in the stream.
+//!
+//! Beside a run of the filter the sensitivity of the innovations to each candidate's coefficient is carried, as if it were a term with
+//! coefficient 0. With M and g the information and score of the law's own terms, c, i and s those of a candidate beside them, its gain in
+//! log-likelihood is ½ (s − cᵀM⁻¹g)² ÷ (i − cᵀM⁻¹c) (Rao, *Proc. Cambridge Phil. Soc.* 44 (1948), 50).
+
+use super::filter::{Channel, Innovation};
+use super::information::{Information, Solution};
+use super::pass::{Observation, Pass, gains};
+use crate::law::{Catalogue, Effect, Motion, State, Term};
+use serde::{Deserialize, Serialize};
+
+/// Evidence, nats, from which an effect is named.
+const NAMED: f64 = 10.0;
+
+/// Share of a candidate's information that must be its own.
+const OWN: f64 = 1e-6;
+
+/// Inner parameters of candidates, as parts of the largest motion.
+const GAP: f64 = 0.5;
+const SPEED: f64 = 0.1;
+
+/// The effect that a law lacks most.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Missing {
+    /// Its place in [`Catalogue::ENTRIES`].
+    pub entry: usize,
+    /// Log-likelihood that it would gain, less the logarithm of the number of candidates, nats.
+    pub evidence: f64,
+}
+
+/// The candidates beside a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScoreTest {
+    candidates: Vec<Candidate>,
+    own: Information,
+    solution: Solution,
+    active: Vec<bool>,
+    before: State,
+    row: Vec<f64>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Candidate {
+    entry: usize,
+    term: Term,
+    /// ∂(q, q̇)/∂ its coefficient.
+    sensitivity: [f64; 2],
+    /// Its expected measurement by channel.
+    rows: [f64; 2],
+    information: f64,
+    score: f64,
+    /// With each free term of the law.
+    cross: Vec<f64>,
+}
+
+impl ScoreTest {
+    /// The catalogue's effects that one instant gives and that the law of these terms does not have, beside `n` free terms.
+    pub fn new(terms: &[Term], n: usize) -> ScoreTest {
+        let absent = |term: &Term| match term {
+            Term::Effect(effect) => {
+                !terms.iter().filter_map(|other| other.effect()).any(|other| other.id() == effect.id())
+            }
+            _ => !terms.contains(term),
+        };
+        let entries = Catalogue::ENTRIES.iter().enumerate();
+        let candidates = entries.filter(|(_, entry)| entry.term.is_pointwise() && absent(&entry.term));
+        let candidate = |(entry, found): (usize, &crate::law::Entry)| Candidate {
+            entry,
+            term: found.term,
+            sensitivity: [0.0; 2],
+            rows: [0.0; 2],
+            information: 0.0,
+            score: 0.0,
+            cross: vec![0.0; n],
+        };
+        ScoreTest {
+            candidates: candidates.map(candidate).collect(),
+            own: Information::none(n),
+            solution: Solution::none(n),
+            active: vec![true; n],
+            before: State::default(),
+            row: vec![0.0; n],
+        }
+    }
+
+    /// Begins beside a run; inner parameters follow the largest motion seen.
+    pub fn begin(&mut self, state: State, largest: [f64; 2]) {
+        for candidate in &mut self.candidates {
+            (candidate.sensitivity, candidate.information, candidate.score) = ([0.0; 2], 0.0, 0.0);
+            candidate.cross.fill(0.0);
+            candidate.term = scaled(candidate.term, largest);
+        }
+        self.own.clear();
+        self.before = state;
+    }
+
+    /// Takes the sample that the run has just taken, under the law `motion`.
+    pub fn step(
+        &mut self,
+        motion: &Motion,
+        pass: &Pass,
+        observation: &Observation,
+        innovations: &[Option<Innovation>; 2],
+    ) {
+        let state = pass.filter.state;
+        let inverse_mass = motion.mass(state.q).recip();
+        let acceleration = (state.qd - self.before.qd) / observation.dt;
+        let [from, _, to] = observation.drive.part(0, 1);
+        let gains = gains(innovations);
+        for candidate in &mut self.candidates {
+            let term = candidate.term;
+            let force = 0.5 * (term.force(self.before.q, self.before.qd, from) + term.force(state.q, state.qd, to));
+            let push = -(force + term.mass(state.q) * acceleration) * inverse_mass;
+            (candidate.rows, candidate.sensitivity) = pass.carry(candidate.sensitivity, push, gains);
+        }
+        self.before = state;
+        self.sum(pass, innovations);
+    }
+
+    fn sum(&mut self, pass: &Pass, innovations: &[Option<Innovation>; 2]) {
+        for channel in Channel::ALL {
+            let Some(innovation) = &innovations[channel as usize] else { continue };
+            self.row.copy_from_slice(pass.expected(channel));
+            self.own.add(&self.row, innovation.residual, innovation.variance);
+            for candidate in &mut self.candidates {
+                let scaled = candidate.rows[channel as usize] * innovation.precision;
+                candidate.information += scaled * candidate.rows[channel as usize];
+                candidate.score += scaled * innovation.residual;
+                candidate.cross.iter_mut().zip(&self.row).for_each(|(sum, other)| *sum += scaled * other);
+            }
+        }
+    }
+
+    /// The candidate with the most evidence, `overdispersion` being what the law's lasting error makes of a nat; none below
+    /// the evidence at which one is named, or with a sign that physics does not allow.
+    pub fn missing(&mut self, active: &[bool], overdispersion: f64) -> Option<Missing> {
+        self.active.copy_from_slice(active);
+        self.solution.solve(&self.own, &self.active);
+        let price = (self.candidates.len().max(1) as f64).ln();
+        let evidence = |candidate: &Candidate| {
+            let (coefficient, gain) = candidate.gain(&self.solution, &self.active, &self.own.score);
+            let allowed = Catalogue::ENTRIES[candidate.entry].sign.allows(coefficient);
+            if allowed { gain / overdispersion.max(1.0) - price } else { 0.0 }
+        };
+        let all =
+            self.candidates.iter().map(|candidate| Missing { entry: candidate.entry, evidence: evidence(candidate) });
+        all.max_by(|a, b| a.evidence.total_cmp(&b.evidence)).filter(|missing| missing.evidence > NAMED)
+    }
+}
+
+impl Candidate {
+    /// (coefficient, gain in log-likelihood) beside the law's own terms.
+    fn gain(&self, own: &Solution, active: &[bool], own_score: &[f64]) -> (f64, f64) {
+        let n = self.cross.len();
+        let terms = || (0..n).filter(|index| active[*index] && own.determined[*index]);
+        let (mut information, mut score) = (self.information, self.score);
+        for row in terms() {
+            let shared: f64 = terms().map(|column| own.covariance[row * n + column] * self.cross[column]).sum();
+            information -= self.cross[row] * shared;
+            score -= shared * own_score[row];
+        }
+        match information > OWN * self.information {
+            true => (score / information, 0.5 * score * score / information),
+            false => (0.0, 0.0),
+        }
+    }
+}
+
+/// The term with inner parameters that suit a motion of this size.
+fn scaled(term: Term, largest: [f64; 2]) -> Term {
+    let Term::Effect(effect) = term else { return term };
+    let [q, qd] = largest.map(|largest| largest.max(f64::MIN_POSITIVE));
+    let moved = match effect {
+        Effect::DeadZoneStiffness { .. } | Effect::OneSidedStop { .. } => effect.with_inner(&[GAP * q]),
+        Effect::StribeckFriction { .. } => effect.with_inner(&[SPEED * qd]),
+        _ => Ok(effect),
+    };
+    Term::Effect(moved.unwrap_or(effect))
+}

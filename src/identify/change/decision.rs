@@ -1,0 +1,64 @@
+//! The decision threshold: the log Bayes factor of a change, in nats, that an alarm asks.
+
+use crate::identify::settings::Settings;
+
+/// A law that is known from this many samples at the switch needs twice the evidence: its information is that of a linearisation, whose
+/// error falls as the record grows.
+const LINEARISATION: f64 = 2000.0;
+
+/// Under the right law the evidence rises by chance as if one sample in so many were a trial of its own: neighbouring samples and starts
+/// share their noise, and the evidence is a mean over all sizes of a switch. With one in 100 an interval of 60 s gives 0.62 to 1.67 times
+/// the alarms asked for, by plant and library.
+const SAMPLES_PER_TRIAL: f64 = 85.0;
+
+/// Evidence that chance brings once in some ten thousand samples, nats.
+const UNUSUAL: f64 = 5.0;
+
+/// A law that is not validated, nor stands its stability check, needs this many times the evidence.
+const UNPROVEN: f64 = 10.0;
+
+/// Least threshold, nats, however short the false-alarm interval: odds of twenty to one.
+const LEAST: f64 = 3.0;
+
+/// What a law in use has to its credit when a switch is weighed against it.
+#[derive(Clone, Copy, Debug)]
+pub struct Decision {
+    /// Samples that it is known from.
+    pub samples: u64,
+    /// Factor by which error that lasts makes all evidence larger.
+    pub overdispersion: f64,
+    /// Whether it was validated, or stood its stability check and explained its record.
+    pub proven: bool,
+    /// Whether it explains a record that is long enough to tell.
+    pub explains: bool,
+}
+
+impl Decision {
+    /// How many times the evidence is asked of it that a law known for sure would need.
+    pub fn caution(&self) -> f64 {
+        let caution = self.overdispersion * (1.0 + LINEARISATION / self.samples.max(1) as f64);
+        if self.proven { caution } else { UNPROVEN * caution }
+    }
+
+    /// The threshold, before what the law usually meets.
+    pub fn threshold(&self, settings: &Settings) -> f64 {
+        // what chance brings is known of a law that explains its record; of another all evidence seen counts as its usual one
+        let trial = if self.explains { SAMPLES_PER_TRIAL } else { 1.0 };
+        self.caution() * (settings.false_alarm_interval / (trial * settings.sample_time)).ln().max(LEAST)
+    }
+
+    /// Evidence that chance brings once in a sample, nats.
+    pub fn chance(&self) -> f64 {
+        if self.explains { -SAMPLES_PER_TRIAL.ln() } else { f64::NEG_INFINITY }
+    }
+
+    /// Evidence from which on a law is not renewed: more than chance brings now and then.
+    pub fn unusual(&self, threshold: f64) -> f64 {
+        (UNUSUAL * self.caution()).min(0.5 * threshold)
+    }
+}
+
+/// Evidence that chance reaches once in the false-alarm interval, nats, were every sample a trial of its own.
+pub fn false_alarm_level(settings: &Settings) -> f64 {
+    (settings.false_alarm_interval / settings.sample_time).ln().max(LEAST)
+}

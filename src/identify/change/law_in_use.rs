@@ -1,0 +1,179 @@
+//! The law in use, run along with the stream: its innovations, and how uncertain they are by what is not known of the law.
+
+use super::adaptive_noise::AdaptiveNoise;
+use crate::estimation::{Innovation, Noise, Observation, Pass};
+use crate::identify::library::{KnownLaw, Trials};
+use crate::identify::problem::Problem;
+use crate::identify::segment::{MotionScales, Segment};
+use crate::identify::window::Window;
+use crate::law::Motion;
+use serde::{Deserialize, Serialize};
+
+/// The law's own covariance counts this many times where it leaves the state open, as long as it is that of a linearisation …
+const CAUTION: f64 = 10.0;
+
+/// … which it is over a record of so many samples. It falls with the fourth power of the length then: the hypotheses know it too.
+const LINEAR: f64 = 4000.0;
+
+/// An error of the law acts one way for this many samples at most.
+const LONGEST_ERROR: f64 = 1000.0;
+
+/// The law in use, run along with the stream.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LawInUse {
+    /// Its filter run, at the head of the stream.
+    pub run: Pass,
+    /// All coefficients.
+    pub all: Vec<f64>,
+    /// Which free terms it has.
+    pub active: Vec<bool>,
+    /// Noise levels under it, as its record knows them.
+    pub noise: Noise,
+    /// How loud the sensors are now.
+    pub adaptive: AdaptiveNoise,
+    /// Of its record, as in [`crate::identify::segment::Segment::fit`].
+    pub overdispersion: f64,
+    /// Number of the sample at which that was taken from the record.
+    dispersed_at: u64,
+    /// How many times the covariance counts.
+    caution: f64,
+    /// Whether it explained its record but for the sensors' noise.
+    pub explains: bool,
+    /// Whether it was validated, or had stood its stability check and explained its record.
+    pub proven: bool,
+    /// Covariance of the free coefficients, n × n.
+    covariance: Vec<f64>,
+    /// For how long an error of the law acts one way, s.
+    lasting: f64,
+    /// ∂q̈/∂θ by free coefficient, the inertia's as a mean over that time.
+    slopes: Vec<f64>,
+    /// Number of the sample that comes next.
+    pub next: u64,
+    /// Whether there is one.
+    pub running: bool,
+}
+
+impl LawInUse {
+    /// Room for the problem.
+    pub fn new(problem: &Problem) -> LawInUse {
+        let n = problem.n();
+        LawInUse {
+            run: Pass::new(n).guarded(),
+            all: problem.known.clone(),
+            active: vec![true; n],
+            noise: Noise { sensor: [1.0; 2], process: 1.0 },
+            adaptive: AdaptiveNoise::USUAL,
+            overdispersion: 1.0,
+            dispersed_at: 0,
+            caution: CAUTION,
+            explains: false,
+            proven: false,
+            covariance: vec![0.0; n * n],
+            lasting: 0.0,
+            slopes: vec![0.0; n],
+            next: 0,
+            running: false,
+        }
+    }
+
+    /// Takes a sample; returns what it says of a switch, readings that do not count included.
+    pub fn step(&mut self, problem: &Problem, observation: &Observation) -> [Option<Innovation>; 2] {
+        let motion = Motion { terms: &problem.terms, coefficients: &self.all };
+        let sensor = [0, 1].map(|channel| self.noise.sensor[channel] * self.adaptive.factor(channel));
+        let noise = Noise { process: self.noise.process + self.uncertainty(), sensor };
+        let innovations = self.run.step(&motion, &problem.free_terms, &noise, observation);
+        self.adaptive.add(&innovations, &observation.measured);
+        self.follow_slopes(observation.dt, problem.free_inertia());
+        let [q, qd] = innovations;
+        let [q_aside, qd_aside] = self.run.set_aside;
+        [q.or(q_aside), qd.or(qd_aside)]
+    }
+
+    /// Slopes after an interval. The inertia's goes with the acceleration, which a rough excitation turns around faster than the motion
+    /// follows: such errors do not last.
+    fn follow_slopes(&mut self, dt: f64, inertia: Option<usize>) {
+        let share = dt / (self.lasting + dt);
+        for (index, (slope, input)) in self.slopes.iter_mut().zip(&self.run.map.input).enumerate() {
+            let share = if inertia == Some(index) { share } else { 1.0 };
+            *slope += share * (input[1] / dt - *slope);
+        }
+    }
+
+    /// Intensity of the acceleration that the law's own uncertainty leaves open, (m/s²)² s: where the motion leaves what its record has
+    /// seen, an uncertain law must not bind the state.
+    fn uncertainty(&self) -> f64 {
+        let slopes = &self.slopes;
+        let rows = self.covariance.chunks_exact(slopes.len()).zip(slopes);
+        let variance: f64 = rows
+            .map(|(row, slope)| slope * row.iter().zip(slopes).map(|(entry, other)| entry * other).sum::<f64>())
+            .sum();
+        self.caution * variance.max(0.0) * self.lasting
+    }
+
+    /// Takes over the segment's estimate and the run that led to it.
+    pub fn adopt(&mut self, problem: &Problem, segment: &mut Segment, window: &Window) {
+        segment.hand_over(problem, window, &mut self.run);
+        self.all.copy_from_slice(&segment.all);
+        self.active.copy_from_slice(&segment.active);
+        self.adaptive.refer(&self.noise, &segment.noise);
+        self.noise = segment.noise;
+        self.follow_overdispersion(segment, window.ready());
+        self.caution = caution(segment.length(window.ready()));
+        self.explains = !segment.fit.process_matters;
+        self.covariance.copy_from_slice(&segment.solution.covariance);
+        self.follow_scales(&segment.scales, window);
+        if !self.running {
+            self.adaptive = AdaptiveNoise::USUAL;
+        } else if !self.proven {
+            self.adaptive.forget_lately();
+        }
+        self.next = window.ready();
+        self.running = true;
+    }
+
+    /// Where the motion has no scale yet, an error acts for the longest time.
+    fn follow_scales(&mut self, scales: &MotionScales, window: &Window) {
+        let [before, last] = [window.ready() - 2, window.ready() - 1].map(|number| window.sample(number).t);
+        self.lasting = scales.natural_time().min(LONGEST_ERROR * (last - before));
+    }
+
+    /// Error that has come since the record was half as long may be a switch's: it does not count until it has lasted.
+    fn follow_overdispersion(&mut self, segment: &Segment, now: u64) {
+        let then = segment.length(self.dispersed_at);
+        let lasts = then == 0 || segment.length(now) >= 2 * then;
+        if !self.running || lasts || segment.fit.overdispersion <= self.overdispersion {
+            (self.overdispersion, self.dispersed_at) = (segment.fit.overdispersion, now);
+        }
+    }
+
+    /// Takes over a known law and the run of its trial.
+    pub fn adopt_known(
+        &mut self,
+        problem: &Problem,
+        law: &KnownLaw,
+        trials: &mut Trials,
+        place: usize,
+        scales: &MotionScales,
+        window: &Window,
+    ) {
+        self.noise = trials.noise(place);
+        self.adaptive = AdaptiveNoise::USUAL;
+        self.caution = caution(law.samples);
+        self.follow_scales(scales, window);
+        (self.overdispersion, self.dispersed_at) = (1.0, window.ready());
+        (self.explains, self.proven) = (true, true);
+        trials.hand_over(place, problem, window, &mut self.run);
+        self.run.information.merge(&law.information);
+        self.all.copy_from_slice(&problem.known);
+        problem.scatter(&law.coefficients, &mut self.all);
+        self.active.copy_from_slice(&law.active);
+        self.covariance.copy_from_slice(&law.covariance);
+        self.next = window.ready();
+        self.running = true;
+    }
+}
+
+/// How many times the covariance of a law counts that is known from so many samples.
+fn caution(samples: u64) -> f64 {
+    CAUTION * (LINEAR / samples.max(1) as f64).min(1.0).powi(4)
+}

@@ -1,0 +1,343 @@
+//! Coefficients that drift away from a law which explained its record.
+//!
+//! After an alarm two stories are told of the record from a while before it: the law switched at the instant that the evidence found, and
+//! the coefficients wander, a random walk of one of several intensities. Each is a filter of the state and the coefficients together
+//! ([`AugmentedFilter`]), so that each has a likelihood: that of the record, whatever it predicts. A switch makes slow wandering improbable at once,
+//! for the jump is nowhere near what a walk does between two samples; a drift makes any constant law improbable a period or two later. A
+//! walk fast enough to look like a switch speaks for one.
+//!
+//! When slow wandering has won, its filters go on with the stream: their mean by weight is the law, their covariance its std. A filter
+//! whose coefficients have ceased to wander is begun again and again from the likeliest of them, until for some periods it loses nothing: the
+//! coefficients rest.
+
+use crate::estimation::{AugmentedFilter, Channel, InnovationGate, Noise, Observation, Start, Unknowns};
+use crate::identify::initial_state::first_state;
+use crate::identify::problem::Problem;
+use crate::identify::window::Window;
+use serde::{Deserialize, Serialize};
+
+/// Std of the wandering over a natural period relative to the reach, of the coefficients and of the inertia. The last is too fast for a drift.
+const INTENSITIES: [[f64; 2]; 5] = [[0.01, 0.0], [0.03, 0.0], [0.01, 0.01], [0.03, 0.03], [0.1, 0.1]];
+
+/// How many of them are a drift.
+const SLOW: usize = 4;
+
+/// Place of the filter whose coefficients are constant: throughout a trial, or since they may have come to rest.
+const CONSTANT: usize = 5;
+
+/// Place of the first filter whose coefficients switch once, at one of several samples.
+const SWITCHED: usize = 6;
+
+/// How many of them there are.
+pub const INSTANTS: usize = 5;
+
+/// Filters.
+const RIVALS: usize = SWITCHED + INSTANTS;
+
+/// A switch moves a coefficient by this part of its reach, as a std, and so much is open at the beginning.
+const WIDTH: f64 = 0.3;
+
+/// Samples that every filter takes in a step, until all are taken.
+const BUDGET: usize = 4;
+
+/// What decides a trial, nats …
+const DECIDED: f64 = 12.0;
+
+/// … that has lasted this many natural periods.
+const LASTING: f64 = 0.25;
+
+/// For how many natural periods a trial goes on: as long as a switch explains the record as well, and at most.
+const PATIENCE: [f64; 2] = [3.0, 6.0];
+
+/// For how many natural periods what a walk predicted counts in its weight.
+const MEMORY: f64 = 4.0;
+
+/// Log-likelihood by which coefficients that wander are told from ones that rest, nats.
+const WANDERED: f64 = 5.0;
+
+/// Coefficients that may have been at rest for this many natural periods are; a constant law that has explained as many is the law.
+const REST: f64 = 2.0;
+
+/// How far the trial of a drift, or its following, has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum Course {
+    Idle,
+    Trial,
+    Following,
+}
+
+/// What a trial stands on.
+#[derive(Clone, Copy, Debug)]
+pub struct Before<'a> {
+    /// All coefficients of the law before.
+    pub all: &'a [f64],
+    /// Value of each free coefficient at which its force moves the acceleration by as much as the law's own forces do; 0 where the law
+    /// does not have it.
+    pub reach: &'a [f64],
+    /// Noise under that law.
+    pub noise: Noise,
+    /// Parts into which its filter cuts an interval.
+    pub parts: usize,
+    /// Its natural period, samples.
+    pub period: f64,
+    /// Samples at which the law may have switched, in their order.
+    pub switch: [u64; INSTANTS],
+    /// The sample to begin with.
+    pub start: u64,
+}
+
+/// Filters that tell a drift from a switch, and follow it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AugmentedDrift {
+    course: Course,
+    rivals: Vec<AugmentedFilter>,
+    sound: Vec<bool>,
+    weights: Vec<f64>,
+    reach: Vec<f64>,
+    noise: Noise,
+    parts: usize,
+    period: f64,
+    switch: [u64; INSTANTS],
+    guard: InnovationGate,
+    next: u64,
+    /// Since which sample the trial speaks for a drift.
+    leading_since: Option<u64>,
+    /// Since which sample the coefficients may be constant, and the walk that this was begun from.
+    rest: (u64, usize),
+    coefficients: Vec<f64>,
+    variances: Vec<f64>,
+}
+
+impl AugmentedDrift {
+    /// Nothing is on trial.
+    pub fn new(problem: &Problem) -> AugmentedDrift {
+        let n = problem.n();
+        AugmentedDrift {
+            course: Course::Idle,
+            rivals: vec![AugmentedFilter::new(problem.terms.len(), n); RIVALS],
+            sound: vec![true; RIVALS],
+            weights: vec![0.0; INTENSITIES.len()],
+            reach: vec![0.0; n],
+            noise: Noise { sensor: [1.0; 2], process: 1.0 },
+            parts: 1,
+            period: 1.0,
+            switch: [0; INSTANTS],
+            guard: InnovationGate::default(),
+            next: 0,
+            leading_since: None,
+            rest: (0, 0),
+            coefficients: vec![0.0; n],
+            variances: vec![0.0; n],
+        }
+    }
+
+    /// Whether a drift is on trial.
+    pub fn is_on_trial(&self) -> bool {
+        self.course == Course::Trial
+    }
+
+    /// Whether a drift is followed.
+    pub fn is_following(&self) -> bool {
+        self.course == Course::Following
+    }
+
+    /// Ends trial and following.
+    pub fn end(&mut self) {
+        self.course = Course::Idle;
+    }
+
+    /// A constant law has explained this many samples: where they are many, no drift is on trial any more.
+    pub fn end_trial(&mut self, samples: u64) {
+        if self.is_on_trial() && samples as f64 > REST * self.period {
+            self.end();
+        }
+    }
+
+    /// Puts a drift on trial against a switch.
+    pub fn begin(&mut self, problem: &Problem, window: &Window, before: &Before) {
+        let unknowns = unknowns(problem);
+        self.reach.copy_from_slice(before.reach);
+        if let Some(index) = problem.free_inertia() {
+            self.reach[index] = before.all[problem.inertia];
+        }
+        let first = first_state(problem, window, before.start, &before.noise);
+        let [q, _, qd] = first.covariance;
+        let start = Start { all: before.all, reach: &self.reach, width: WIDTH, state: first.state, variances: [q, qd] };
+        self.rivals.iter_mut().for_each(|rival| rival.begin(&unknowns, &start));
+        self.sound.fill(true);
+        self.weights.fill(0.0);
+        (self.noise, self.parts, self.period) = (before.noise, before.parts, before.period);
+        (self.switch, self.next) = (before.switch, before.start + 1);
+        (self.course, self.leading_since, self.guard) = (Course::Trial, None, InnovationGate::default());
+    }
+
+    /// Takes what is new in the window, a bounded number of samples; returns whether the law is new.
+    pub fn step(&mut self, problem: &Problem, window: &Window) -> bool {
+        if self.course == Course::Idle {
+            return false;
+        }
+        if self.next <= window.oldest() {
+            self.end();
+        }
+        let stop = window.ready().min(self.next + BUDGET as u64);
+        while self.course != Course::Idle && self.next < stop {
+            self.take(problem, &window.observation(self.next));
+            self.next += 1;
+            match self.course {
+                Course::Trial => self.decide(),
+                _ => self.look_for_rest(problem),
+            }
+        }
+        if self.course != Course::Idle {
+            self.mix(problem);
+        }
+        self.course != Course::Idle
+    }
+
+    /// Every filter takes a sample; those that have left what can be computed fall out.
+    fn take(&mut self, problem: &Problem, observation: &Observation) {
+        let unknowns = unknowns(problem);
+        let count = if self.course == Course::Trial { RIVALS } else { CONSTANT + 1 };
+        let switched = self.rivals[SWITCHED..count.max(SWITCHED)].iter_mut().zip(&self.switch);
+        for (rival, _) in switched.filter(|(_, instant)| **instant == self.next) {
+            rival.wander(&unknowns, &self.reach, [WIDTH; 2]);
+        }
+        let before: [f64; SLOW + 1] = std::array::from_fn(|index| self.rivals[index].log_likelihood);
+        for (index, rival) in self.rivals[..count].iter_mut().enumerate().filter(|(index, _)| self.sound[*index]) {
+            if let Some(intensity) = INTENSITIES.get(index) {
+                rival.wander(&unknowns, &self.reach, intensity.map(|std| std / self.period.sqrt()));
+            }
+            rival.advance(&unknowns, self.noise.process, self.parts, observation);
+        }
+        for channel in Channel::ALL {
+            let Some(measured) = observation.measured[channel as usize] else { continue };
+            let variance = self.noise.sensor[channel as usize];
+            let (residual, total) = self.rivals[SLOW - 1].residual(channel, measured, variance);
+            if !self.guard.admits(channel, residual, total) {
+                continue;
+            }
+            let sound = self.rivals[..count].iter_mut().zip(&self.sound).filter(|(_, sound)| **sound);
+            sound.for_each(|(rival, _)| rival.update(channel, measured, variance));
+        }
+        for (rival, sound) in self.rivals[..count].iter().zip(&mut self.sound) {
+            *sound &= rival.is_sound(&unknowns);
+        }
+        self.weigh(before);
+    }
+
+    /// Weights of the walks, as logarithms: what they predicted, with a memory.
+    fn weigh(&mut self, before: [f64; SLOW + 1]) {
+        let kept = 1.0 - (MEMORY * self.period).recip();
+        for (index, weight) in self.weights.iter_mut().enumerate() {
+            let gain = self.rivals[index].log_likelihood - before[index];
+            *weight = if self.sound[index] { *weight * kept + gain } else { f64::NEG_INFINITY };
+        }
+        let largest = self.weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        match largest.is_finite() {
+            true => self.weights.iter_mut().for_each(|weight| *weight -= largest),
+            false => self.end(),
+        }
+    }
+
+    fn log_likelihood(&self, index: usize) -> f64 {
+        if self.sound[index] { self.rivals[index].log_likelihood } else { f64::NEG_INFINITY }
+    }
+
+    /// Log-likelihood ratio of slow wandering to the likeliest of its rivals, nats.
+    fn lead(&self) -> f64 {
+        let largest = (0..SLOW).map(|index| self.log_likelihood(index)).fold(f64::NEG_INFINITY, f64::max);
+        let rival = (SLOW..RIVALS).map(|index| self.log_likelihood(index)).fold(f64::NEG_INFINITY, f64::max);
+        largest - (SLOW as f64).ln() - rival
+    }
+
+    /// Ends a trial that is lost, or that has gone on for too long.
+    fn decide(&mut self) {
+        let lead = self.lead();
+        self.leading_since = if lead > DECIDED { self.leading_since.or(Some(self.next)) } else { None };
+        let patience = PATIENCE[usize::from(lead > 0.0)] * self.period;
+        let late = self.next as f64 > self.switch[INSTANTS - 1] as f64 + patience;
+        if self.next > self.switch[INSTANTS - 1] && (lead < -DECIDED || lead.is_nan() || late) {
+            self.end();
+        }
+    }
+
+    /// Whether the trial has found a drift.
+    pub fn found_drift(&self) -> bool {
+        let lasting = LASTING * self.period;
+        let led = self.leading_since.is_some_and(|since| self.next as f64 > since as f64 + lasting);
+        self.is_on_trial() && led && self.next as f64 > self.switch[INSTANTS - 1] as f64 + lasting
+    }
+
+    /// Follows the drift from now on.
+    pub fn follow(&mut self) {
+        self.course = Course::Following;
+        self.begin_rest();
+    }
+
+    fn likeliest(&self) -> usize {
+        (0..INTENSITIES.len()).max_by(|a, b| self.weights[*a].total_cmp(&self.weights[*b])).unwrap_or(0)
+    }
+
+    fn begin_rest(&mut self) {
+        self.rest = (self.next, self.likeliest());
+        let (walks, others) = self.rivals.split_at_mut(CONSTANT);
+        others[0].copy_from(&walks[self.rest.1]);
+        self.sound[CONSTANT] = true;
+    }
+
+    /// Log-likelihood ratio of coefficients that have been constant for a while to ones that wander, nats.
+    fn quiet(&self) -> f64 {
+        self.log_likelihood(CONSTANT) - self.log_likelihood(self.rest.1)
+    }
+
+    fn look_for_rest(&mut self, problem: &Problem) {
+        let quiet = self.quiet();
+        if quiet.is_nan() || quiet < -WANDERED || !self.rivals[CONSTANT].is_sound(&unknowns(problem)) {
+            self.begin_rest();
+        }
+    }
+
+    /// The sample since which the coefficients have been at rest, if they are.
+    pub fn rests_since(&self) -> Option<u64> {
+        let long = (self.next - self.rest.0) as f64 > REST * self.period;
+        (self.is_following() && long && self.quiet() > 0.0).then_some(self.rest.0)
+    }
+
+    /// Mean and variance over all walks.
+    fn mix(&mut self, problem: &Problem) {
+        let unknowns = unknowns(problem);
+        let sum: f64 = self.weights.iter().map(|weight| weight.exp()).sum();
+        for free in 0..self.coefficients.len() {
+            let (mut mean, mut square) = (0.0, 0.0);
+            let (centre, _) = self.rivals[self.likeliest()].coefficient(&unknowns, free);
+            for (rival, weight) in self.rivals.iter().zip(&self.weights).filter(|(_, weight)| weight.is_finite()) {
+                let (value, variance) = rival.coefficient(&unknowns, free);
+                let share = weight.exp() / sum;
+                mean += share * (value - centre);
+                square += share * ((value - centre).powi(2) + variance);
+            }
+            self.coefficients[free] = centre + mean;
+            self.variances[free] = (square - mean * mean).max(0.0);
+        }
+    }
+
+    /// The free coefficient and its std.
+    pub fn coefficient(&self, free: usize) -> (f64, f64) {
+        (self.coefficients[free], self.variances[free].sqrt())
+    }
+
+    /// Variance that is stated for e of eq. (8), of the free coefficients.
+    pub fn stated_error(&self) -> f64 {
+        self.variances.iter().sum::<f64>() / self.coefficients.iter().map(|value| value * value).sum::<f64>()
+    }
+}
+
+fn unknowns(problem: &Problem) -> Unknowns<'_> {
+    Unknowns {
+        terms: &problem.terms,
+        free: &problem.free,
+        free_terms: &problem.free_terms,
+        inertia: problem.inertia,
+        free_inertia: problem.free_inertia(),
+    }
+}

@@ -1,0 +1,198 @@
+//! Coefficients that move while the record runs: slow drift, and moves that are no jumps.
+//!
+//! A segment has one law. Where none explains its record because the coefficients move, they are tracked here:
+//! weak rows against variations φ with ∫ φ dt = 0, which leave an offset of the sensor out, are the measurements of a random walk
+//! ([`super::random_walk`]). How far the coefficients wander and how far the law errs is a bank of rivals ([`super::variation_length`]), weighed by their predictions.
+//! Long variations keep more noise and faster modes out, short ones follow sooner: the length whose next row is predicted
+//! best, relative to its size, is taken.
+//!
+//! Coefficients that drift are told from constant ones by the likelihood of the rivals that wander to that of those that do not.
+
+use super::oscillation::Oscillation;
+use super::sensor_noise::SensorNoise;
+use super::variation_length::VariationLength;
+use crate::identify::problem::Problem;
+use crate::identify::section::SectionBuffer;
+use crate::identify::settings::Settings;
+use crate::identify::window::Window;
+use crate::weak::{Row, Variation};
+use serde::{Deserialize, Serialize};
+
+/// Samples in the shortest variation.
+const SHORTEST: usize = 64;
+
+/// Samples in the longest variation, where the window has room for it.
+const LONGEST: usize = 2048;
+
+/// Odd about its middle, so that its integral is zero; smooth enough to keep faster modes out.
+const VARIATION: Variation = Variation::SmoothSine { mode: 2 };
+
+/// Rows begin this fraction of a variation apart.
+const OVERLAP: usize = 8;
+
+/// For how many of the longest variations a row counts in the choice of the length.
+const MEMORY: f64 = 16.0;
+
+/// Evidence for any law at all from which on one is shown, nats.
+const SEEN: f64 = 20.0;
+
+/// Evidence of wandering, nats, that must have lasted …
+const MOVING: f64 = 6.0;
+
+/// … for this many rows: a jump is far from every constant law for the length of a variation.
+const LASTING: u32 = 2 * OVERLAP as u32;
+
+/// Rows that must speak against wandering before it has come to an end.
+const QUIET: u32 = 16 * OVERLAP as u32;
+
+/// For how many variations a constant law is waited for.
+const PATIENCE: u64 = 8;
+
+/// Coefficients as they move.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WeakRowDrift {
+    lengths: Vec<VariationLength>,
+    sensor: SensorNoise,
+    oscillation: Oscillation,
+    section: SectionBuffer,
+    row: Row,
+    chosen: usize,
+    moving: u32,
+    /// Rows in a row that spoke against wandering.
+    quiet: u32,
+    /// Number of the sample from which on the coefficients are known.
+    since: u64,
+}
+
+impl WeakRowDrift {
+    /// Room for the problem's unknowns and for variations up to a quarter of the window.
+    pub fn new(problem: &Problem, capacity: usize) -> WeakRowDrift {
+        let longest = LONGEST.min(capacity / 4).max(SHORTEST);
+        let lengths = (0..).map(|octave| SHORTEST << octave).take_while(|samples| *samples <= longest);
+        WeakRowDrift {
+            lengths: lengths.map(|samples| VariationLength::new(problem, samples)).collect(),
+            sensor: SensorNoise::default(),
+            oscillation: Oscillation::default(),
+            section: SectionBuffer::new(longest + 1),
+            row: Row::new(problem.terms.len()),
+            chosen: 0,
+            moving: 0,
+            quiet: 0,
+            since: 0,
+        }
+    }
+
+    /// Forgets the coefficients, but not which length tells most; rows begin at sample `start`.
+    pub fn restart(&mut self, start: u64) {
+        self.lengths.iter_mut().for_each(|length| length.restart(start));
+        (self.moving, self.quiet, self.since) = (0, 0, start);
+    }
+
+    /// Takes the newest sample of the window and forms at most one row, under sensor noise of at most these variances; returns whether
+    /// the law was renewed. Unless it is to be `thorough`, the rows of the lengths that are not in use do not overlap.
+    pub fn step(
+        &mut self,
+        problem: &Problem,
+        settings: &Settings,
+        window: &Window,
+        most: [f64; 2],
+        thorough: bool,
+    ) -> bool {
+        self.sensor.step(window);
+        self.oscillation.step(window.sample(window.end() - 1).q);
+        let due = |length: &VariationLength| length.next < window.end();
+        let Some(index) = self.lengths.iter().position(due) else { return false };
+        let overlap = if thorough || index == self.chosen { OVERLAP } else { 1 };
+        self.form_row(problem, window, self.sensor.variances(settings, most), index, overlap) && self.choose(index)
+    }
+
+    fn form_row(&mut self, problem: &Problem, window: &Window, sensor: [f64; 2], index: usize, overlap: usize) -> bool {
+        let longest = self.lengths.last().map_or(0, |length| length.samples);
+        let length = &mut self.lengths[index];
+        let (first, last) = (length.next - length.samples as u64, length.next);
+        length.next += (length.samples / overlap) as u64;
+        if first < window.oldest() {
+            return false;
+        }
+        self.section.load(problem, window, first, last);
+        let section = self.section.view(problem, length.samples + 1);
+        self.row.integrate_about(&section, VARIATION, &problem.terms, &length.all);
+        let memory = MEMORY * longest as f64 / length.samples as f64;
+        length.take(problem, &self.row, sensor, (overlap as f64).recip(), memory);
+        true
+    }
+
+    /// Takes the length with the best score; returns whether its law is new.
+    fn choose(&mut self, renewed: usize) -> bool {
+        let before = self.chosen;
+        for (index, length) in self.lengths.iter().enumerate() {
+            if length.score() > self.lengths[self.chosen].score() {
+                self.chosen = index;
+            }
+        }
+        if self.chosen != before {
+            (self.moving, self.quiet) = (0, 0);
+        } else if self.chosen == renewed {
+            let wandering = self.law().wandering();
+            self.moving = if wandering > MOVING { self.moving + 1 } else { 0 };
+            self.quiet = if wandering < 0.0 { self.quiet + 1 } else { 0 };
+        }
+        self.chosen == renewed
+    }
+
+    fn law(&self) -> &VariationLength {
+        &self.lengths[self.chosen]
+    }
+
+    /// Whether the coefficients move: constant ones have been improbable for some time.
+    pub fn is_moving(&self) -> bool {
+        self.moving >= LASTING
+    }
+
+    /// Whether that has been so for long enough for a constant law to be found, had there been one.
+    pub fn has_no_rest(&self, window: &Window) -> bool {
+        self.is_moving() && window.end() > self.since + PATIENCE * self.law().samples as u64
+    }
+
+    /// Whether the record has long spoken against coefficients that move.
+    pub fn is_at_rest(&self) -> bool {
+        self.quiet >= QUIET
+    }
+
+    /// Whether the law predicts anything.
+    pub fn predicts(&self) -> bool {
+        self.law().evidence > SEEN
+    }
+
+    /// Whether the variations are longer than this many halves of an oscillation; below one no record of its own gives an acceptable law.
+    pub fn spans(&self, halves: f64) -> bool {
+        self.law().samples as f64 > halves * self.oscillation.half_period()
+    }
+
+    /// Free coefficients.
+    pub fn coefficients(&self) -> &[f64] {
+        &self.law().coefficients
+    }
+
+    /// Std of the free coefficient; infinite where the rows do not determine it.
+    pub fn std(&self, free: usize) -> f64 {
+        self.law().variances[free].sqrt()
+    }
+
+    /// Variance that is stated for e of eq. (8), of the coefficients that the rows determine.
+    pub fn stated_error(&self) -> f64 {
+        let law = self.law();
+        let known = law.variances.iter().filter(|variance| variance.is_finite());
+        known.sum::<f64>() / law.all.iter().map(|value| value * value).sum::<f64>()
+    }
+
+    /// Whether the rows say anything of the free coefficient: it is known better than that its term may be as large as the right side.
+    pub fn determines(&self, free: usize) -> bool {
+        self.std(free) < self.law().reach(free)
+    }
+
+    /// One variation of samples, that of the length in use.
+    pub fn length(&self) -> u64 {
+        self.law().samples as u64
+    }
+}

@@ -1,0 +1,150 @@
+//! A record of fixed length, captured sample by sample: what the published procedure identifies from.
+
+use crate::identify::problem::Problem;
+use crate::identify::sample::Sample;
+use crate::identify::settings::Channels;
+use crate::law::Hold;
+use crate::weak::Section;
+use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
+
+/// Fewest samples of a record; one that is slow takes longer than its length for them.
+const FEWEST: usize = 64;
+
+/// q, q̇ and F over a given time; a channel that is not measured is completed from the other one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Capture {
+    /// Its length, s.
+    length: f64,
+    count: usize,
+    t: Vec<f64>,
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    excitation: Vec<f64>,
+}
+
+impl Capture {
+    /// Room for `length` s of samples at least half a `sample_time` apart.
+    pub fn new(length: f64, sample_time: f64) -> Capture {
+        let capacity = FEWEST.max((2.0 * length / sample_time).ceil() as usize + 2);
+        let [t, q, qd, excitation] = std::array::from_fn(|_| vec![0.0; capacity]);
+        Capture { length, count: 0, t, q, qd, excitation }
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        self.count = 0;
+    }
+
+    /// Number of samples.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// Whether it is as long as it should be, to half a sample.
+    pub fn is_complete(&self) -> bool {
+        match self.count {
+            count if count == self.t.len() => true,
+            count if count < FEWEST => false,
+            count => {
+                let (last, before) = (self.t[count - 1], self.t[count - 2]);
+                last - self.t[0] >= self.length - 0.5 * (last - before)
+            }
+        }
+    }
+
+    /// Takes a sample, completed; a full record takes none.
+    pub fn push(&mut self, sample: Sample, channels: Channels) {
+        let at = self.count;
+        if at == self.t.len() {
+            return;
+        }
+        (self.t[at], self.q[at], self.qd[at], self.excitation[at]) = (sample.t, sample.q, sample.qd, sample.excitation);
+        if !channels.qd && at >= 2 {
+            // now that there is a sample on both sides
+            self.qd[at - 1] = (self.q[at] - self.q[at - 2]) / (self.t[at] - self.t[at - 2]);
+        }
+        self.count += 1;
+    }
+
+    /// Samples in this range, as weak rows want them.
+    pub fn section(&self, problem: &Problem, range: RangeInclusive<usize>) -> Section<'_> {
+        Section {
+            t: &self.t[range.clone()],
+            q: &self.q[range.clone()],
+            qd: &self.qd[range.clone()],
+            qd_measured: problem.channels.qd,
+            excitation: &self.excitation[range],
+            hold: if problem.channels.excitation { problem.hold } else { Hold::Zero },
+        }
+    }
+}
+
+/// The sample with every channel: q̇ as the last difference of q, q as the trapezoidal sum of q̇ on top of the completed
+/// sample before, F = 0.
+pub fn complete(sample: Sample, before: Option<&Sample>, channels: Channels) -> Sample {
+    let excitation = if channels.excitation { sample.excitation } else { 0.0 };
+    let Some(before) = before else {
+        let [q, qd] = [(channels.q, sample.q), (channels.qd, sample.qd)]
+            .map(|(measured, value)| if measured { value } else { 0.0 });
+        return Sample { q, qd, excitation, ..sample };
+    };
+    let dt = sample.t - before.t;
+    let qd = if channels.qd { sample.qd } else { (sample.q - before.q) / dt };
+    let q = if channels.q { sample.q } else { before.q + 0.5 * dt * (before.qd + sample.qd) };
+    Sample { q, qd, excitation, ..sample }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const POSITION_ONLY: Channels = Channels { qd: false, ..Channels::ALL };
+    const VELOCITY_ONLY: Channels = Channels { q: false, ..Channels::ALL };
+
+    fn motion(t: f64) -> Sample {
+        Sample { t, q: (2.0 * t).sin(), qd: 2.0 * (2.0 * t).cos(), excitation: 1.0 }
+    }
+
+    fn captured(channels: Channels, sample_time: f64) -> Capture {
+        let mut capture = Capture::new(1.0, sample_time);
+        let mut before: Option<Sample> = None;
+        let mut number = 0;
+        while !capture.is_complete() {
+            let whole = motion(f64::from(number) * sample_time);
+            let hidden = Sample {
+                q: if channels.q { whole.q } else { f64::NAN },
+                qd: if channels.qd { whole.qd } else { f64::NAN },
+                ..whole
+            };
+            let sample = complete(hidden, before.as_ref(), channels);
+            capture.push(sample, channels);
+            before = Some(sample);
+            number += 1;
+        }
+        capture
+    }
+
+    #[test]
+    fn a_record_is_complete_after_its_length_and_not_before() {
+        assert_eq!(captured(Channels::ALL, 1e-3).count(), 1001);
+        assert_eq!(captured(Channels::ALL, 0.25).count(), FEWEST);
+    }
+
+    #[test]
+    fn a_missing_velocity_is_completed_with_order_two() {
+        let error = |sample_time| {
+            let capture = captured(POSITION_ONLY, sample_time);
+            let inner = 1..capture.count() - 1;
+            inner.map(|k| (capture.qd[k] - motion(capture.t[k]).qd).abs()).fold(0.0, f64::max)
+        };
+        let order = (error(4e-3) / error(2e-3)).log2();
+        assert!((1.9..2.1).contains(&order), "order {order}");
+    }
+
+    #[test]
+    fn a_missing_displacement_is_completed_up_to_its_start() {
+        let capture = captured(VELOCITY_ONLY, 1e-3);
+        assert!(capture.q.iter().zip(&capture.t).all(|(q, t)| (q - motion(*t).q).abs() < 1e-6));
+    }
+}

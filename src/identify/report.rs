@@ -1,0 +1,93 @@
+//! What an identifier tells after a step.
+
+use crate::estimation::Missing;
+use crate::law::Term;
+use serde::{Deserialize, Serialize};
+
+/// What the identifier is doing; numbered as in the FMU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Status {
+    /// No law yet.
+    Acquiring = 1,
+    /// The law explains the data.
+    Tracking = 2,
+    /// Evidence of a switch is growing.
+    SwitchSuspected = 3,
+    /// A switch was detected; the new law is being identified.
+    ReIdentifying = 4,
+}
+
+impl Status {
+    /// Every status, in the order of the FMU's enumeration.
+    pub const ALL: [Status; 4] = [Status::Acquiring, Status::Tracking, Status::SwitchSuspected, Status::ReIdentifying];
+
+    /// The name used in reports and in the FMU.
+    pub fn id(self) -> &'static str {
+        match self {
+            Status::Acquiring => "acquiring",
+            Status::Tracking => "tracking",
+            Status::SwitchSuspected => "switch suspected",
+            Status::ReIdentifying => "re-identifying",
+        }
+    }
+}
+
+/// A published coefficient.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Coefficient {
+    /// What it multiplies.
+    pub term: Term,
+    /// Its last known value; 0 before the first, and for a "maybe" term that the law does not have.
+    pub value: f64,
+    /// Its std; `None` while the coefficient is not known.
+    pub std: Option<f64>,
+    /// How many more seconds of such a record it needs until it is known as well as a law that is vouched for asks; 0 when it is, `None`
+    /// while nothing can be said.
+    pub needed: Option<f64>,
+}
+
+/// All other outputs after a step.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Output {
+    /// Switches detected so far.
+    pub switch_count: u32,
+    /// Estimated instant at which the present stage began, s.
+    pub switch_time: f64,
+    /// Its std, s; `None` in the first stage, which no switch opened.
+    pub switch_time_std: Option<f64>,
+    /// Time of the alarm that ended the last stage, s; `None` in the first one.
+    pub detection_time: Option<f64>,
+    /// First time at which the present law was vouched for (stated covariance puts e below 0.05²), s.
+    pub identified_time: Option<f64>,
+    /// Number of the law in use among those that were vouched for, 1 for the first of all; `None` while there is none.
+    pub law_number: Option<u32>,
+    /// Whether that law was recognised as one seen before, not identified anew.
+    pub recognised: bool,
+    /// What the identifier is doing.
+    pub status: Status,
+    /// Whether the present law is validated; every std is known then.
+    pub valid: bool,
+    /// Whether the coefficients move: they are followed as they go, and vouched for as long as their stated e is below 0.2².
+    pub drifting: bool,
+    /// Deviation of eq. (4) over T; 0 before the first law.
+    pub deviation: f64,
+    /// The deviation that is out of the ordinary.
+    pub threshold: f64,
+    /// Force that the law predicts for this instant; 0 for a law of motion.
+    pub prediction_force: f64,
+    /// Displacement that the law predicts for this instant.
+    pub prediction_q: f64,
+    /// Velocity that the law predicts for this instant.
+    pub prediction_qd: f64,
+    /// The effect of the catalogue that the present law lacks most; `None` where none stands out.
+    pub missing: Option<Missing>,
+    /// Share of the force's variance that the published coefficients explain: of a law without inertia, and of one of motion where they are
+    /// those of the weak form; `None` for a law of motion that states its own std, and while nothing is known.
+    pub explained: Option<f64>,
+    /// Estimated std of the displacement's sensor noise; `None` while not known or not measured.
+    pub noise_q: Option<f64>,
+    /// Estimated std of the velocity's sensor noise; `None` while not known or not measured.
+    pub noise_qd: Option<f64>,
+    /// Estimated std of what the force has besides the law; `None` while not known, and for a law of motion.
+    pub noise_force: Option<f64>,
+}

@@ -1,0 +1,44 @@
+//! One measurement, and why it may not be used.
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+/// One measurement.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Sample {
+    /// Time, s.
+    pub t: f64,
+    /// Displacement; ignored where [`super::Channels`] says it is not measured.
+    pub q: f64,
+    /// Velocity; ignored where it is not measured.
+    pub qd: f64,
+    /// Excitation; ignored where it is not measured.
+    pub excitation: f64,
+}
+
+/// Why a sample was not used. Nothing else changes.
+#[derive(Clone, Copy, Debug, PartialEq, Error, Serialize, Deserialize)]
+pub enum Skipped {
+    /// A measured channel is NaN or infinite.
+    #[error("the sample at t = {t} s has a {channel} that is no finite number: skipped")]
+    NotFinite {
+        /// Time of the sample, s.
+        t: f64,
+        /// The channel at fault: `t`, `q`, `qd` or `F`.
+        channel: &'static str,
+    },
+    /// Time did not advance.
+    #[error("the sample at t = {t} s does not come after the one at {previous} s: skipped")]
+    NotLater {
+        /// Time of the sample, s.
+        t: f64,
+        /// Time of the last accepted one, s.
+        previous: f64,
+    },
+    /// The stream is faster than `sample_time`; thinned.
+    #[error("the sample at t = {t} s comes sooner than sample_time after the last one: thinned")]
+    TooSoon {
+        /// Time of the sample, s.
+        t: f64,
+    },
+}

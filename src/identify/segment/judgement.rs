@@ -1,0 +1,109 @@
+//! Whether a segment's law may be shown, validated, or replaced by another one.
+
+use super::convergence::Record;
+use super::state::Segment;
+use crate::identify::validation::{Evidence, Stability, VALIDATED, is_one_law};
+
+/// Largest Gauss–Newton decrement, in units of the number of coefficients, of an estimate that has settled.
+pub(super) const SETTLED: f64 = 1.0;
+
+/// Largest gain in log-likelihood that another noise level may still promise, nats.
+const GAIN: f64 = 3.0;
+
+/// Runs in a row that may leave what can be integrated: each is repeated with a thousand times the process noise.
+const LOST: u32 = 6;
+
+/// Sensor variance ÷ that of the law before from which on the record may hold an error that is none of the sensors'.
+const LOUDER: f64 = 1.3;
+
+impl Segment {
+    /// Whether the last runs agree: the estimate is at the likelihood's maximum, to within a fraction of its std.
+    pub fn settled(&self) -> bool {
+        self.runs.calm >= 2
+    }
+
+    /// Whether the last run changed little, by its own standard.
+    pub fn is_calm(&self) -> bool {
+        self.runs.closed >= 2 && self.fit.decrement.abs() < SETTLED * self.fit.overdispersion && self.fit.gain < GAIN
+    }
+
+    /// Whether no process noise keeps the run where it can be integrated: the coefficients are beyond repair.
+    pub fn is_lost(&self) -> bool {
+        self.runs.astray >= LOST
+    }
+
+    /// Whether the law would hold with other terms too: with all of them it is sure enough, it has stood long, or it explains its record
+    /// with the terms of the law before.
+    pub fn stands(&self) -> bool {
+        self.stability.stands(&Evidence {
+            explains: self.fit.explains,
+            full_error: self.selection.full_error,
+            as_before: self.selection.is_as_before(&self.active),
+        })
+    }
+
+    /// Whether the law is known as well as one that is validated has to be.
+    pub fn is_validated(&self) -> bool {
+        self.stands() && self.stated_error() < VALIDATED
+    }
+
+    /// Whether nothing speaks against the law: no error that lasts, none that the sensors seem to have since it began, no estimate that a longer
+    /// record contradicted.
+    pub fn is_beyond_doubt(&self) -> bool {
+        let known = self.known.weight > 0.0;
+        let louder = self.noise.sensor.iter().zip(self.known.noise).any(|(now, before)| *now > LOUDER * before);
+        self.fit.explains && self.fit.overdispersion == 1.0 && !(known && louder) && !self.constancy.broken
+    }
+
+    /// Whether both fits found one law in the same record.
+    pub fn agrees_with(&self, other: &Segment) -> bool {
+        self.start == other.start && is_one_law(&self.all, &other.all)
+    }
+
+    /// Whether the fit has come to rest, explains its record, and is another law than these coefficients make.
+    pub fn contradicts(&self, all: &[f64]) -> bool {
+        self.settled() && self.fit.explains && !is_one_law(&self.all, all)
+    }
+
+    /// Lets the law stand its stability check, once it has settled.
+    pub(super) fn confirm(&mut self) {
+        if self.settled() {
+            self.stability.check(self.length(self.run.next), &self.all, self.fit.explains);
+        }
+    }
+
+    /// Compares the estimate with those of shorter records, once it is one.
+    pub(super) fn compare(&mut self) {
+        if !(self.settled() && self.fit.explains) {
+            return;
+        }
+        let length = self.length(self.run.next);
+        let Segment { constancy, coefficients, active, solution, fit, .. } = self;
+        constancy.take(length, |free| {
+            let std = if active[free] { solution.std(free, fit.overdispersion) } else { f64::INFINITY };
+            (coefficients[free], std)
+        });
+    }
+
+    /// How long the record has to get for the law to be known.
+    pub(super) fn foretell(&mut self) {
+        let squares: f64 = self.all.iter().map(|value| value * value).sum();
+        let begun = self.stability.checked_at().map_or(self.run.next, |length| self.start + length);
+        let record = Record {
+            range: [self.start, self.run.next],
+            information: &self.run.filter_run.information,
+            active: &self.active,
+            solution: &self.solution,
+            allowed: VALIDATED * squares / self.fit.overdispersion,
+            trial: (!self.stands()).then_some(begun),
+            growth: Stability::growth(self.fit.explains),
+        };
+        self.convergence.renew(&record);
+    }
+
+    /// By which factor the record that the last run ended with has to grow until the coefficient is known; infinite where nothing can be
+    /// said.
+    pub fn growth_needed(&self, free: usize) -> f64 {
+        self.convergence.factor(free)
+    }
+}

@@ -1,0 +1,119 @@
+//! Sensor noise follows the innovations, process noise the likelihood.
+
+use super::state::Segment;
+use crate::estimation::{Channel, Noise, RIVALS, Track};
+use crate::identify::problem::Problem;
+use crate::identify::settings::Settings;
+use crate::identify::window::Window;
+
+/// Variance of an innovation ÷ that of its sensor from which on the law's own error counts.
+const PROCESS_SHARE: f64 = 2.0;
+
+/// The same where the state is known from the last 30 samples alone: an innovation's variance is its sensor's times 1 + 1/30.
+const FORGETTING: f64 = 1.0 + 1.0 / 30.0;
+
+/// Nothing tells a process noise from none under which the state is remembered for ten times the longest window, samples.
+const LIFETIME: f64 = 1e7;
+
+/// Overdispersion of a record that its law does not explain: chance does not bring it to any of a dozen coefficients.
+const UNEXPLAINED: f64 = 5.0;
+
+/// Overdispersion that is no chance: with 16 blocks it is 1 ± 0.35 for one coefficient of the right law.
+const LASTING: f64 = 2.5;
+
+/// A law errs where a thirtieth of the process noise would make the record less likely by this, nats.
+const ERRS: f64 = 3.0;
+
+/// Smallest sensor noise std, relative to the largest value measured: rounding and the integration's own error.
+const NOISE_FLOOR: f64 = 3e-7;
+
+/// Noise levels that move by less than this part have come to rest, whatever a level out of reach promises.
+const AT_REST: f64 = 0.05;
+
+impl Segment {
+    /// Takes the noise levels of the next run from the one that has just closed.
+    pub(super) fn follow_noise(&mut self, problem: &Problem, settings: &Settings, track: &Track, window: &Window) {
+        let before = self.noise;
+        self.follow_sensors(settings, track);
+        let factor = self.process_factor(track);
+        self.noise.process = (self.noise.process * factor).max(self.process_floor(problem, settings, window));
+        if self.has_come_to_rest(&before) {
+            self.fit.gain = self.fit.gain.min(0.0);
+        }
+    }
+
+    /// What the run says of the law's own error, under the noise levels that it ran with.
+    pub(super) fn tell_error(&mut self, problem: &Problem, settings: &Settings, track: &Track, window: &Window) {
+        let exceeds = |factor: f64| {
+            Channel::ALL.iter().any(|channel| track.variance(*channel) > factor * self.noise.sensor[*channel as usize])
+        };
+        let overdispersion = self.run.sandwich.overdispersion(&self.run.filter_run.information);
+        let errs =
+            self.gains(track)[0] <= -ERRS && self.noise.process >= 2.0 * self.process_floor(problem, settings, window);
+        self.fit.overdispersion = if overdispersion > LASTING { overdispersion } else { 1.0 };
+        self.fit.process_matters = exceeds(PROCESS_SHARE);
+        self.fit.explains = !exceeds(FORGETTING) && overdispersion < UNEXPLAINED && !errs;
+    }
+
+    /// Sensor variances that are not given follow the innovations.
+    fn follow_sensors(&mut self, settings: &Settings, track: &Track) {
+        let given = [settings.noise_q, settings.noise_qd];
+        for channel in Channel::ALL {
+            let index = channel as usize;
+            let floor = (NOISE_FLOOR * self.run.largest[index]).powi(2).max(f64::MIN_POSITIVE);
+            self.noise.sensor[index] = match given[index] {
+                0.0 => {
+                    let (count, known) = (track.count[index], self.known.weight);
+                    let seen = count * self.noise.sensor[index] * track.scale(channel);
+                    ((seen + known * self.known.noise[index]) / (count + known).max(1.0)).max(floor)
+                }
+                std => std * std,
+            };
+        }
+    }
+
+    /// What less and more process noise would add to the log-likelihood.
+    fn gains(&self, track: &Track) -> [f64; 2] {
+        self.run.filter_run.rivals.each_ref().map(|rival| rival.log_likelihood() - track.log_likelihood())
+    }
+
+    /// By which factor the process noise goes where the likelihood wants it.
+    fn process_factor(&mut self, track: &Track) -> f64 {
+        let [less, more] = self.gains(track);
+        self.fit.gain = less.max(more);
+        self.fit.likelihood = track.log_likelihood() / track.total().max(1.0);
+        let ratio = match (less >= more, less > -0.1, more > 0.1) {
+            (true, true, _) => RIVALS[0],
+            (false, _, true) => RIVALS[1],
+            _ => 1.0,
+        };
+        ratio * (track.squares[0] + track.squares[1]) / track.total().max(1.0)
+    }
+
+    fn has_come_to_rest(&self, before: &Noise) -> bool {
+        let rests = |new: f64, old: f64| (new / old - 1.0).abs() <= AT_REST;
+        let mut sensors = self.noise.sensor.iter().zip(before.sensor);
+        rests(self.noise.process, before.process) && sensors.all(|(new, old)| rests(*new, old))
+    }
+
+    /// Least intensity of process noise: what the excitation's own noise makes, or too little to tell from none.
+    fn process_floor(&self, problem: &Problem, settings: &Settings, window: &Window) -> f64 {
+        let force = settings.noise_excitation / self.all[problem.inertia];
+        force * force * settings.sample_time + self.unforgetting(problem, self.mean_interval(window))
+    }
+
+    /// Time from sample to sample of the record, s.
+    fn mean_interval(&self, window: &Window) -> f64 {
+        let [first, last] = [self.start, self.run.next - 1].map(|number| window.sample(number).t);
+        (last - first) / (self.run.next - 1 - self.start).max(1) as f64
+    }
+
+    /// Intensity of process noise below which the state is remembered for [`LIFETIME`] samples.
+    fn unforgetting(&self, problem: &Problem, dt: f64) -> f64 {
+        let [q, qd] = self.noise.sensor;
+        match problem.channels.qd {
+            true => qd / (LIFETIME.powi(2) * dt),
+            false => q / (LIFETIME.powi(4) * dt.powi(3)),
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! How the estimate of the present segment is refined, filter run by filter run over its record.
+//!
+//! A run takes the filter over all samples of the segment, a bounded number at a step, until it has caught up with the stream; then
+//! the coefficients take a Gauss–Newton step, terms without evidence are dropped, the noise levels follow the innovations, and the
+//! next run begins. Begun with much process noise the fit is that of the equation error, which is nearly linear in the
+//! coefficients; the likelihood then takes the process noise down, run by run, to where the data want it, and the fit
+//! becomes the maximum likelihood of the trajectory without passing through its wrong minima.
+
+use super::judgement::SETTLED;
+use super::motion_scales::MotionScales;
+use super::prior::{InertiaPrior, Prior};
+use super::state::{NOISE_MEMORY, Runs, Segment};
+use crate::estimation::{Noise, Observation, Pass};
+use crate::identify::initial_state::first_state;
+use crate::identify::library::KnownLaw;
+use crate::identify::problem::Problem;
+use crate::identify::settings::Settings;
+use crate::identify::window::Window;
+use crate::law::Motion;
+
+/// A run that has caught up is closed only when the record has grown by this fraction since the last one …
+pub const GROWTH: f64 = 0.02;
+
+/// … and by this many samples.
+const FRESH: u64 = 8;
+
+/// Effects that the law lacks are looked for again when the record has grown by this factor: most runs are spared the work.
+const LOOK_AGAIN: f64 = 1.4;
+
+/// The record of a segment is folded into a prior when it fills this fraction of the window.
+const FULL: f64 = 0.9;
+
+impl Segment {
+    /// Begins a stage at sample `start` from the coefficients `from` and these noise levels; before any data the coefficients
+    /// lie about `centre` with the std `spread`.
+    pub fn begin(&mut self, problem: &Problem, window: &Window, start: u64, from: &[f64], prior: Prior, noise: Noise) {
+        self.start = start;
+        self.coefficients.copy_from_slice(from);
+        problem.scatter(from, &mut self.all);
+        self.active.fill(true);
+        self.noise = noise;
+        match prior.structure {
+            Some(active) => self.selection.remember(active),
+            None => self.selection.forget(),
+        }
+        self.known.noise = noise.sensor;
+        self.known.weight = prior.noise_weight;
+        self.known.scales.remember(prior.scales, prior.noise_weight);
+        self.runs = Runs::default();
+        self.stability.clear();
+        self.constancy.clear();
+        self.fit.decrement = f64::INFINITY;
+        self.run.closed_at = start;
+        self.known.information.clear();
+        let n = problem.n();
+        for (index, ((std, centre), from)) in prior.std.iter().zip(prior.centre).zip(from).enumerate() {
+            let precision = (std * std).recip();
+            self.known.information.matrix[index * n + index] = precision;
+            self.known.information.score[index] = precision * (centre - from);
+        }
+        self.known.inertia = None;
+        if let Some(index) = problem.free_inertia() {
+            (self.known.information.matrix[index * n + index], self.known.information.score[index]) = (0.0, 0.0);
+            self.known.inertia = Some(InertiaPrior { centre: prior.centre[index], log_std: prior.log_inertia });
+        }
+        self.fit.gain = f64::INFINITY;
+        self.missing = None;
+        self.score_test.next_look = 0;
+        self.convergence.clear();
+        self.run.largest = [0.0; 2];
+        self.begin_run(problem, window);
+    }
+
+    /// Begins a stage at sample `start` with a law that is known: its coefficients, and its information beside the record's.
+    pub fn begin_known(
+        &mut self,
+        problem: &Problem,
+        window: &Window,
+        start: u64,
+        law: &KnownLaw,
+        noise: Noise,
+        scales: &MotionScales,
+    ) {
+        let prior = Prior {
+            centre: &law.coefficients,
+            std: &law.spread,
+            log_inertia: 1.0,
+            structure: Some(&law.active),
+            noise_weight: NOISE_MEMORY,
+            scales,
+        };
+        self.begin(problem, window, start, &law.coefficients, prior, noise);
+        self.active.copy_from_slice(&law.active);
+        self.known.information.clone_from_slices(&law.information);
+        self.known.inertia = None;
+    }
+
+    /// Advances the run by up to `budget` samples; returns whether it was closed.
+    pub fn refine(&mut self, problem: &Problem, settings: &Settings, window: &Window, budget: usize) -> bool {
+        let end = window.ready();
+        if self.run.next <= window.oldest() {
+            self.start = window.oldest();
+            self.begin_run(problem, window);
+        }
+        let stop = end.min(self.run.next + budget as u64);
+        while self.run.next < stop {
+            self.take(problem, &window.observation(self.run.next));
+        }
+        let fresh = self.run.closed_at + FRESH.max((GROWTH * self.length(end) as f64) as u64);
+        if self.run.next < end || (self.run.next < fresh && self.fit.decrement < SETTLED) || self.length(end) < 4 {
+            return false;
+        }
+        self.close(problem, settings, window);
+        true
+    }
+
+    /// The run takes a sample, and so does all that is summed up beside it.
+    fn take(&mut self, problem: &Problem, observation: &Observation) {
+        let Segment { run, score_test, convergence, all, noise, .. } = self;
+        let motion = Motion { terms: &problem.terms, coefficients: all };
+        let innovations = run.filter_run.step(&motion, &problem.free_terms, noise, observation);
+        if score_test.looking {
+            score_test.candidates.step(&motion, &run.filter_run, observation, &innovations);
+        }
+        run.scales.add(problem, all, &run.filter_run, observation);
+        run.sandwich.step(&run.filter_run.information);
+        for channel in (0..2).filter(|channel| innovations[*channel].is_some()) {
+            run.largest[channel] = run.largest[channel].max(observation.measured[channel].unwrap_or(0.0).abs());
+        }
+        run.next += 1;
+        convergence.step(run.next, &run.filter_run.information);
+        if Some(run.next) == run.checkpoint.at {
+            run.checkpoint.information.clone_from_slices(&run.filter_run.information);
+        }
+    }
+
+    /// The run that was just closed, at the head of the stream and linear about the new coefficients; the caller gets it in
+    /// exchange for another one's room. The next run begins.
+    pub fn hand_over(&mut self, problem: &Problem, window: &Window, live: &mut Pass) {
+        std::mem::swap(&mut self.run.filter_run, live);
+        live.information.clone_from_slices(&self.information);
+        self.begin_run(problem, window);
+    }
+
+    /// The run has caught up: the coefficients take a step, the structure and the noise levels follow, and the law is judged.
+    fn close(&mut self, problem: &Problem, settings: &Settings, window: &Window) {
+        let track = self.run.filter_run.track;
+        self.run.closed_at = self.run.next;
+        self.end_score_test();
+        std::mem::swap(&mut self.scales, &mut self.run.scales);
+        self.scales.merge(&self.known.scales, 1.0);
+        self.runs.closed += 1;
+        self.gather_information(problem);
+        self.step.copy_from_slice(&self.coefficients);
+        let Segment { selection, information, coefficients, active, solution, .. } = self;
+        selection.select(information, &problem.maybe, track.total(), coefficients, active, solution);
+        if !self.coefficients.iter().all(|value| value.is_finite()) {
+            return self.recover(problem, window);
+        }
+        self.runs.astray = 0;
+        self.take_step(problem);
+        self.tell_error(problem, settings, &track, window);
+        self.follow_noise(problem, settings, &track, window);
+        self.runs.calm = if self.is_calm() { self.runs.calm + 1 } else { 0 };
+        self.confirm();
+        self.compare();
+        self.foretell();
+        self.fold(window);
+    }
+
+    fn end_score_test(&mut self) {
+        if self.score_test.looking {
+            self.missing = self.score_test.candidates.missing(&self.active, self.fit.overdispersion);
+            self.score_test.next_look = (LOOK_AGAIN * self.length(self.run.next) as f64) as u64;
+        }
+    }
+
+    /// What run and prior say together about the coefficients.
+    fn gather_information(&mut self, problem: &Problem) {
+        self.information.clone_from_slices(&self.run.filter_run.information);
+        self.information.merge(&self.known.information);
+        if let (Some(index), Some(prior)) = (problem.free_inertia(), self.known.inertia) {
+            let (information, score) = prior.about(self.coefficients[index]);
+            self.information.matrix[index * problem.n() + index] += information;
+            self.information.score[index] += score;
+        }
+    }
+
+    /// Goes to the new coefficients as far as one step may go; `step` becomes the step from those before.
+    fn take_step(&mut self, problem: &Problem) {
+        self.limit_step(problem);
+        problem.scatter(&self.coefficients, &mut self.all);
+        for (step, value) in self.step.iter_mut().zip(&self.coefficients) {
+            *step = value - *step;
+        }
+        self.move_to_new_coefficients();
+        let active = self.active.iter().filter(|active| **active).count().max(1);
+        self.fit.decrement = self.information.quadratic(&self.step) / active as f64;
+    }
+
+    /// The run has left what can be integrated: it is repeated from the last coefficients with the filter closer to the data.
+    fn recover(&mut self, problem: &Problem, window: &Window) {
+        self.coefficients.copy_from_slice(&self.step);
+        self.noise.process = if self.noise.process.is_finite() { 1e3 * self.noise.process } else { 1.0 };
+        (self.fit.decrement, self.fit.gain) = (f64::INFINITY, f64::INFINITY);
+        (self.runs.closed, self.runs.calm) = (0, 0);
+        self.runs.astray += 1;
+        self.begin_run(problem, window);
+    }
+
+    /// Keeps the inertia from losing more than half of itself in one step.
+    fn limit_step(&mut self, problem: &Problem) {
+        let Some(inertia) = problem.free_inertia() else { return };
+        let (old, new) = (self.step[inertia], self.coefficients[inertia]);
+        let change = new - old;
+        let allowed = 0.6 * old.abs();
+        let against = change * old < 0.0 && change.abs() > allowed;
+        if against {
+            let fraction = allowed / change.abs();
+            for (new, old) in self.coefficients.iter_mut().zip(&self.step) {
+                *new = old + fraction * (*new - old);
+            }
+        }
+    }
+
+    /// `step` holds the step: scores are taken about the new coefficients, the filtered state follows them.
+    fn move_to_new_coefficients(&mut self) {
+        self.information.shift(&self.step);
+        self.known.information.shift(&self.step);
+        self.run.filter_run.information.shift(&self.step);
+        if self.run.checkpoint.at.is_some() {
+            self.run.checkpoint.information.shift(&self.step);
+        }
+        for (step, sensitivity) in self.step.iter().zip(&self.run.filter_run.sensitivity) {
+            self.run.filter_run.filter.state.q += step * sensitivity[0];
+            self.run.filter_run.filter.state.qd += step * sensitivity[1];
+        }
+    }
+
+    /// When the record outgrows the window, its first half becomes prior knowledge.
+    fn fold(&mut self, window: &Window) {
+        let full = self.length(self.run.next) as f64 > FULL * window.capacity() as f64;
+        if let Some(at) = self.run.checkpoint.at.take().filter(|_| full) {
+            self.known.information.merge(&self.run.checkpoint.information);
+            self.start = at;
+        }
+    }
+
+    /// Begins the next run.
+    pub fn begin_run(&mut self, problem: &Problem, window: &Window) {
+        let length = self.length(window.ready());
+        let long = length as f64 > 0.6 * FULL * window.capacity() as f64;
+        self.run.checkpoint.at = long.then_some(self.start + length / 2);
+        self.run.filter_run.begin(first_state(problem, window, self.start, &self.noise));
+        self.run.next = self.start + 1;
+        self.score_test.looking = self.settled() && length >= self.score_test.next_look;
+        if self.score_test.looking {
+            self.score_test.candidates.begin(self.run.filter_run.filter.state, self.run.largest);
+        }
+        self.run.scales.clear();
+        self.convergence.begin(self.start, length);
+        self.run.sandwich.begin(length);
+    }
+}

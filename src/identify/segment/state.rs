@@ -1,0 +1,225 @@
+//! What a segment holds: the estimate of its law, what the last filter run said of it, and the run under way.
+
+use super::convergence::Convergence;
+use super::motion_scales::MotionScales;
+use super::prior::InertiaPrior;
+use super::term_selection::TermSelection;
+use crate::estimation::{Information, Missing, Noise, Pass, ScoreTest, Solution};
+use crate::identify::library::Estimate;
+use crate::identify::problem::Problem;
+use crate::identify::validation::{Constancy, SandwichFactor, Stability};
+use serde::{Deserialize, Serialize};
+
+/// For how many samples the sensor noise of the last segment counts in the next one.
+pub const NOISE_MEMORY: f64 = 500.0;
+
+/// An estimate of one segment's law.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Segment {
+    /// Number of the sample at which the segment's record begins.
+    pub start: u64,
+    /// Free coefficients.
+    pub coefficients: Vec<f64>,
+    /// All coefficients.
+    pub all: Vec<f64>,
+    /// Which free terms the law has.
+    pub active: Vec<bool>,
+    /// Noise levels.
+    pub noise: Noise,
+    /// Covariance of the active coefficients.
+    pub solution: Solution,
+    /// What the closed run, the prior included, says about `coefficients`.
+    pub information: Information,
+    /// How large accelerations and their slopes were in the last closed run.
+    pub scales: MotionScales,
+    /// How well the law explains its record, as of the last closed run.
+    pub fit: Fit,
+    /// How many runs there were.
+    pub runs: Runs,
+    /// The effect that the law lacks most, as of the last run that looked for one.
+    pub missing: Option<Missing>,
+    /// What is known beside the record.
+    pub(super) known: Known,
+    /// The run under way.
+    pub(super) run: Run,
+    /// Effects that the law lacks, tested beside a run.
+    pub(super) score_test: MissingEffects,
+    pub(super) convergence: Convergence,
+    pub(super) selection: TermSelection,
+    pub(super) stability: Stability,
+    pub(super) constancy: Constancy,
+    /// The coefficients before the last step, then that step.
+    pub(super) step: Vec<f64>,
+}
+
+/// How well a law explains its record.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Fit {
+    /// The Gauss–Newton decrement of the last run ÷ number of active coefficients.
+    pub decrement: f64,
+    /// What another level of process noise would add to the log-likelihood of the last run.
+    pub gain: f64,
+    /// Log-likelihood per measurement of the last run.
+    pub likelihood: f64,
+    /// Whether the record speaks for process noise: the law does not explain it down to the sensors' noise.
+    pub process_matters: bool,
+    /// Whether the law carries the state through the whole record, with no error that lasts.
+    pub explains: bool,
+    /// Factor by which error that lasts makes the covariance larger than stated; 1 where the law explains its record.
+    pub overdispersion: f64,
+}
+
+/// Counts of filter runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Runs {
+    /// Closed in this segment.
+    pub closed: u32,
+    /// In a row that left what can be integrated.
+    pub(super) astray: u32,
+    /// In a row that changed little.
+    pub(super) calm: u32,
+}
+
+/// What is known beside the record.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Known {
+    /// On the coefficients, about `coefficients`.
+    pub(super) information: Information,
+    /// On the inertia.
+    pub(super) inertia: Option<InertiaPrior>,
+    /// Sensor variances.
+    pub(super) noise: [f64; 2],
+    /// How large the motion was.
+    pub(super) scales: MotionScales,
+    /// Samples that these variances and scales count for.
+    pub(super) weight: f64,
+}
+
+/// A filter run over the segment's record, and what is summed up beside it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Run {
+    pub(super) filter_run: Pass,
+    /// Number of the sample that comes next.
+    pub(super) next: u64,
+    /// Number of the sample that the last run ended with.
+    pub(super) closed_at: u64,
+    /// Largest magnitude measured by channel.
+    pub(super) largest: [f64; 2],
+    pub(super) scales: MotionScales,
+    pub(super) sandwich: SandwichFactor,
+    pub(super) checkpoint: Checkpoint,
+}
+
+/// Information from the first half of a long record, to be folded into the prior.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Checkpoint {
+    pub(super) at: Option<u64>,
+    pub(super) information: Information,
+}
+
+/// The test for effects that the law lacks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct MissingEffects {
+    pub(super) candidates: ScoreTest,
+    /// Whether the run under way looks for them.
+    pub(super) looking: bool,
+    /// Length of the record from which the next run looks.
+    pub(super) next_look: u64,
+}
+
+impl Fit {
+    /// Of a law that no run has told anything of.
+    fn unknown() -> Fit {
+        Fit {
+            decrement: f64::INFINITY,
+            gain: f64::INFINITY,
+            likelihood: f64::NEG_INFINITY,
+            process_matters: false,
+            explains: false,
+            overdispersion: 1.0,
+        }
+    }
+}
+
+impl Segment {
+    /// Room for the problem.
+    pub fn new(problem: &Problem) -> Segment {
+        let n = problem.n();
+        Segment {
+            start: 0,
+            coefficients: vec![0.0; n],
+            all: problem.known.clone(),
+            active: vec![true; n],
+            noise: Noise { sensor: [1.0; 2], process: 1.0 },
+            solution: Solution::none(n),
+            information: Information::none(n),
+            scales: MotionScales::new(n),
+            fit: Fit::unknown(),
+            runs: Runs::default(),
+            missing: None,
+            known: Known {
+                information: Information::none(n),
+                inertia: None,
+                noise: [0.0; 2],
+                scales: MotionScales::new(n),
+                weight: 0.0,
+            },
+            run: Run {
+                filter_run: Pass::new(n).guarded(),
+                next: 0,
+                closed_at: 0,
+                largest: [0.0; 2],
+                scales: MotionScales::new(n),
+                sandwich: SandwichFactor::new(n),
+                checkpoint: Checkpoint { at: None, information: Information::none(n) },
+            },
+            score_test: MissingEffects { candidates: ScoreTest::new(&problem.terms, n), looking: false, next_look: 0 },
+            convergence: Convergence::new(n),
+            selection: TermSelection::new(n),
+            stability: Stability::new(problem.terms.len()),
+            constancy: Constancy::new(n),
+            step: vec![0.0; n],
+        }
+    }
+
+    /// Number of samples in the stage's record up to `end`.
+    pub fn length(&self, end: u64) -> u64 {
+        end.saturating_sub(self.start)
+    }
+
+    /// What the record of the pass just closed says about `coefficients`, without the prior; until the next one begins.
+    pub fn record(&self) -> &Information {
+        &self.run.filter_run.information
+    }
+
+    /// Number of the sample that the last pass ended with.
+    pub fn closed_at(&self) -> u64 {
+        self.run.closed_at
+    }
+
+    /// Std of the free coefficient; infinite where the data do not determine it.
+    pub fn std(&self, free: usize) -> f64 {
+        self.solution.std(free, self.fit.overdispersion)
+    }
+
+    /// The variance that the estimate states for e of eq. (8), relative: tr Cov ÷ Σθ².
+    pub fn stated_error(&self) -> f64 {
+        let squares: f64 = self.all.iter().map(|value| value * value).sum();
+        let active = (0..self.active.len()).filter(|index| self.active[*index]);
+        let trace: f64 = active
+            .map(|index| if self.solution.determined[index] { self.solution.variance(index) } else { f64::INFINITY })
+            .sum();
+        self.fit.overdispersion * trace / squares
+    }
+
+    /// The law as the library keeps it.
+    pub fn estimate(&self) -> Estimate<'_> {
+        Estimate {
+            coefficients: &self.coefficients,
+            active: &self.active,
+            noise: self.noise,
+            information: &self.information,
+            overdispersion: self.fit.overdispersion,
+        }
+    }
+}

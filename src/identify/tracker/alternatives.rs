@@ -1,0 +1,254 @@
+//! Other fits of the record: from the weak rows of it or of its later part, and with all error in the sensors.
+
+use super::new_record::{INERTIA_SPREAD, PRIOR_WIDTH};
+use super::state::{FRESH_START, Fitting, Setup, Tracker};
+use crate::estimation::Noise;
+use crate::identify::segment::Prior;
+
+/// Runs after which a fit that has not settled is given up …
+const PATIENCE: u32 = 40;
+
+/// … and one that explains its record where the segment does not.
+const LONG_PATIENCE: u32 = 400;
+
+/// Samples from which on the kind of a record's error can be told.
+const ENOUGH: u64 = 500;
+
+/// A first law is tried when the weak start predicts its force this well.
+const START_ERROR: f64 = 0.3;
+
+/// The same where no displacement is measured: each weak row then has an offset of its own, which the filter does not need.
+const START_ERROR_WITHOUT_Q: f64 = 1.0;
+
+/// Std beyond which nothing is known of a coefficient.
+const NOTHING_KNOWN: f64 = 1e9;
+
+/// A first law lies within this many stds of the weak rows' coefficients.
+const START_STDS: f64 = 10.0;
+
+/// Process noise of a fit with all error in the sensors, relative to that of the segment.
+const IN_THE_SENSORS: f64 = 1e-6;
+
+/// What the latest record must explain better than the whole one to replace it, nats per measurement: the noise may have changed …
+const CLEARLY: f64 = 0.1;
+
+/// … or, where it explains itself down to the sensors' noise and the whole one does not, in 1 ÷ √ of the number of measurements: the mean
+/// of the right law's likelihood scatters by 0.7 of that.
+const SURELY: f64 = 2.0;
+
+/// Another fit of the same record must explain it better by this, nats.
+const BETTER: f64 = 3.0;
+
+impl Tracker {
+    /// A record that has grown long without a validated law may hold a switch that nobody saw: the weak rows begin anew, so that the next
+    /// fit knows the latest record alone. How long the law needs nobody knows, nor how long it lasts: the lengths follow the universal
+    /// sequence (Luby, Sinclair and Zuckerman, *Information Processing Letters* 47 (1993), 173).
+    pub(super) fn begin_afresh(&mut self) {
+        let (end, since) = (self.window.end(), self.schedule.rows_from);
+        let due = match self.is_mixed() {
+            true => since.max(self.history.refuted_at) + self.history.convergence_length,
+            false => since + FRESH_START * universal(self.schedule.afresh + 1),
+        };
+        if self.fitting != Fitting::Refining || end < due {
+            return;
+        }
+        self.start.begin(end);
+        self.schedule.rows_from = end;
+        self.schedule.next_guess = 0;
+        self.schedule.afresh += 1;
+    }
+
+    /// Begins a segment, or another fit beside the one there is, from what the weak rows of the record say.
+    pub(super) fn guess(&mut self, setup: Setup) {
+        let Setup { problem, settings } = setup;
+        if self.start.feed(problem, &self.window, 1) {
+            return;
+        }
+        let (window, since) = (&self.window, self.schedule.rows_from);
+        let covered = self.now() - window.sample(window.oldest()).t;
+        let long_enough = self.fitting != Fitting::Contested && covered >= settings.initial_window;
+        if !long_enough || window.end() < self.schedule.next_guess || since < window.oldest() {
+            return;
+        }
+        self.schedule.next_guess = window.end() + (window.end() - since) / 8 + 4;
+        let sensor = self.sensor_noise(setup);
+        let follows = self.follows_a_law();
+        let Some(guess) = self.start.guess(problem, sensor) else { return };
+        let inertia =
+            problem.free_inertia().map_or(problem.known[problem.inertia], |index| guess.fit.coefficients[index]);
+        let allowed = if problem.channels.q { START_ERROR } else { START_ERROR_WITHOUT_Q };
+        let turned = follows && inertia * self.monitor.law.all[problem.inertia] < 0.0;
+        if guess.relative_error > allowed || !(inertia.is_finite() && inertia != 0.0) || turned {
+            return;
+        }
+        let noise = Noise { sensor, process: guess.force_intensity / (inertia * inertia) + f64::MIN_POSITIVE };
+        let fit = guess.fit;
+        let belief = &mut self.belief;
+        for index in 0..problem.n() {
+            belief.spread[index] = fit.reach[index].max(START_STDS * guess.std[index]).min(NOTHING_KNOWN);
+            belief.centre[index] = if problem.maybe[index] { 0.0 } else { fit.coefficients[index] };
+        }
+        let prior = Prior {
+            centre: &belief.centre,
+            std: &belief.spread,
+            log_inertia: INERTIA_SPREAD,
+            structure: follows.then_some(self.monitor.law.active.as_slice()),
+            noise_weight: belief.samples,
+            scales: &belief.scales,
+        };
+        let (begun, fitting) = match self.fitting {
+            Fitting::Starting => (&mut self.segment, Fitting::Refining),
+            Fitting::Refining | Fitting::Contested => (&mut self.alternative, Fitting::Contested),
+        };
+        begun.begin(problem, window, since, &fit.coefficients, prior, noise);
+        self.fitting = fitting;
+    }
+
+    /// Sensor variances that a guess is begun with.
+    fn sensor_noise(&self, setup: Setup) -> [f64; 2] {
+        match self.fitting {
+            Fitting::Starting => setup.first_noise(&self.difference_noise),
+            _ if self.follows_a_law() => self.monitor.law.noise.sensor,
+            _ => self.segment.noise.sensor,
+        }
+    }
+
+    /// A fit with much process noise may be a maximum of the likelihood without being the largest: the other kind, all error in the
+    /// sensors, is tried from the same coefficients each time the record has doubled.
+    pub(super) fn try_sensor_fit(&mut self, setup: Setup) {
+        let problem = setup.problem;
+        let end = self.window.ready();
+        let due = end >= self.schedule.next_sensor_fit && self.fitting == Fitting::Refining;
+        let doubtful = self.segment.fit.process_matters || self.is_mixed();
+        if !due || !doubtful || !self.segment.settled() || self.segment.length(end) < ENOUGH {
+            return;
+        }
+        self.schedule.next_sensor_fit = end + self.segment.length(end);
+        let sensor = setup.first_noise(&self.difference_noise);
+        let noise = Noise { sensor, process: IN_THE_SENSORS * self.segment.noise.process };
+        self.set_spread(problem);
+        self.belief.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
+        let Tracker { segment, alternative, belief, monitor, window, .. } = self;
+        let prior = Prior {
+            centre: &segment.coefficients,
+            std: &belief.spread,
+            log_inertia: INERTIA_SPREAD,
+            structure: (belief.samples > 0.0).then_some(monitor.law.active.as_slice()),
+            noise_weight: 0.0,
+            scales: &belief.scales,
+        };
+        alternative.begin(problem, window, segment.start, &segment.coefficients, prior, noise);
+        self.fitting = Fitting::Contested;
+    }
+
+    /// Refines the other fit; it takes the segment's place when it explains the record better, or is validated first.
+    pub(super) fn refine_alternative(&mut self, setup: Setup, budget: usize) {
+        let contested = self.fitting == Fitting::Contested;
+        if !contested || !self.alternative.refine(setup.problem, setup.settings, &self.window, budget) {
+            return;
+        }
+        let promising = !self.regime.is_valid() && self.explains_what_the_segment_does_not();
+        let goes_on = if self.alternative.is_lost() {
+            false
+        } else if self.alternative.settled() {
+            let wins = self.alternative_wins(promising);
+            if wins {
+                std::mem::swap(&mut self.alternative, &mut self.segment);
+            }
+            promising && !wins
+        } else {
+            let closed = self.alternative.runs.closed;
+            closed <= PATIENCE || promising && closed < LONG_PATIENCE
+        };
+        self.fitting = if goes_on { Fitting::Contested } else { Fitting::Refining };
+        self.alternative.begin_run(setup.problem, &self.window);
+    }
+
+    /// Whether the other fit, settled by now, is to take the segment's place. One that takes that of a law which explains its record would
+    /// begin the same law's stability check anew.
+    fn alternative_wins(&mut self, promising: bool) -> bool {
+        let agrees = self.alternative.agrees_with(&self.segment);
+        if agrees {
+            self.schedule.next_guess = self.window.end() + self.segment.length(self.window.end());
+        }
+        let better = self.alternative.fit.likelihood > self.segment.fit.likelihood + self.margin();
+        better && !(agrees && self.segment.fit.explains) || promising && self.alternative.is_validated()
+    }
+
+    /// A first guess from which no fit can be begun is forgotten: the weak rows, more of them by now, are asked for another.
+    pub(super) fn give_up_guess(&mut self) -> bool {
+        let lost = self.segment.is_lost() && !self.monitor.law.running;
+        if lost {
+            self.fitting = Fitting::Starting;
+        }
+        lost
+    }
+
+    /// Whether the other fit explains a later record down to the sensors' noise, and the segment not its own.
+    fn explains_what_the_segment_does_not(&self) -> bool {
+        self.alternative.start > self.segment.start && self.alternative.fit.explains && !self.segment.fit.explains
+    }
+
+    /// What the other fit must explain better than the segment, nats per measurement.
+    fn margin(&self) -> f64 {
+        let measurements = 2.0 * self.alternative.length(self.window.ready()) as f64;
+        match self.alternative.start > self.segment.start {
+            true if self.explains_what_the_segment_does_not() => (SURELY / measurements.sqrt()).min(CLEARLY),
+            true => CLEARLY,
+            false => BETTER / measurements,
+        }
+    }
+}
+
+/// The universal sequence 1, 1, 2, 1, 1, 2, 4, … from its first on.
+fn universal(number: u32) -> u64 {
+    let number = u64::from(number.max(1));
+    let full = (number + 1).next_power_of_two();
+    if full == number + 1 { full / 2 } else { universal((number - (full / 2 - 1)) as u32) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::problem::Problem;
+    use crate::identify::sample::Sample;
+    use crate::identify::settings::Settings;
+    use crate::law::Model;
+    use crate::simulate::{Builtin, record};
+
+    #[test]
+    fn the_universal_sequence_is_that_of_the_paper() {
+        let first: Vec<u64> = (1..=15).map(universal).collect();
+        assert_eq!(first, [1, 1, 2, 1, 1, 2, 4, 1, 1, 2, 1, 1, 2, 4, 8]);
+    }
+
+    /// Segment and other fit begin from coefficients that no run survives.
+    fn lead_astray(tracker: &mut Tracker, problem: &Problem) {
+        let absurd: Vec<f64> = (0..problem.n()).map(|index| if index == 0 { 0.6 } else { -1e6 }).collect();
+        let noise = Noise { sensor: [1e-4; 2], process: 1.0 };
+        let (centre, std) = (vec![0.0; problem.n()], vec![1e9; problem.n()]);
+        let Tracker { segment, alternative, window, belief, .. } = tracker;
+        for fit in [segment, alternative] {
+            let (structure, noise_weight, scales) = (None, 0.0, &belief.scales);
+            let prior = Prior { centre: &centre, std: &std, log_inertia: 1.0, structure, noise_weight, scales };
+            fit.begin(problem, window, 0, &absurd, prior, noise);
+        }
+        tracker.fitting = Fitting::Contested;
+    }
+
+    #[test]
+    fn a_first_law_from_which_no_fit_can_be_begun_is_forgotten() {
+        let (model, settings) = (Model::cubic_library(), Settings::default());
+        let problem = Problem::new(&model, &settings);
+        let mut tracker = Tracker::new(&problem, &settings);
+        let scenario = Builtin::VanDerPolWhite.random(32).with_noise(0.01);
+        for (index, reading) in record(&scenario).unwrap().iter().take(6000).enumerate() {
+            if index == 100 {
+                lead_astray(&mut tracker, &problem);
+            }
+            let sample = Sample { t: reading.t, q: reading.q, qd: reading.qd, excitation: reading.excitation };
+            tracker.step(&problem, &settings, sample);
+        }
+        assert!(tracker.regime.is_valid(), "{:?}", tracker.regime);
+    }
+}

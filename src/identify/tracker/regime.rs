@@ -1,0 +1,429 @@
+//! Where the identification stands: every regime, every transition between them, and the event that guards it.
+//!
+//! A regime holds what only it has. [`Regime::after`] is the only place where one follows another; what the caller sees (`status`, `valid`,
+//! `drifting`, `law.number`, `identified_time`) is derived from the regime by the methods below and is read by nothing that estimates.
+
+use crate::identify::library::Mixture;
+use crate::identify::report::Status;
+use serde::{Deserialize, Serialize};
+
+/// The regime of the identification.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) enum Regime {
+    /// No law of this record is validated, and none has been before.
+    Acquiring,
+    /// A law that was identified from the record is validated.
+    Tracking {
+        /// The law.
+        law: Validated,
+    },
+    /// A known law was recognised as that of the record.
+    Recognised {
+        /// The law.
+        law: Validated,
+        /// Which known law it is.
+        recognition: Recognition,
+    },
+    /// Evidence of a switch is growing under a validated law.
+    SwitchSuspected {
+        /// The law.
+        law: Validated,
+        /// Which known law it is, where it was recognised.
+        recognition: Option<Recognition>,
+        /// Number of the sample from which on the law in use is not renewed.
+        since: u64,
+    },
+    /// The law before does not hold any more; that of the record is not validated yet.
+    ReIdentifying {
+        /// The time after an alarm in which the hypotheses of the switch speak for known laws.
+        post_alarm: Option<PostAlarm>,
+    },
+    /// The coefficients move and are followed.
+    Drifting {
+        /// How, and how well.
+        drift: Followed,
+    },
+}
+
+/// A law that is validated.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Validated {
+    /// Its number among all that were validated.
+    pub(super) number: u32,
+    /// Since when it is, s.
+    pub(super) since: f64,
+}
+
+/// A known law in use.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Recognition {
+    /// Its place in the library.
+    pub(super) place: usize,
+    /// Whether its trial over the new record has confirmed it.
+    pub(super) confirmed: bool,
+    /// The laws that it may be instead, until then.
+    pub(super) mixture: Mixture,
+    /// Samples that it is known from.
+    pub(super) samples: u64,
+}
+
+/// The time after an alarm in which the bank of hypotheses goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct PostAlarm {
+    /// Number of the sample at which it ends.
+    pub(super) until: u64,
+    /// Number of the law that was left.
+    pub(super) left: Option<u32>,
+}
+
+/// Coefficients that are followed as they move.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Followed {
+    /// What follows them.
+    pub(super) by: Follower,
+    /// Whether they have come to rest and a constant law is sought.
+    pub(super) resting: bool,
+    /// Whether they are known well enough to be validated.
+    pub(super) known: bool,
+    /// Since when a law of this segment, constant or not, is validated, s.
+    pub(super) since: Option<f64>,
+}
+
+/// What follows coefficients that move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Follower {
+    /// Random walks measured by weak rows.
+    WeakRows,
+    /// Filters of the state together with the coefficients.
+    AugmentedFilters,
+}
+
+/// What ends a regime, or changes its data: each is the guard of the transitions that it causes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Event {
+    /// The segment's law states e below the bound, stands its stability check, and has an inertia that a motion can have.
+    LawValidated(Validated),
+    /// A known law stands out from every other one, on trial or by the hypotheses of a switch.
+    LawRecognised(Validated, Recognition),
+    /// The trial of the recognised law singles it out over the new record.
+    RecognitionConfirmed,
+    /// The trial of the recognised law says how likely others are.
+    RecognitionWeighed(Mixture),
+    /// The record speaks against the recognised law; whether a law was in use before it.
+    RecognitionRefuted {
+        /// Whether any law had been in use before it.
+        after_another: bool,
+    },
+    /// The log Bayes factor of a change passes half the decision threshold.
+    SuspicionRaised {
+        /// Number of the sample from which on the law in use is not renewed.
+        since: u64,
+    },
+    /// It is below half the decision threshold again.
+    SuspicionCleared,
+    /// It passes the decision threshold.
+    SwitchFound(Option<PostAlarm>),
+    /// The hypotheses of the last switch have no more to say on known laws.
+    PostAlarmEnded,
+    /// The law in use does not explain its record any more, and no switch does: several laws share it, or another one explains it whole.
+    LawRefuted,
+    /// The state under the law in use has left the finite numbers.
+    StateLost,
+    /// Coefficients that wander explain the record better than constant ones or one switch.
+    DriftFound(Follower),
+    /// The coefficients that are followed are known well enough (true), or not any more (false), at this time, s.
+    DriftValidated(bool, f64),
+    /// The coefficients that are followed have come to rest (true), or move again (false).
+    DriftRests(bool),
+    /// The filters that followed the drift have lost it.
+    DriftLost,
+}
+
+impl Regime {
+    /// The regime after an event. An event that a regime is not listed with leaves it as it is.
+    #[must_use]
+    pub(super) fn after(self, event: Event) -> Regime {
+        use Event::*;
+        use Regime::*;
+        match (self, event) {
+            (Acquiring | ReIdentifying { .. }, LawValidated(law)) => Tracking { law },
+            (Drifting { drift }, LawValidated(law)) => {
+                Tracking { law: Validated { since: drift.since.unwrap_or(law.since), ..law } }
+            }
+
+            (Acquiring | ReIdentifying { .. } | Drifting { .. }, LawRecognised(law, recognition)) => {
+                Recognised { law, recognition }
+            }
+            (Recognised { law, recognition }, RecognitionConfirmed) => {
+                Recognised { law, recognition: Recognition { confirmed: true, ..recognition } }
+            }
+            (Recognised { law, recognition }, RecognitionWeighed(mixture)) => {
+                Recognised { law, recognition: Recognition { mixture, ..recognition } }
+            }
+            (SwitchSuspected { law, recognition: Some(recognition), since }, RecognitionConfirmed) => {
+                let recognition = Some(Recognition { confirmed: true, ..recognition });
+                SwitchSuspected { law, recognition, since }
+            }
+            (SwitchSuspected { law, recognition: Some(recognition), since }, RecognitionWeighed(mixture)) => {
+                SwitchSuspected { law, recognition: Some(Recognition { mixture, ..recognition }), since }
+            }
+            (
+                Recognised { .. } | SwitchSuspected { recognition: Some(_), .. },
+                RecognitionRefuted { after_another: true },
+            ) => ReIdentifying { post_alarm: None },
+            (
+                Recognised { .. } | SwitchSuspected { recognition: Some(_), .. },
+                RecognitionRefuted { after_another: false },
+            ) => Acquiring,
+
+            (Tracking { law }, SuspicionRaised { since }) => SwitchSuspected { law, recognition: None, since },
+            (Recognised { law, recognition }, SuspicionRaised { since }) => {
+                SwitchSuspected { law, recognition: Some(recognition), since }
+            }
+            (SwitchSuspected { law, recognition: None, .. }, SuspicionCleared) => Tracking { law },
+            (SwitchSuspected { law, recognition: Some(recognition), .. }, SuspicionCleared) => {
+                Recognised { law, recognition }
+            }
+
+            (Drifting { drift }, SwitchFound(_)) => Drifting { drift: Followed { known: false, since: None, ..drift } },
+            (_, SwitchFound(post_alarm)) => ReIdentifying { post_alarm },
+            (ReIdentifying { .. }, PostAlarmEnded) => ReIdentifying { post_alarm: None },
+            (Drifting { drift }, LawRefuted | StateLost) => {
+                Drifting { drift: Followed { known: false, since: None, ..drift } }
+            }
+            (_, LawRefuted) => ReIdentifying { post_alarm: None },
+            (_, StateLost) => Acquiring,
+
+            (_, DriftFound(by)) => {
+                let (known, since) = (self.is_valid(), self.identified_time());
+                Drifting { drift: Followed { by, resting: false, known, since } }
+            }
+            (Drifting { drift }, DriftValidated(known, now)) => {
+                let since = drift.since.or(known.then_some(now));
+                Drifting { drift: Followed { known, since, ..drift } }
+            }
+            (Drifting { drift }, DriftRests(resting)) => Drifting { drift: Followed { resting, ..drift } },
+            (Drifting { .. }, DriftLost) => Acquiring,
+            (regime, _) => regime,
+        }
+    }
+
+    /// The published status: a recognised law and one that drifts are tracked.
+    pub(super) fn status(&self) -> Status {
+        match self {
+            Regime::Acquiring => Status::Acquiring,
+            Regime::Drifting { drift } if !drift.known => Status::Acquiring,
+            Regime::Tracking { .. } | Regime::Recognised { .. } | Regime::Drifting { .. } => Status::Tracking,
+            Regime::SwitchSuspected { .. } => Status::SwitchSuspected,
+            Regime::ReIdentifying { .. } => Status::ReIdentifying,
+        }
+    }
+
+    /// Whether the present law is validated.
+    pub(super) fn is_valid(&self) -> bool {
+        matches!(self.status(), Status::Tracking | Status::SwitchSuspected)
+    }
+
+    /// Whether the coefficients move and are followed.
+    pub(super) fn is_drifting(&self) -> bool {
+        self.followed().is_some()
+    }
+
+    /// How the coefficients are followed, where they move.
+    pub(super) fn followed(&self) -> Option<Followed> {
+        match self {
+            Regime::Drifting { drift } => Some(*drift),
+            _ => None,
+        }
+    }
+
+    /// Whether a constant law is sought: always but while coefficients move that have not come to rest.
+    pub(super) fn seeks_constant_law(&self) -> bool {
+        self.followed().is_none_or(|drift| drift.resting)
+    }
+
+    /// The constant law that is validated.
+    pub(super) fn law(&self) -> Option<Validated> {
+        match self {
+            Regime::Tracking { law } | Regime::Recognised { law, .. } | Regime::SwitchSuspected { law, .. } => {
+                Some(*law)
+            }
+            Regime::Acquiring | Regime::ReIdentifying { .. } | Regime::Drifting { .. } => None,
+        }
+    }
+
+    /// Since when a law of the present segment is validated, s.
+    pub(super) fn identified_time(&self) -> Option<f64> {
+        self.law().map(|law| law.since).or(self.followed().and_then(|drift| drift.since))
+    }
+
+    /// The known law in use, where one was recognised.
+    pub(super) fn recognition(&self) -> Option<Recognition> {
+        match self {
+            Regime::Recognised { recognition, .. } => Some(*recognition),
+            Regime::SwitchSuspected { recognition, .. } => *recognition,
+            _ => None,
+        }
+    }
+
+    /// Whether the law in use was recognised and its trial has not confirmed it yet.
+    pub(super) fn is_unconfirmed(&self) -> bool {
+        self.recognition().is_some_and(|recognition| !recognition.confirmed)
+    }
+
+    /// Whether a validated constant law is in use that nothing speaks against.
+    pub(super) fn is_unsuspected(&self) -> bool {
+        matches!(self, Regime::Tracking { .. } | Regime::Recognised { .. })
+    }
+
+    /// The sample from which on the law in use is not renewed, while a switch is suspected.
+    pub(super) fn suspected_since(&self) -> Option<u64> {
+        match self {
+            Regime::SwitchSuspected { since, .. } => Some(*since),
+            _ => None,
+        }
+    }
+
+    /// The time after an alarm in which the bank of hypotheses goes on.
+    pub(super) fn post_alarm(&self) -> Option<PostAlarm> {
+        match self {
+            Regime::ReIdentifying { post_alarm } => *post_alarm,
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAW: Validated = Validated { number: 3, since: 2.0 };
+    const SWITCH: Event = Event::SwitchFound(Some(PostAlarm { until: 50, left: Some(3) }));
+
+    fn recognition() -> Recognition {
+        Recognition { place: 1, confirmed: false, mixture: Mixture::default(), samples: 700 }
+    }
+
+    fn drifting(known: bool, since: Option<f64>) -> Regime {
+        Regime::Drifting { drift: Followed { by: Follower::WeakRows, resting: false, known, since } }
+    }
+
+    fn regimes() -> [Regime; 7] {
+        [
+            Regime::Acquiring,
+            Regime::Tracking { law: LAW },
+            Regime::Recognised { law: LAW, recognition: recognition() },
+            Regime::SwitchSuspected { law: LAW, recognition: None, since: 40 },
+            Regime::SwitchSuspected { law: LAW, recognition: Some(recognition()), since: 40 },
+            Regime::ReIdentifying { post_alarm: Some(PostAlarm { until: 50, left: Some(3) }) },
+            drifting(true, Some(2.0)),
+        ]
+    }
+
+    fn events() -> [Event; 17] {
+        [
+            Event::LawValidated(LAW),
+            Event::LawRecognised(LAW, recognition()),
+            Event::RecognitionConfirmed,
+            Event::RecognitionWeighed(Mixture::of(1.0, None)),
+            Event::RecognitionRefuted { after_another: true },
+            Event::RecognitionRefuted { after_another: false },
+            Event::SuspicionRaised { since: 40 },
+            Event::SuspicionCleared,
+            SWITCH,
+            Event::PostAlarmEnded,
+            Event::LawRefuted,
+            Event::StateLost,
+            Event::DriftFound(Follower::AugmentedFilters),
+            Event::DriftValidated(true, 9.0),
+            Event::DriftValidated(false, 9.0),
+            Event::DriftRests(true),
+            Event::DriftLost,
+        ]
+    }
+
+    /// One letter a regime: acquiring, tracking, recognised, suspected, re-identifying, drifting.
+    fn letter(regime: Regime) -> char {
+        match regime {
+            Regime::Acquiring => 'a',
+            Regime::Tracking { .. } => 't',
+            Regime::Recognised { .. } => 'r',
+            Regime::SwitchSuspected { .. } => 's',
+            Regime::ReIdentifying { .. } => 'i',
+            Regime::Drifting { .. } => 'd',
+        }
+    }
+
+    #[test]
+    fn these_transitions_exist_and_no_others() {
+        let table = [
+            ("law validated", "ttrsstt"),
+            ("law recognised", "rtrssrr"),
+            ("recognition confirmed", "atrssid"),
+            ("recognition weighed", "atrssid"),
+            ("recognition refuted, a law before", "atisiid"),
+            ("recognition refuted, none before", "atasaid"),
+            ("suspicion raised", "assssid"),
+            ("suspicion cleared", "atrtrid"),
+            ("switch found", "iiiiiid"),
+            ("post-alarm window ended", "atrssid"),
+            ("law refuted", "iiiiiid"),
+            ("state lost", "aaaaaad"),
+            ("drift found", "ddddddd"),
+            ("drift known", "atrssid"),
+            ("drift unknown", "atrssid"),
+            ("drift rests", "atrssid"),
+            ("drift lost", "atrssia"),
+        ];
+        for ((name, expected), event) in table.into_iter().zip(events()) {
+            let found: String = regimes().into_iter().map(|regime| letter(regime.after(event))).collect();
+            assert_eq!(found, expected, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_law_keeps_its_number_and_its_time_until_it_is_left() {
+        let later = Validated { number: 9, since: 7.0 };
+        let tracking = Regime::Acquiring.after(Event::LawValidated(LAW));
+        let again = tracking
+            .after(Event::SuspicionRaised { since: 40 })
+            .after(Event::LawValidated(later))
+            .after(Event::SuspicionCleared)
+            .after(Event::LawValidated(later));
+        assert_eq!(again, tracking);
+        assert_eq!(again.after(SWITCH).after(Event::LawValidated(later)).law(), Some(later));
+    }
+
+    #[test]
+    fn a_recognised_law_stays_recognised_under_suspicion() {
+        let suspected =
+            Regime::Recognised { law: LAW, recognition: recognition() }.after(Event::SuspicionRaised { since: 40 });
+        assert!(suspected.is_unconfirmed() && suspected.suspected_since() == Some(40));
+        let confirmed = suspected.after(Event::RecognitionConfirmed).after(Event::SuspicionCleared);
+        let recognition = Recognition { confirmed: true, ..recognition() };
+        assert_eq!(confirmed, Regime::Recognised { law: LAW, recognition });
+    }
+
+    #[test]
+    fn a_drift_is_tracked_as_long_as_it_is_known() {
+        let drift = Regime::Tracking { law: LAW }.after(Event::DriftFound(Follower::WeakRows));
+        assert_eq!(drift, drifting(true, Some(2.0)));
+        let unknown = drift.after(Event::DriftValidated(false, 3.0));
+        assert_eq!((unknown.status(), unknown.is_valid()), (Status::Acquiring, false));
+        assert_eq!(unknown.after(Event::DriftValidated(true, 4.0)).identified_time(), Some(2.0));
+        let rests = unknown.after(Event::DriftRests(true));
+        assert!(rests.seeks_constant_law() && !unknown.seeks_constant_law());
+        assert_eq!(rests.after(Event::LawValidated(Validated { number: 4, since: 8.0 })).identified_time(), Some(2.0));
+    }
+
+    #[test]
+    fn only_a_validated_law_is_valid_and_only_it_has_a_number() {
+        let valid: String = regimes().into_iter().filter(Regime::is_valid).map(letter).collect();
+        assert_eq!(valid, "trssd");
+        let numbered: String = regimes().into_iter().filter(|regime| regime.law().is_some()).map(letter).collect();
+        assert_eq!(numbered, "trss");
+        let recognised: String =
+            regimes().into_iter().filter(|regime| regime.recognition().is_some()).map(letter).collect();
+        assert_eq!(recognised, "rs");
+    }
+}

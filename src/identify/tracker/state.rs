@@ -1,0 +1,264 @@
+//! All that the identifier holds, in groups of what changes together.
+
+use super::published::Published;
+use super::regime::{Event, Regime};
+use super::sighting::Library;
+use crate::evidence::Bank;
+use crate::identify::change::{EmpiricalNull, LawInUse, Prediction};
+use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
+use crate::identify::functional::WeakForm;
+use crate::identify::problem::Problem;
+use crate::identify::segment::{DifferenceNoise, MotionScales, Segment, WeakStart};
+use crate::identify::settings::Settings;
+use crate::identify::window::Window;
+use serde::{Deserialize, Serialize};
+
+/// Hypotheses of a switch that are kept: each costs its share of every step.
+const HYPOTHESES: usize = 20;
+
+/// A segment with fewer samples than this is refined at the faster pace: its law is not yet linear within its std.
+pub(super) const YOUNG: u64 = 5000;
+
+/// A switch moves a coefficient's force by this fraction of the acceleration's RMS, as a std.
+pub(super) const SWITCH_SIZE: f64 = 0.3;
+
+/// Samples after which an unvalidated law is contested by the latest record alone, and the unit of how long that may take.
+pub(super) const FRESH_START: u64 = 12_000;
+
+/// Overdispersion of a record that is far from explained: the largest of a dozen coefficients of a law that lacks an effect is about 5.
+const FAR: f64 = 10.0;
+
+/// What is sought, and how: fixed at construction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Setup<'a> {
+    pub(super) problem: &'a Problem,
+    pub(super) settings: &'a Settings,
+}
+
+/// The identifier of a law of motion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Tracker {
+    pub(super) window: Window,
+    pub(super) regime: Regime,
+    pub(super) published: Published,
+    /// First coefficients, from weak rows.
+    pub(super) start: WeakStart,
+    pub(super) schedule: Schedule,
+    pub(super) fitting: Fitting,
+    pub(super) segment: Segment,
+    /// Another fit of the record, or of its later part.
+    pub(super) alternative: Segment,
+    pub(super) monitor: Monitor,
+    pub(super) belief: ChangeBelief,
+    pub(super) library: Library,
+    pub(super) weak_row_drift: WeakRowDrift,
+    pub(super) augmented_drift: AugmentedDrift,
+    /// Whether coefficients have moved in this record.
+    pub(super) drifted: bool,
+    pub(super) history: History,
+    /// The law where errors are none of the sensors'.
+    pub(super) weak_form: WeakForm,
+    /// The sensors' noise before any law.
+    pub(super) difference_noise: DifferenceNoise,
+}
+
+/// How far the fit of the record has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) enum Fitting {
+    /// Weak rows are gathered for first coefficients.
+    Starting,
+    /// The segment is refined.
+    Refining,
+    /// So is another fit beside it.
+    Contested,
+}
+
+/// When other fits of the record are begun.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Schedule {
+    /// Number of the sample from which on the weak rows are.
+    pub(super) rows_from: u64,
+    /// How often they have begun anew since the record's beginning.
+    pub(super) afresh: u32,
+    /// Sample from which on they are asked for coefficients.
+    pub(super) next_guess: u64,
+    /// Sample from which on a fit with all error in the sensors is tried.
+    pub(super) next_sensor_fit: u64,
+}
+
+/// The law in use beside the stream, and what speaks against it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Monitor {
+    pub(super) law: LawInUse,
+    pub(super) bank: Bank,
+    pub(super) empirical_null: EmpiricalNull,
+    pub(super) prediction: Prediction,
+    /// Since which sample the evidence of a switch is more than chance brings now and then.
+    pub(super) unusual_since: Option<u64>,
+    /// At which sample a switch was first suspected since the law in use was renewed.
+    pub(super) suspected_at: Option<u64>,
+    /// Every free term: what a switch may move.
+    pub(super) every_term: Vec<bool>,
+}
+
+/// What is believed of a law before its record says anything.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct ChangeBelief {
+    /// τ of each coefficient: how far a switch moves it, std.
+    pub(super) spread: Vec<f64>,
+    /// The coefficients that a new law is looked for from …
+    pub(super) from: Vec<f64>,
+    /// … and about.
+    pub(super) centre: Vec<f64>,
+    /// Samples that sensor variances and scales are known from; 0 before there was a law.
+    pub(super) samples: f64,
+    /// How large the motion was before the last switch.
+    pub(super) scales: MotionScales,
+}
+
+/// What laws of late were like.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct History {
+    /// Whether the last law that was validated over a long record explained it.
+    pub(super) explained: bool,
+    /// Samples that laws of late took to be validated.
+    pub(super) convergence_length: u64,
+    /// Since which sample a law that was validated is contested again.
+    pub(super) refuted_at: u64,
+    /// Runs in a row after which the segment seemed to hold several laws.
+    pub(super) mixed_runs: u32,
+    /// Since which sample the segment's record has been explained by another law than the one in use, run by run.
+    pub(super) contradicted_since: Option<u64>,
+}
+
+impl Monitor {
+    /// No law is in use any more.
+    pub(super) fn stop(&mut self) {
+        (self.law.running, self.unusual_since) = (false, None);
+        self.prediction.clear();
+    }
+}
+
+impl Tracker {
+    /// Room for everything.
+    pub fn new(problem: &Problem, settings: &Settings) -> Tracker {
+        let n = problem.n();
+        let capacity = (settings.max_window / settings.sample_time).ceil() as usize;
+        Tracker {
+            window: Window::new(capacity, problem.channels, problem.hold),
+            regime: Regime::Acquiring,
+            published: Published::new(problem),
+            start: WeakStart::new(problem, capacity),
+            schedule: Schedule::default(),
+            fitting: Fitting::Starting,
+            segment: Segment::new(problem),
+            alternative: Segment::new(problem),
+            monitor: Monitor {
+                law: LawInUse::new(problem),
+                bank: Bank::new(n, HYPOTHESES),
+                empirical_null: EmpiricalNull::default(),
+                prediction: Prediction::new(settings),
+                unusual_since: None,
+                suspected_at: None,
+                every_term: vec![true; n],
+            },
+            belief: ChangeBelief {
+                spread: vec![1.0; n],
+                from: vec![0.0; n],
+                centre: vec![0.0; n],
+                samples: 0.0,
+                scales: MotionScales::new(n),
+            },
+            library: Library::new(problem),
+            weak_row_drift: WeakRowDrift::new(problem, capacity),
+            augmented_drift: AugmentedDrift::new(problem),
+            drifted: false,
+            history: History::default(),
+            weak_form: WeakForm::new(problem),
+            difference_noise: DifferenceNoise::default(),
+        }
+    }
+
+    /// Goes to the regime that follows.
+    pub(super) fn enter(&mut self, event: Event) {
+        self.regime = self.regime.after(event);
+    }
+
+    /// Log-likelihood per measurement of the present segment; none before its first run.
+    pub fn likelihood(&self) -> Option<f64> {
+        let known = self.is_refining() && self.segment.fit.likelihood.is_finite();
+        known.then_some(self.segment.fit.likelihood)
+    }
+
+    /// Whether the segment has a law that is being refined.
+    pub(super) fn is_refining(&self) -> bool {
+        self.fitting != Fitting::Starting
+    }
+
+    /// Time of the last sample, s.
+    pub(super) fn now(&self) -> f64 {
+        self.window.sample(self.window.end() - 1).t
+    }
+
+    /// Time between the last two samples, s: it hides when in it a law switched.
+    pub(super) fn last_interval(&self) -> f64 {
+        self.now() - self.window.sample(self.window.end().max(2) - 2).t
+    }
+
+    /// Samples in the segment's record.
+    pub(super) fn record_length(&self) -> u64 {
+        self.segment.length(self.window.ready())
+    }
+
+    /// Samples that the law in use was known from before this record.
+    pub(super) fn known_samples(&self) -> u64 {
+        self.regime.recognition().map_or(0, |recognition| recognition.samples)
+    }
+
+    /// Whether the law in use explains its record down to the sensors' noise, and the record is long enough to tell.
+    pub(super) fn explains(&self) -> bool {
+        !self.segment.fit.process_matters && self.record_length() + self.known_samples() >= YOUNG
+    }
+
+    /// Whether the segment's law does not explain its record, where one before it did.
+    pub(super) fn is_unexplained(&self) -> bool {
+        self.history.explained && self.regime.recognition().is_none() && !self.segment.fit.explains
+    }
+
+    /// Whether the segment's record seems to hold several laws: a law before explained its own down to the sensors' noise, this one does
+    /// not. A record that stays so for long and is not far from explained lacks an effect instead.
+    pub(super) fn is_mixed(&self) -> bool {
+        let short = self.record_length() < FRESH_START;
+        self.is_unexplained() && (short || self.segment.fit.overdispersion > FAR)
+    }
+
+    /// Whether there was a law before: the next one has its sensors, and is looked for about it.
+    pub(super) fn follows_a_law(&self) -> bool {
+        self.belief.samples > 0.0
+    }
+
+    /// τ of each coefficient: a change whose force moves the acceleration by [`SWITCH_SIZE`] of its RMS.
+    pub(super) fn set_spread(&mut self, problem: &Problem) {
+        let scales = &self.segment.scales;
+        for index in 0..problem.n() {
+            let slope = scales.slope(index);
+            let acceleration = match problem.free_inertia() == Some(index) {
+                true => scales.acceleration(),
+                false => scales.restoring_acceleration(),
+            };
+            self.belief.spread[index] = if slope > 0.0 { SWITCH_SIZE * acceleration / slope } else { 1e9 };
+        }
+    }
+}
+
+impl Setup<'_> {
+    /// Sensor variances before any law: as set, or from differences.
+    pub(super) fn first_noise(&self, differences: &DifferenceNoise) -> [f64; 2] {
+        let found = differences.variance().unwrap_or([0.0; 2]);
+        let given = [self.settings.noise_q, self.settings.noise_qd];
+        [0, 1].map(|index| match given[index] {
+            0.0 => found[index] + f64::MIN_POSITIVE,
+            std => std * std,
+        })
+    }
+}

@@ -1,0 +1,212 @@
+//! What a sample does: the law in use is followed, the segment refined, coefficients that move are tracked.
+
+use super::recognition::TRIAL_BUDGET;
+use super::state::{Setup, Tracker, YOUNG};
+use crate::evidence::Law;
+use crate::identify::problem::Problem;
+use crate::identify::sample::Sample;
+use crate::identify::settings::Settings;
+use crate::identify::validation::TRUSTED;
+
+/// A hypothesis starts every so many samples.
+const SPAWN_EVERY: u64 = 2;
+
+/// Oldest start that is still considered, s ÷ `sample_time`: the record of a switch this old has long been decided on.
+const OLDEST: f64 = 8.0;
+
+/// Hypotheses looked at in a step.
+const LOOKS: usize = 3;
+
+/// Samples of refinement in a step, while tracking and while the fit has yet to converge: what a law that does not explain its record
+/// still gains by more runs is no better law.
+const BUDGET: [usize; 2] = [6, TRIAL_BUDGET];
+
+/// Samples for which a suspicion keeps the law in use from being renewed: what comes may belong to another law.
+const SUSPENSE: u64 = 1000;
+
+/// Once in so many samples it is asked which lengths of variation are too short for the motion.
+const REST_EVERY: u64 = 256;
+
+/// After so many runs in a row what a law leaves unexplained is no matter of a fit that has not settled.
+const LASTS: u32 = 3;
+
+/// Samples from which on differences tell the sensors' noise to a tenth.
+const ROUGHLY: u64 = 500;
+
+impl Tracker {
+    /// Takes an accepted sample.
+    pub fn step(&mut self, problem: &Problem, settings: &Settings, sample: Sample) {
+        let setup = Setup { problem, settings };
+        if self.window.end() == 0 {
+            self.published.switches.time = sample.t;
+            self.start.begin(0);
+        }
+        let switches = self.published.switches.count;
+        self.window.push(sample);
+        self.weak_form.step(problem, sample);
+        if self.window.end().is_multiple_of(REST_EVERY) {
+            self.weak_form.rest(problem, setup.first_noise(&self.difference_noise));
+        }
+        self.measure_noise(problem);
+        self.follow(setup);
+        if self.regime.seeks_constant_law() {
+            self.seek_constant_law(setup);
+        }
+        self.track_augmented(setup);
+        self.track_weak_rows(setup);
+        if self.published.switches.count != switches {
+            self.weak_form.restart();
+        }
+    }
+
+    /// Before any law the sensors' noise is known from differences.
+    fn measure_noise(&mut self, problem: &Problem) {
+        let end = self.window.end();
+        if end < 4 {
+            return;
+        }
+        self.difference_noise.add([4, 3, 2, 1].map(|back| self.window.sample(end - back)));
+        let known = self.published.noise_by_law || end < ROUGHLY;
+        if let Some([q, qd]) = self.difference_noise.variance().filter(|_| !known) {
+            let channels = problem.channels;
+            self.published.noise = [channels.q.then(|| q.sqrt()), channels.qd.then(|| qd.sqrt())];
+        }
+    }
+
+    /// Runs the law in use over what is new, and weighs the evidence of a switch.
+    fn follow(&mut self, setup: Setup) {
+        while self.monitor.law.running && self.monitor.law.next < self.window.ready() {
+            let number = self.monitor.law.next;
+            let observation = self.window.observation(number);
+            let monitor = &mut self.monitor;
+            let innovations = monitor.law.step(setup.problem, &observation);
+            if !monitor.law.run.filter.state.is_finite() {
+                self.lose();
+                return;
+            }
+            monitor.bank.step(&monitor.law.run.map, &innovations);
+            let sample = self.window.sample(number);
+            monitor.prediction.step(setup.problem, setup.settings, &monitor.law, sample, &observation);
+            if number.is_multiple_of(SPAWN_EVERY) {
+                self.suppose_switch_after(number);
+            }
+            let oldest = number.saturating_sub((OLDEST / setup.settings.sample_time) as u64);
+            self.monitor.bank.forget_before(oldest.max(self.segment.start));
+            self.monitor.bank.look(LOOKS);
+            self.monitor.law.next += 1;
+            if let Some(suspect) = self.monitor.bank.suspect() {
+                self.judge(setup, &suspect);
+            }
+        }
+    }
+
+    /// Adds the hypothesis of a switch after this sample.
+    fn suppose_switch_after(&mut self, number: u64) {
+        let explains = self.explains();
+        let monitor = &mut self.monitor;
+        // of a law that came back only its own terms are known from before: to seek the others too would make it look unlikely
+        let own = &monitor.law.active;
+        let open = if self.regime.recognition().is_some() { own } else { &monitor.every_term };
+        let law = Law { information: &monitor.law.run.information, open, own, explains };
+        monitor.bank.spawn(number, &law);
+    }
+
+    fn seek_constant_law(&mut self, setup: Setup) {
+        self.begin_trial(setup);
+        let used = self.try_known(setup);
+        if !self.regime.is_valid() || self.regime.is_drifting() {
+            self.begin_afresh();
+            self.guess(setup);
+        }
+        self.try_sensor_fit(setup);
+        self.refine_alternative(setup, BUDGET[1] - used);
+        if self.is_refining() {
+            self.refine(setup);
+        }
+    }
+
+    /// Whether a suspicion is so young that the law in use must not be renewed.
+    fn is_in_suspense(&self) -> bool {
+        self.regime.suspected_since().is_some_and(|since| self.window.end() < since + SUSPENSE)
+    }
+
+    fn refine(&mut self, setup: Setup) {
+        let young = !self.regime.is_valid() || self.record_length() < YOUNG;
+        let converging = self.segment.fit.explains && !self.segment.settled();
+        let budget = BUDGET[usize::from(young || converging)];
+        if self.is_in_suspense() || !self.segment.refine(setup.problem, setup.settings, &self.window, budget) {
+            return;
+        }
+        if self.give_up_guess() || self.leave(setup) {
+            return;
+        }
+        self.published.missing = self.segment.missing;
+        let contradicted = self.monitor.law.running && self.segment.contradicts(&self.monitor.law.all);
+        let since = self.history.contradicted_since.unwrap_or(self.segment.closed_at());
+        self.history.contradicted_since = contradicted.then_some(since);
+        let mixed = self.is_mixed();
+        let trusted = self.segment.settled() && self.segment.stated_error() < TRUSTED && !mixed;
+        self.make_known(setup, trusted);
+        let waits = self.monitor.unusual_since.is_some_and(|since| self.window.end() < since + SUSPENSE);
+        self.history.mixed_runs = if mixed { self.history.mixed_runs + 1 } else { 0 };
+        let lasts = self.history.mixed_runs >= LASTS;
+        if lasts && self.regime.is_valid() && !waits && !self.regime.is_drifting() {
+            self.refute_law();
+        }
+        self.take_into_use(setup.problem, trusted, !waits, mixed);
+    }
+
+    /// What the run that has just closed says is published; without a law to trust the std of the last one are none of this one's.
+    fn make_known(&mut self, setup: Setup, trusted: bool) {
+        if trusted {
+            self.set_spread(setup.problem);
+            self.publish(setup);
+        } else if !self.regime.is_valid() && !self.regime.is_drifting() {
+            self.published.forget_stds(setup.problem);
+        }
+    }
+
+    /// Switches are weighed against the segment's new estimate where it may be `renewed`, and is worth it; else the next run begins.
+    fn take_into_use(&mut self, problem: &Problem, trusted: bool, renewed: bool, mixed: bool) {
+        let stands = self.segment.stands();
+        let law = &self.monitor.law;
+        let proven = self.regime.is_valid() || self.segment.fit.explains && stands;
+        // a law that has stood its stability check is not left for one that has not: what happened to it may be a switch
+        let later = law.running && law.proven && !proven;
+        let worth_monitoring = trusted && stands || law.running && self.segment.is_calm() && !mixed;
+        match renewed && !later && worth_monitoring {
+            true => self.monitor_new_law(problem, proven),
+            false => self.segment.begin_run(problem, &self.window),
+        }
+    }
+
+    /// From now on switches are weighed against the segment's new estimate. Hypotheses are linear about the old one: they are carried over
+    /// only between laws as near to each other as those that have stood their stability check.
+    fn monitor_new_law(&mut self, problem: &Problem, proven: bool) {
+        let was_running = self.monitor.law.running;
+        self.monitor.suspected_at = None;
+        match was_running {
+            true => self.carry_hypotheses(problem, proven),
+            false => self.end_post_alarm(),
+        }
+        let Tracker { monitor, segment, window, .. } = self;
+        monitor.law.adopt(problem, segment, window);
+        if !was_running {
+            monitor.prediction.restart(monitor.law.run.filter.state, window.sample(window.ready() - 1).t);
+        }
+        monitor.law.proven = proven;
+        self.set_spread(problem);
+        self.monitor.bank.set_spread(&self.belief.spread);
+    }
+
+    fn carry_hypotheses(&mut self, problem: &Problem, proven: bool) {
+        let Tracker { monitor, belief, segment, .. } = self;
+        for (index, change) in belief.from.iter_mut().enumerate() {
+            *change = segment.coefficients[index] - monitor.law.all[problem.free[index]];
+        }
+        match proven && monitor.law.noise.is_near(&segment.noise) {
+            true => monitor.bank.shift(&belief.from),
+            false => monitor.bank.clear(),
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Whether the law has switched, and what happens when it has.
+
+use super::regime::Event;
+use super::state::{Setup, Tracker};
+use crate::evidence::Suspect;
+use crate::identify::change::Decision;
+use crate::identify::drift::INSTANTS;
+use crate::identify::problem::Problem;
+
+/// A linear estimate of a change that moves a coefficient by more stds of a switch than this is none to begin with.
+const PLAUSIBLE: f64 = 2.0;
+
+impl Tracker {
+    /// Alarm, suspicion, or neither.
+    pub(super) fn judge(&mut self, setup: Setup, suspect: &Suspect) {
+        let decision = self.decision(suspect);
+        let monitor = &mut self.monitor;
+        let threshold = monitor.empirical_null.level(decision.threshold(setup.settings), decision.chance());
+        if self.regime.is_valid() {
+            monitor.empirical_null.add(suspect.evidence);
+        }
+        let end = self.window.end();
+        let unusual = suspect.evidence > decision.unusual(threshold);
+        monitor.unusual_since = unusual.then(|| monitor.unusual_since.unwrap_or(end));
+        let deviates = self.monitor.prediction.deviates(setup.settings, self.now());
+        if suspect.evidence > threshold || deviates {
+            match self.moves_again() {
+                Some(follower) => self.begin_drift(follower),
+                None => self.switch(setup.problem, suspect, threshold),
+            }
+        } else if suspect.evidence > 0.5 * threshold {
+            self.suspect();
+        } else {
+            self.enter(Event::SuspicionCleared);
+        }
+    }
+
+    fn suspect(&mut self) {
+        if self.regime.is_unsuspected() {
+            let since = *self.monitor.suspected_at.get_or_insert(self.window.end());
+            self.enter(Event::SuspicionRaised { since });
+        }
+    }
+
+    /// What the law in use has to its credit.
+    fn decision(&self, suspect: &Suspect) -> Decision {
+        // a segment that does not explain what a law like it did may hold a switch already
+        let overdispersion = match self.history.explained {
+            true => self.monitor.law.overdispersion,
+            false => self.segment.fit.overdispersion,
+        };
+        Decision {
+            samples: self.segment.length(suspect.start) + self.known_samples(),
+            overdispersion,
+            proven: self.regime.is_valid() || self.monitor.law.proven,
+            explains: self.explains(),
+        }
+    }
+
+    /// Whether another law, known by now, explains all of the record, and did so when the law in use had not been left yet.
+    fn is_superseded(&self, instant: u64) -> bool {
+        self.segment.is_validated() && self.history.contradicted_since.is_some_and(|since| since < instant)
+    }
+
+    /// The law in use never was the record's: the one that is comes into use with its next run. What spoke against the one before says
+    /// nothing of a switch.
+    fn supersede(&mut self) {
+        self.monitor.stop();
+        self.monitor.bank.clear();
+        self.monitor.empirical_null.clear();
+        self.refute_law();
+    }
+
+    /// Ends the segment; only data from after the switch enters the new law.
+    fn switch(&mut self, problem: &Problem, suspect: &Suspect, threshold: f64) {
+        let bank = &mut self.monitor.bank;
+        bank.look_at_all();
+        let suspect = bank.suspect().unwrap_or(*suspect);
+        let last = self.window.ready() - 1;
+        let instant = self.monitor.bank.likeliest_start(&suspect, threshold);
+        let start = (self.monitor.bank.after(&suspect, threshold) + 1).min(last);
+        let time = |number: u64| self.window.sample(number).t;
+        let distance = self.monitor.bank.distance_of_switch(time(instant), self.now(), time);
+        if self.regime.is_unconfirmed() || self.was_never_right(instant, last, suspect.evidence - threshold) {
+            return self.take_back(problem);
+        }
+        if self.is_superseded(instant) {
+            return self.supersede();
+        }
+        self.keep_law(problem);
+        self.set_spread(problem);
+        self.belief.scales.remember(&self.segment.scales, 1.0);
+        if self.regime.is_valid() {
+            let mut instants = [0; INSTANTS];
+            self.monitor.bank.likeliest_starts(&mut instants);
+            self.try_drift(problem, instants);
+        }
+        self.believe_change(problem, &suspect);
+        self.begin_new_law(problem, start);
+        self.begin_trials_after_switch(problem, start);
+        self.begin_weak_rows(start);
+        self.weak_row_drift.restart(start);
+        let post_alarm = self.post_alarm(instant);
+        self.monitor.stop();
+        self.monitor.prediction.forget_usual();
+        self.monitor.empirical_null.clear();
+        self.count_switch(instant, distance);
+        self.enter(Event::SwitchFound(post_alarm));
+    }
+
+    /// The new law is looked for from the most plausible change, about the law that was in use.
+    fn believe_change(&mut self, problem: &Problem, suspect: &Suspect) {
+        let Tracker { monitor, belief, .. } = self;
+        monitor.bank.change(suspect, &mut belief.from);
+        let mut changes = belief.from.iter().zip(&belief.spread);
+        let plausible = changes.all(|(change, spread)| change.abs() < PLAUSIBLE * spread);
+        for (index, (change, centre)) in belief.from.iter_mut().zip(&mut belief.centre).enumerate() {
+            *centre = monitor.law.all[problem.free[index]];
+            *change = if plausible { *centre + *change } else { *centre };
+        }
+    }
+
+    fn begin_trials_after_switch(&mut self, problem: &Problem, start: u64) {
+        let sensor = self.monitor.law.noise.sensor.map(Some);
+        let left = self.regime.law().and_then(|law| self.library.known.position(law.number));
+        let library = &mut self.library;
+        library.trials.begin(&library.known, problem, &self.window, start, sensor);
+        library.trials.set_left(left);
+    }
+
+    fn count_switch(&mut self, instant: u64, distance: Option<f64>) {
+        let interval = self.last_interval();
+        let switches = &mut self.published.switches;
+        switches.count += 1;
+        switches.time = self.window.sample(instant).t;
+        switches.time_std = distance.map(|distance| distance.hypot(interval));
+        switches.detection_time = Some(self.window.sample(self.window.end() - 1).t);
+        self.published.missing = None;
+    }
+}

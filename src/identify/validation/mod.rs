@@ -1,0 +1,16 @@
+//! When a law is good enough: to be shown, to be weighed against a switch, to be vouched for.
+//!
+//! - `bounds`: what its stated error may be;
+//! - `stability`: what a wrong structure or a wrong minimum makes up does not survive more data;
+//! - `constancy`: estimates of one law in a growing record agree;
+//! - `sandwich`: whether innovations are as independent as the filter says.
+
+mod bounds;
+mod constancy;
+mod sandwich;
+mod stability;
+
+pub use bounds::{TRUSTED, VALIDATED};
+pub use constancy::Constancy;
+pub use sandwich::SandwichFactor;
+pub use stability::{Evidence, Stability, is_one_law};
