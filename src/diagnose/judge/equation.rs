@@ -77,6 +77,12 @@ impl Equation {
         equation
     }
 
+    /// The column of one more term that has a memory, as it was when the record began; none of a term without.
+    pub(in crate::diagnose) fn begun(&self, record: &Record, term: Term, column: &Column) -> Option<Column> {
+        let left: Vec<Column> = self.left.iter().chain([column]).cloned().collect();
+        beginning::begun(record, term, &left, self.left.len(), &self.right)
+    }
+
     /// Which column a term has; none where it is the target or stands in the excitation's.
     pub(super) fn place(&self, index: usize) -> Option<usize> {
         let own = |term: &&Term| has_column(**term, self.target);
