@@ -171,9 +171,44 @@ fn no_import_runs_upward_and_none_in_a_circle() {
     assert!(broken.is_empty(), "{} broken:\n{}", broken.len(), broken.join("\n"));
 }
 
+/// Folders of sources of the workspace's other crates.
+const OTHER_CRATES: [&str; 11] = [
+    "fmu/check/src",
+    "fmu/identifier/src",
+    "fmu/package/src",
+    "fmu/plant/src",
+    "fmu/slave/src",
+    "measure/dropbear",
+    "measure/effects",
+    "measure/figures",
+    "measure/known_laws",
+    "measure/study",
+    "xtask/src",
+];
+
+#[test]
+fn no_other_crate_has_a_circle_of_files() {
+    for folder in OTHER_CRATES {
+        assert!(root().join(folder).is_dir(), "{folder} is not there");
+        let arrows = arrows(folder);
+        let told: Vec<String> = circles(&arrows).iter().map(|(inside, way)| circle(&arrows, inside, way)).collect();
+        assert!(told.is_empty(), "{folder}: {}", told.join("\n"));
+    }
+}
+
+#[test]
+fn no_example_panics() {
+    let examples = sources(&root().join("examples"));
+    assert!(examples.len() > 3, "only {} examples found", examples.len());
+    for (path, source) in examples {
+        assert_eq!(broken_anywhere(&code(&source)), Vec::<String>::new(), "{}", path.display());
+    }
+}
+
 #[test]
 fn only_the_crate_that_speaks_c_is_unsafe() {
-    let folders = ["src", "fmu/identifier", "fmu/plant", "fmu/package", "harness/command", "xtask"];
+    let folders =
+        ["src", "examples", "fmu/identifier", "fmu/plant", "fmu/package", "harness/command", "measure", "xtask"];
     for (path, source) in folders.iter().flat_map(|folder| sources(&root().join(folder))) {
         assert!(!says_unsafe(&source), "{} says unsafe", path.display());
     }

@@ -4,6 +4,7 @@
 
 mod claims;
 mod section;
+mod view;
 
 use super::Failure;
 use super::figure::{Figure, Section};

@@ -20,7 +20,7 @@ pub use compare::{
 pub use fit::{Evidence, Fit, Form, best_as_given, fit, is_evident, refit};
 pub use judge::{Target, Timing};
 pub use motion::{Kinematics, Sensors};
-pub(crate) use piece::Piece;
+pub use piece::Piece;
 pub use verdict::{
     ADEQUATE, Addition, Candidate, Clock, Diagnosis, Doubt, Finding, Improvement, LEVEL, Law, Posed, StageDiagnosis,
     Step, Switched, WindowError, diagnose_stages, improved_model,

@@ -17,7 +17,7 @@ macro_rules! function_table {
             $(#[doc = concat!("`", stringify!($symbol), "`.")] pub $field: unsafe extern "C" fn($($argument),*) -> $result,)*
         }
 
-        /// The [`Functions`](switchid_fmu_slave::host::Functions) that [`export!`](crate::export!) made in that module, which must be in scope.
+        /// The `Functions` that `export!` made in that module, which must be in scope.
         #[macro_export]
         macro_rules! linked_functions {
             ($module:ident) => { $crate::host::Functions { $($field: $module::$symbol,)* } };

@@ -2,7 +2,7 @@
 //!
 //! A draw chooses mass, natural frequency, damping, size of the motion, excitation, effect and its inner parameters;
 //! the strength of the effect is the RMS of its force ÷ RMS of F, noise is a share of each channel's std. The
-//! diagnosis sees the noisy record and the model's terms, nothing else; [`judge`] then compares its answer with the
+//! diagnosis sees the noisy record and the model's terms, nothing else; [`judge()`] then compares its answer with the
 //! truth.
 
 mod base;
@@ -12,6 +12,7 @@ mod judge;
 mod outside;
 mod plant;
 mod problem;
+mod run;
 mod secret;
 mod sensors;
 mod through_fmu;

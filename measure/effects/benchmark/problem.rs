@@ -5,6 +5,7 @@ use super::drive::{Drive, rms, std};
 use super::generator::Generator;
 use super::outside::Agent;
 use super::plant::{Law, Rig, Track};
+use super::run::PARTS;
 use super::secret::{self, Secret, with_delay};
 use super::sensors::{Readings, Sensors};
 use std::f64::consts::TAU;
@@ -50,9 +51,6 @@ pub struct Problem {
 
 /// Attempts at a bounded motion.
 const ATTEMPTS: u64 = 60;
-
-/// Steps per sample while strengths are sought, and in the end.
-pub const PARTS: [usize; 2] = [4, 16];
 
 /// Iterations of coefficient and excitation towards their strengths.
 const ITERATIONS: usize = 6;

@@ -4,7 +4,7 @@ use super::super::figure::Claim;
 use super::super::follow::RIGHT;
 use super::super::statistics::{factor, falls, percent, share, small};
 use super::NOISES;
-use super::section::{Method, NOISE, OURS, PUBLISHED, View};
+use super::view::{Method, NOISE, OURS, PUBLISHED, View, by_plant};
 
 /// Little noise, where a short record has its best chance.
 const LITTLE: f64 = 0.002;
@@ -23,11 +23,6 @@ pub fn claims(views: &[View]) -> Vec<Claim> {
 /// Whether something holds for both plants.
 fn everywhere(views: &[View], holds: impl Fn(&View) -> bool) -> bool {
     views.iter().all(holds)
-}
-
-/// One piece of evidence for each plant.
-pub fn by_plant(views: &[View], evidence: impl Fn(&View) -> String) -> String {
-    views.iter().map(|view| format!("{}: {}", view.plant.name(), evidence(view))).collect::<Vec<_>>().join("; ")
 }
 
 fn rises(views: &[View]) -> Claim {
