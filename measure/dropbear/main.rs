@@ -21,7 +21,7 @@ fn main() -> Result<(), Failure> {
 
 fn print(figures: &Figures) {
     println!("| figure | |\n|---|---|");
-    println!("| time from 0.7 s on for which a law is vouched for | {:.1} % |", 100.0 * figures.identified);
+    println!("| time from 0.7 s on for which a law is validated | {:.1} % |", 100.0 * figures.identified);
     println!("| the same while the beam is still | {:.1} % |", 100.0 * figures.identified_still);
     println!("| error of the frequency, median | {:.2} % |", 100.0 * figures.median);
     println!("| error of the frequency, 90th percentile | {:.2} % |", 100.0 * figures.ninth_decile);

@@ -53,7 +53,9 @@ pub fn svg(beam: &Beam, modes: &[Option<Mode>]) -> Drawn<String> {
             .draw_series(lines.map(|line| PathElement::new(line, style)))?
             .label("identified from the strain, ± std")
             .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
-        chart.configure_series_labels().background_style(WHITE).border_style(MEASURED.mix(0.3)).draw()?;
+        let mut labels = chart.configure_series_labels();
+        labels.background_style(WHITE).border_style(MEASURED.mix(0.3));
+        labels.position(SeriesLabelPosition::UpperRight).draw()?;
         area.present()?;
     }
     Ok(text)

@@ -39,8 +39,8 @@ impl Figure for Alarms {
         let row = |interval: f64| [format!("{interval:.0e}")].into_iter().chain(group(interval).own_cells()).collect();
         let head: Vec<&str> = ["interval, s"].into_iter().chain(OWN_HEAD).collect();
         let text = format!(
-            "The same Duffing records, σ = {NOISE}, with other values of `false_alarm_interval`. The level that evidence must pass is its \
-             logarithm: four decades of rarer false alarms cost little.\n\n{}",
+            "The same Duffing records, σ = {NOISE}, with other values of `false_alarm_interval`. The decision threshold is its \
+             logarithm: four decades of rarer false alarms cost little. ÷ limit is (delay − 3 ms) ÷ limit, switch by switch.\n\n{}",
             table(&head, INTERVALS.into_iter().map(row))
         );
         let line = |name: &str, colour: usize, kind: Kind, delay: fn(&Group) -> Option<f64>| {

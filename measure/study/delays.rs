@@ -4,12 +4,12 @@ pub mod group;
 
 use super::Failure;
 use super::chart::{Axis, Kind, Line, Panel};
-use super::figure::{Figure, Picture, Section, table};
+use super::figure::{Figure, Picture, Section, split_table};
 use super::follow::{Run, follow};
 use super::limit::{self, Delays as Limits};
 use super::plant::Plant;
 use super::statistics::median_delay;
-use group::{Group, HEAD, OURS, PUBLISHED};
+use group::{BREAK, Group, HEAD, OURS, PUBLISHED};
 use plotters::prelude::SeriesLabelPosition;
 use serde::{Deserialize, Serialize};
 use switchid::identify::{Identifier, Method, Settings};
@@ -88,13 +88,14 @@ impl Figure for Delays {
             [plant.name().into(), format!("{noise}")].into_iter().chain(group.cells()).collect()
         };
         let head: Vec<&str> = ["plant", "σ"].into_iter().chain(HEAD).collect();
+        let rows: Vec<Vec<String>> = rows.map(row).collect();
         let text = format!(
             "Laws drawn at random, each coefficient changing by a tenth or more, for 12 to 25 s each, under a sine. Detection: from the switch to the \
              first alarm of the stage. Tracking: from the switch until e stays below 0.05²; none where it never does. The limit of a detection knows \
              both laws, that of tracking the true terms, the law before and the state at the switch. (delay − 3 ms) ÷ limit is taken switch by switch. \
              A dash: never, in half of the cases or in the worst. What the published method detects in noise is the loop of its alarms: see its \
              false ones.\n\n{}",
-            table(&head, rows.map(row))
+            split_table(2, 2 + BREAK, &head, &rows)
         );
         let pictures = Plant::ALL.map(|plant| picture(plant, measured)).to_vec();
         Ok(Section { title: "Delays against noise", text, pictures, claims: Vec::new() })

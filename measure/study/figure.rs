@@ -69,6 +69,15 @@ pub struct Claim {
     pub evidence: String,
 }
 
+/// A table too wide for a page, in two: both begin with the same first `keys` columns, the second goes on at column `at`.
+pub fn split_table(keys: usize, at: usize, head: &[&str], rows: &[Vec<String>]) -> String {
+    let part = |from: usize, to: usize| {
+        let head: Vec<&str> = [&head[..keys], &head[from..to]].concat();
+        table(&head, rows.iter().map(|row| [&row[..keys], &row[from..to]].concat()))
+    };
+    format!("{}\n{}", part(keys, at), part(at, head.len()))
+}
+
 /// A table in Markdown; every row has as many cells as the head.
 pub fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));

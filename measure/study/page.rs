@@ -2,8 +2,11 @@
 
 use super::Failure;
 use super::chart;
-use super::figure::{Claim, Section, table};
+use super::figure::{Claim, Section};
 use std::path::{Path, PathBuf};
+
+/// Characters in a line of the page.
+const LONGEST: usize = 120;
 
 /// Where the page of a folder of pictures stands.
 pub fn path(out: &Path) -> PathBuf {
@@ -18,7 +21,7 @@ pub fn write(out: &Path, sections: &[Section], seeds: u64) -> Result<(), Failure
     sections.iter().try_for_each(|section| pictures(out, section))?;
     let parts = sections.iter().map(|section| text(out, section));
     let page = [head(sections, seeds)].into_iter().chain(parts).collect::<Vec<_>>().join("\n");
-    Ok(std::fs::write(path(out), page)?)
+    Ok(std::fs::write(path(out), wrapped(&page))?)
 }
 
 /// Writes the pictures of a section.
@@ -37,25 +40,49 @@ pub fn pictures(out: &Path, section: &Section) -> Result<(), Failure> {
 pub fn text(out: &Path, section: &Section) -> String {
     let folder = out.file_name().unwrap_or_default().to_string_lossy();
     let pictures = section.pictures.iter().map(|picture| {
-        format!("![{caption}]({folder}/{}.svg)\n\n*{caption}*\n\n", picture.name, caption = picture.caption)
+        let short = picture.caption.split(';').next().unwrap_or_default();
+        format!("![{short}]({folder}/{}.svg)\n\n*{}*\n\n", picture.name, picture.caption)
     });
     format!("## {}\n\n{}{}\n", section.title, pictures.collect::<String>(), section.text.trim_end())
 }
 
 fn head(sections: &[Section], seeds: u64) -> String {
-    let claims = sections.iter().flat_map(|section| &section.claims);
-    let verdict = |holds: bool| if holds { "confirmed" } else { "refuted" }.to_string();
-    let row =
-        |claim: &Claim| vec![claim.claim.into(), verdict(claim.published), verdict(claim.ours), claim.evidence.clone()];
-    let table = table(&["claim", "of the published method", "of ours", "figures"], claims.map(row));
+    let claims: String = sections.iter().flat_map(|section| &section.claims).map(claim).collect();
     let seeds = if seeds == 50 { String::new() } else { format!(" --seeds {seeds}") };
     format!(
         "# The published method, ours, and what is possible\n\n\
          Written by `cargo xtask study{seeds}`, text, tables and pictures. Both methods are switchid's (`--method publication` and the default), \
          ours with one default configuration throughout; limits are those of `switchid limits`. Seeds are others than any that \
          something was chosen by. e is eq. (8) of the publication: Σ(θ − θ*)² ÷ Σθ*².\n\n\
-         ## The publication's claims\n\nA claim is confirmed where it holds for both plants.\n\n{table}"
+         ## The publication's claims\n\nA claim is confirmed where it holds for both plants.\n\n{claims}"
     )
+}
+
+fn claim(claim: &Claim) -> String {
+    let verdict = |holds: bool| if holds { "confirmed" } else { "refuted" };
+    let (published, ours) = (verdict(claim.published), verdict(claim.ours));
+    format!("- **{}**: {published} of the published method, {ours} of ours: {}\n", claim.claim, claim.evidence)
+}
+
+/// The page with its long lines broken at spaces; tables and pictures as they are.
+fn wrapped(page: &str) -> String {
+    page.lines().map(|line| if line.starts_with(['|', '!']) { format!("{line}\n") } else { broken(line) }).collect()
+}
+
+/// A line broken at spaces, what follows indented where it is an item of a list.
+fn broken(line: &str) -> String {
+    let indent = if line.starts_with("- ") { "  " } else { "" };
+    let mut lines = vec![String::new()];
+    for word in line.split(' ') {
+        let length = lines.last().map_or(0, |last| last.chars().count());
+        if length > 0 && length + 1 + word.chars().count() > LONGEST {
+            lines.push(format!("{indent}{word}"));
+        } else if let Some(last) = lines.last_mut() {
+            last.push_str(if length > 0 { " " } else { "" });
+            last.push_str(word);
+        }
+    }
+    lines.join("\n") + "\n"
 }
 
 #[cfg(test)]
@@ -84,9 +111,19 @@ mod tests {
         let out = folder.path().join("study");
         write(&out, &[section(&[(0.01, 1e-6), (0.1, 1e-2)])], 3).unwrap();
         let page = std::fs::read_to_string(path(&out)).unwrap();
-        assert!(page.contains("| x | confirmed | refuted | 0.1 |"), "{page}");
+        assert!(page.contains("- **x**: confirmed of the published method, refuted of ours: 0.1\n"), "{page}");
         assert!(page.contains("![c](study/p.svg)") && page.contains("--seeds 3`"), "{page}");
         assert!(std::fs::read_to_string(out.join("p.svg")).unwrap().contains("ours"));
+    }
+
+    #[test]
+    fn no_line_of_prose_is_longer_than_a_terminal_and_no_word_is_lost() {
+        let words = ["wörd"; 60].join(" ");
+        let page = wrapped(&format!("{words}\n\n- {words}\n| {words} |\n"));
+        let lines: Vec<&str> = page.lines().filter(|line| !line.starts_with('|')).collect();
+        assert!(lines.iter().all(|line| line.chars().count() <= LONGEST), "{page}");
+        assert_eq!(page.matches("wörd").count(), 180);
+        assert!(page.contains("\n  wörd") && page.ends_with(&format!("| {words} |\n")), "{page}");
     }
 
     #[test]

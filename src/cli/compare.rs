@@ -2,7 +2,7 @@
 
 use super::compare_report::Report;
 use super::error::CommandError;
-use super::input::{Input, ModelArguments};
+use super::input::{Input, InputArguments};
 use super::output;
 use super::words::percent;
 use crate::diagnose::{Comparison, Estimate, NOISE_RATIO, Options, Side, Verdict, compare};
@@ -23,11 +23,8 @@ the excitation (of the inertia force in free motion); the noise floor is what it
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
 pub(super) struct Arguments {
-    /// The recordings (CSV with a header, MAT or Parquet), or sections of them: DATA@t0:t1 in seconds
-    #[arg(required = true)]
-    data: Vec<String>,
     #[command(flatten)]
-    model: ModelArguments,
+    input: InputArguments,
     /// Length of the windows over which the residual force is averaged; else chosen from the motion
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     window: Option<f64>,
@@ -41,7 +38,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let options = options(arguments)?;
-    let input = Input::open(&arguments.data, &arguments.model)?;
+    let input = Input::open(&arguments.input.data, &arguments.input.model)?;
     let recordings = input.judged();
     let found = compare(&input.model, &recordings, &Options { units: input.units, ..options });
     let holds: Vec<Hold> = recordings.iter().map(|(_, hold)| *hold).collect();

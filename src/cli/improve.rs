@@ -2,7 +2,7 @@
 
 use super::diagnose::{self, CandidateReport, TimingReport, WindowReport};
 use super::error::CommandError;
-use super::input::{Input, ModelArguments};
+use super::input::{Input, InputArguments};
 use super::output::{self, Pairs, Written};
 use super::picture::Picture;
 use super::progress::Waiting;
@@ -26,11 +26,8 @@ is left alone: undoing is going back to its file."#;
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
 pub(super) struct Arguments {
-    /// The recordings (CSV with a header, MAT or Parquet), or sections of them: DATA@t0:t1 in seconds
-    #[arg(required = true)]
-    data: Vec<String>,
     #[command(flatten)]
-    model: ModelArguments,
+    input: InputArguments,
     /// Where to write the new model
     #[arg(short, long, value_name = "MODEL2")]
     output: PathBuf,
@@ -67,7 +64,6 @@ struct Report {
 #[derive(Serialize)]
 struct StepReport {
     effect: Option<String>,
-    removed: Vec<String>,
     ties: Vec<Vec<String>>,
     error: f64,
     errors: Vec<WindowReport>,
@@ -101,9 +97,9 @@ impl Found {
 
 /// With --force the new model may take the old one's place, never a recording's; the picture takes neither's.
 fn check_targets(arguments: &Arguments) -> Result<(), CommandError> {
-    let mut inputs = output::files_of(&arguments.data)?;
+    let mut inputs = output::files_of(&arguments.input.data)?;
     output::check_target("-o", &arguments.output, &inputs)?;
-    inputs.push(arguments.model.model.clone());
+    inputs.push(arguments.input.model.model.clone());
     arguments.picture.as_deref().map_or(Ok(()), |path| output::check_target("--picture", path, &inputs))
 }
 
@@ -111,10 +107,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     check_targets(arguments)?;
     let written = Written::check(&arguments.output, arguments.force)?;
     let picture = arguments.picture.as_deref().map(|path| Picture::open(path, arguments.force)).transpose()?;
-    let input = Input::open(&arguments.data, &arguments.model)?;
+    let input = Input::open(&arguments.input.data, &arguments.input.model)?;
     let others = match arguments.validate.is_empty() {
         true => None,
-        false => Some(Input::open(&arguments.validate, &arguments.model)?),
+        false => Some(Input::open(&arguments.validate, &arguments.input.model)?),
     };
     let found = Waiting::on("improving", || find(&input, others.as_ref())).ok_or_else(|| input.undetermined())?;
     written.write(&improved_model(&input.model, &found.law).to_toml())?;
@@ -152,7 +148,6 @@ fn validated(law: &Law, input: &Input, others: Option<&Input>) -> Option<[Window
 fn report(arguments: &Arguments, found: &Found, input: &Input) -> Report {
     let step = |(step, validation): (&Step, &Option<[WindowError; 3]>)| StepReport {
         effect: step.effect.clone(),
-        removed: step.removed.clone(),
         ties: step.ties.clone(),
         error: step.error(),
         errors: WindowReport::all(&step.errors, step.law.target),
@@ -203,13 +198,9 @@ fn text(arguments: &Arguments, found: &Found, input: &Input) -> String {
     text + &format!("\nwritten: {}\n", arguments.output.display())
 }
 
-/// `+ coulomb_friction (− linear_damping)`.
+/// `+ coulomb_friction`.
 fn title(step: &Step) -> String {
-    let added = step.effect.as_ref().map_or_else(|| "the model as it came".into(), |effect| format!("+ {effect}"));
-    match step.removed.as_slice() {
-        [] => added,
-        removed => format!("{added} (− {})", removed.join(", ")),
-    }
+    step.effect.as_ref().map_or_else(|| "the model as it came".into(), |effect| format!("+ {effect}"))
 }
 
 fn stairs(found: &Found) -> Vec<(String, f64)> {

@@ -10,7 +10,7 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::path::PathBuf;
 
-/// Noise std ÷ largest value below which a record counts as free of noise.
+/// Noise std ÷ largest value below which a record counts as free of noise: six digits in a file leave 3e-7.
 const NOISELESS: f64 = 1e-6;
 
 /// The model, and the hold if the user names one.
@@ -22,6 +22,16 @@ pub(super) struct ModelArguments {
     /// What the excitation did between samples; else the model says, or the best one is kept
     #[arg(long, value_parser = PossibleValuesParser::new(Hold::ALL.map(Hold::id)))]
     pub(super) hold: Option<String>,
+}
+
+/// The recordings, and the model that is held against them.
+#[derive(Args)]
+pub(super) struct InputArguments {
+    /// The recordings (CSV with a header, MAT or Parquet), or sections of them: DATA@t0:t1 in seconds
+    #[arg(required = true)]
+    pub(super) data: Vec<String>,
+    #[command(flatten)]
+    pub(super) model: ModelArguments,
 }
 
 /// A model with the recordings it is held against.

@@ -2,13 +2,18 @@
 
 use super::error::CommandError;
 use super::output::Written;
+use super::words::percent;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::path::Path;
 
-/// Width of the picture, and height of one step and of what is around them, pixels.
+/// Width of the picture, pixels: what a page of text shows unscaled.
 const WIDTH: u32 = 760;
+
+/// Height of one step, pixels: a bar and its title.
 const STEP: u32 = 44;
+
+/// Height of axis and margins, pixels.
 const AROUND: u32 = 70;
 
 /// Ratio between the ends of the axis at most: a floor far below is named at the left end.
@@ -29,7 +34,7 @@ impl<'a> Picture<'a> {
         Written::check(path, overwrite).map(Picture)
     }
 
-    /// Bars on a logarithmic axis, one for each step with its title and its held-out error as a share of the force; the noise
+    /// Bars on a logarithmic axis, one for each step with its title and its held-out error; the noise
     /// floor is a line.
     ///
     /// # Errors
@@ -62,7 +67,7 @@ fn draw(text: &mut String, stairs: &[(String, f64)], floor: f64) -> Result<(), S
         .disable_y_mesh()
         .disable_y_axis()
         .y_labels(0)
-        .x_desc("error on held-out data, % of the force")
+        .x_desc("error on held-out data, %")
         .light_line_style(TRANSPARENT)
         .draw()
         .map_err(|error| said(&error))?;
@@ -72,8 +77,8 @@ fn draw(text: &mut String, stairs: &[(String, f64)], floor: f64) -> Result<(), S
     });
     chart.draw_series(bars).map_err(|error| said(&error))?;
     let (line, name) = match 100.0 * floor {
-        floor if floor >= left => (floor, format!("noise floor {floor:.3} %")),
-        floor => (left, format!("← noise floor {floor:.1e} %")),
+        below if below < left => (left, format!("← noise floor {}", percent(floor))),
+        within => (within, format!("noise floor {}", percent(floor))),
     };
     chart
         .draw_series([PathElement::new(vec![(line, 0.0), (line, count)], FLOOR.stroke_width(2))])
@@ -83,8 +88,7 @@ fn draw(text: &mut String, stairs: &[(String, f64)], floor: f64) -> Result<(), S
         let style = |position: HPos| ("sans-serif", 14).into_font().color(&BLACK).pos(Pos::new(position, VPos::Center));
         [
             EmptyElement::at((left, middle)) + Text::new(title.clone(), (-8, 0), style(HPos::Right)),
-            EmptyElement::at((100.0 * error, middle))
-                + Text::new(format!("{:.3} %", 100.0 * error), (6, 0), style(HPos::Left)),
+            EmptyElement::at((100.0 * error, middle)) + Text::new(percent(*error), (6, 0), style(HPos::Left)),
         ]
     });
     chart.draw_series(labels).map_err(|error| said(&error))?;

@@ -10,7 +10,7 @@ pub(super) struct Progress {
     shown: bool,
 }
 
-/// Steps between two looks at the clock.
+/// Steps between two looks at the clock: of steps of 10 µs, 100 a second.
 const STRIDE: usize = 1024;
 
 impl Progress {

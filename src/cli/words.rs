@@ -3,7 +3,7 @@
 use crate::diagnose::Law;
 use crate::law::{Catalogue, Term};
 
-/// Most decimals that a value is given.
+/// Most decimals that a value is given: what is left of 16 digits for a value of some thousands.
 const MOST: i32 = 12;
 
 /// `19 %`, `4.5 %`, `0.32 %`, `2.1e-3 %`.

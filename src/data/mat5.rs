@@ -10,9 +10,13 @@ use super::rows::Source;
 use flate2::read::ZlibDecoder;
 use std::io::Read;
 
+/// Bytes of a file's header: text, version, order of bytes.
 const HEADER: usize = 128;
 
-/// Types of elements.
+/// Numbers of a variable beyond which its extents are taken for damage: 8 TB.
+const LARGEST: f64 = 1e12;
+
+/// Types of elements ("MAT-File Format", table 1-1), with the constants below.
 const INT8: u32 = 1;
 const UINT8: u32 = 2;
 const INT16: u32 = 3;
@@ -223,7 +227,7 @@ impl<'a> Matrix<'a> {
 
 fn extents(element: &Element, big_endian: bool) -> Result<Vec<usize>, Broken> {
     let extents = element.numbers(big_endian)?;
-    if extents.iter().any(|extent| *extent < 0.0) || extents.iter().product::<f64>() > 1e12 {
+    if extents.iter().any(|extent| *extent < 0.0) || extents.iter().product::<f64>() > LARGEST {
         return Err(format!("a variable of extents {extents:?}"));
     }
     Ok(extents.into_iter().map(|extent| extent as usize).collect())

@@ -12,16 +12,16 @@ mod piece;
 mod scale;
 mod verdict;
 
-pub use candidates::{Variant, candidates, same_effect, variants};
+pub use crate::estimation::Noise;
+pub use candidates::same_effect;
 pub use compare::{
     Bounds, Comparison, Error, Estimate, Fail, Held, Judged, NOISE_RATIO, Options, Over, Side, Verdict, compare,
 };
 pub use fit::{Evidence, Fit, Form, best_as_given, fit, is_evident, refit};
 pub use judge::{Target, Timing};
 pub use motion::{Kinematics, Sensors};
-pub use piece::Piece;
-pub use scale::Scale;
+pub(crate) use piece::Piece;
 pub use verdict::{
     ADEQUATE, Addition, Candidate, Clock, Diagnosis, Doubt, Finding, Improvement, LEVEL, Law, Posed, StageDiagnosis,
-    Step, Switched, WindowError, are_adequate, diagnose_stages, improved_model,
+    Step, Switched, WindowError, diagnose_stages, improved_model,
 };

@@ -20,7 +20,7 @@ impl Channel {
 /// Variances of what disturbs a record.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Noise {
-    /// Variance of the sensor noise by [`Channel`].
+    /// Variance of the sensor noise of q and of q̇.
     pub sensor: [f64; 2],
     /// Intensity of the white acceleration that the law does not explain, (m/s²)² s.
     pub process: f64,

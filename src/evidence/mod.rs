@@ -14,4 +14,4 @@ mod single_change;
 
 pub use bayes_factor::{BayesFactor, GaussianPrior};
 pub use hypotheses::{Bank, Law, Suspect};
-pub use single_change::{SingleChange, either};
+pub use single_change::either;

@@ -1,11 +1,12 @@
 //! The identifier's interface for a model.
 
+use super::description::describe;
 use super::{FmuError, ports};
 use crate::identify::{
     Identifier, Method, OutputDescription, OutputKind, Outputs, Parameter, SavedLaws, Settings, Status,
 };
 use crate::law::{Catalogue, Hold, Model, Term};
-use switchid_fmu_package::variables::{at_least, choice, input, output, real, units, variable};
+use switchid_fmu_package::variables::{at_least, choice, input, output, real, variable};
 use switchid_fmu_package::{Fmu, documentation};
 use switchid_fmu_slave::{Description, Enumeration, Kind, Variable};
 
@@ -55,16 +56,8 @@ pub fn identifier_description(name: &str, model: &Model) -> Description {
         .chain(parameters(&terms))
         .chain(Outputs::describe(&terms).iter().map(to_variable))
         .collect();
-    let mut description = Description {
-        name: name.into(),
-        description: "Identifies the law of motion of a switched system, notices switches, re-identifies".into(),
-        version: env!("CARGO_PKG_VERSION").into(),
-        default_step: 1e-3,
-        default_duration: 30.0,
-        units: units(&variables),
-        enumerations: enumerations(),
-        variables,
-    };
+    let what = "Identifies the law of motion of a switched system, notices switches, re-identifies";
+    let mut description = describe(name, what, enumerations(), variables);
     let units = model.units.units();
     ports::declare(&mut description, &units, |name| {
         let term = name.strip_prefix("coef.").or(name.strip_prefix("std."))?;

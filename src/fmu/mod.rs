@@ -4,6 +4,7 @@
 //! units: where the model names a unit of q, qd or F, they declare the SI unit of that quantity, else none, so that they
 //! connect to anything.
 
+mod description;
 mod error;
 mod identifier;
 mod plant;

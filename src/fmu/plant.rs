@@ -1,9 +1,10 @@
 //! A plant's interface for a law with parameters.
 
 use super::FmuError;
+use super::description::describe;
 use crate::law::{Catalogue, Entry, InnerParameter, InnerRange, InnerUnit};
 use crate::simulate::{Excitation, ParametricLaw};
-use switchid_fmu_package::variables::{at_least, choice, output, real, units, variable};
+use switchid_fmu_package::variables::{at_least, choice, output, real, variable};
 use switchid_fmu_package::{Fmu, documentation};
 use switchid_fmu_slave::{Description, Enumeration, Kind, Variability, Variable};
 
@@ -44,16 +45,7 @@ pub fn plant_description(law: &ParametricLaw) -> Description {
     let hidden = Catalogue::ENTRIES.iter().flat_map(hidden);
     let variables = general().into_iter().chain(drive()).chain(stages).chain(hidden);
     let variables: Vec<Variable> = variables.chain(measured()).chain(truth(law)).collect();
-    Description {
-        name: law.name.clone(),
-        description: law.description.clone(),
-        version: env!("CARGO_PKG_VERSION").into(),
-        default_step: 1e-3,
-        default_duration: 30.0,
-        units: units(&variables),
-        enumerations: vec![excitations()],
-        variables,
-    }
+    describe(&law.name, &law.description, vec![excitations()], variables)
 }
 
 fn excitations() -> Enumeration {

@@ -1,10 +1,11 @@
 //! The interface of a specimen: a plant whose law gives F for the q and qd that its inputs impose.
 
 use super::FmuError;
+use super::description::describe;
 use super::plant::{NEVER, STAGES, hidden, true_coefficients};
 use crate::law::Catalogue;
 use crate::simulate::ParametricLaw;
-use switchid_fmu_package::variables::{at_least, input, output, real, units, variable};
+use switchid_fmu_package::variables::{at_least, input, output, real, variable};
 use switchid_fmu_package::{Fmu, documentation};
 use switchid_fmu_slave::{Description, Kind, Variable};
 
@@ -26,16 +27,7 @@ pub(super) fn specimen_description(law: &ParametricLaw) -> Description {
         .filter(|entry| entry.term.is_pointwise() && !entry.term.is_inertial() && !entry.term.uses_excitation());
     let variables = imposed().into_iter().chain(sensor()).chain(stages).chain(effects.flat_map(hidden));
     let variables: Vec<Variable> = variables.chain(force()).chain(true_coefficients(law)).collect();
-    Description {
-        name: law.name.clone(),
-        description: law.description.clone(),
-        version: env!("CARGO_PKG_VERSION").into(),
-        default_step: 1e-3,
-        default_duration: 30.0,
-        units: units(&variables),
-        enumerations: Vec::new(),
-        variables,
-    }
+    describe(&law.name, &law.description, Vec::new(), variables)
 }
 
 fn imposed() -> [Variable; 2] {

@@ -26,6 +26,7 @@ mod tracker;
 mod validation;
 mod window;
 
+pub use crate::estimation::Missing;
 pub use check::BuildError;
 pub use force_law::{ForceFit, fit_force_law};
 pub use identification::{Identification, Stage, choose_hold, identify_knowing, identify_recording};

@@ -5,7 +5,7 @@
 //! there. Laws without such terms are faster by [`Motion`].
 
 use super::memory::{LARGEST, parts};
-use super::reversal::{MOST_CUTS, direction_from_rest, release, rest_within};
+use super::reversal::{MOST_CUTS, NEGLIGIBLE, REFINEMENTS, direction_from_rest, release, rest_within};
 use super::{Effect, Expression, History, Motion, State, Term};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -252,12 +252,12 @@ impl<'a> Dynamics<'a> {
 
 /// A share of a step after Newton's steps `by` of it.
 fn refined(mut share: f64, by: impl Fn(f64) -> f64) -> f64 {
-    for _ in 0..4 {
+    for _ in 0..REFINEMENTS {
         let step = by(share);
-        if step.is_nan() || step.abs() < 1e-13 {
+        if step.is_nan() || step.abs() < NEGLIGIBLE {
             break;
         }
-        share = (share - step).clamp(1e-13, 1.0);
+        share = (share - step).clamp(NEGLIGIBLE, 1.0);
     }
     share
 }

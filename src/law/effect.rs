@@ -140,7 +140,7 @@ impl Effect {
         }
     }
 
-    /// The values of the inner parameters, one for each of [`Effect::inner`].
+    /// The values of the inner parameters, one for each of [`Effect::inner`], in its unit.
     pub fn inner_values(self) -> Vec<f64> {
         let inner: &[Inner] = match &self {
             Effect::StribeckFriction { speed } => &[*speed],
@@ -221,7 +221,7 @@ impl Effect {
         matches!(self, Effect::ExcitationGainNonlinearity { .. } | Effect::ExcitationDelay { .. })
     }
 
-    /// The part of the effect that does not multiply q̈, at (q, q̇, F); NaN for an effect with memory, whose feature
+    /// The part of the effect that does not multiply q̈, at (q, q̇, F) in m, m/s and N, for a coefficient of 1; NaN for an effect with memory, whose feature
     /// these do not determine.
     #[inline]
     pub fn force(self, q: f64, qd: f64, excitation: f64) -> f64 {

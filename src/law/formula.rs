@@ -6,13 +6,13 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// Values that a program may have on its stack at once.
+/// Values that a program may have on its stack at once: what a formula of 24 open operands needs, in an array without allocation.
 pub(super) const STACK: usize = 24;
 
-/// The most inner parameters of an expression.
+/// The most inner parameters of an expression: more than any record determines beside the coefficients.
 const MAX_PARAMETERS: usize = 16;
 
-/// How deep parentheses, signs and powers may nest.
+/// How deep parentheses, signs and powers may nest, so that no text overflows the parser's recursion.
 const NESTING: usize = 60;
 
 /// What a formula may name besides its parameters.

@@ -20,7 +20,7 @@ impl<F: Fn(f64) -> f64> History for F {
 pub struct Samples<'a> {
     /// Time, s, increasing.
     pub t: &'a [f64],
-    /// Excitation.
+    /// Excitation, N.
     pub excitation: &'a [f64],
     /// What it did between samples; a band-limited one is interpolated by the cubic through four samples.
     pub hold: Hold,

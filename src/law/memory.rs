@@ -84,8 +84,13 @@ impl Shape {
     }
 }
 
-/// Into how many equal parts a step is cut so that a rate of `rate` (1/s) is followed well; at most 1000.
+/// Rate × time of a part: Runge and Kutta's step of order 4 then errs by 0.25⁵ ÷ 120, 8e-6 of what changes.
+const PER_PART: f64 = 0.25;
+
+/// Most parts of a step, which bounds its work; a rate beyond belongs to an effect that follows the motion at once.
+const MOST_PARTS: f64 = 1000.0;
+
+/// Into how many equal parts a step is cut so that a rate of `rate` (1/s) is followed well.
 pub(super) fn parts(rate: f64, dt: f64) -> usize {
-    const PER_PART: f64 = 0.25;
-    (rate * dt.abs() / PER_PART).ceil().clamp(1.0, 1000.0) as usize
+    (rate * dt.abs() / PER_PART).ceil().clamp(1.0, MOST_PARTS) as usize
 }

@@ -31,24 +31,24 @@ impl State {
 pub struct Motion<'a> {
     /// What stands on the left-hand side.
     pub terms: &'a [Term],
-    /// What multiplies each term.
+    /// What multiplies each term: as many as terms, SI units.
     pub coefficients: &'a [f64],
 }
 
 impl Motion<'_> {
-    /// Σ θ_j mass_j(q), what multiplies q̈.
+    /// Σ θ_j mass_j(q), what multiplies q̈, kg.
     pub fn mass(&self, q: f64) -> f64 {
         self.pairs().map(|(term, coefficient)| coefficient * term.mass(q)).sum()
     }
 
-    /// q̈ at (q, q̇) under excitation F; not finite where the mass is 0.
+    /// q̈, m/s², at (q, q̇) under excitation F, N; not finite where the mass is 0.
     pub fn acceleration(&self, state: State, excitation: f64) -> f64 {
         let force: f64 =
             self.pairs().map(|(term, coefficient)| coefficient * term.force(state.q, state.qd, excitation)).sum();
         (excitation - force) / self.mass(state.q)
     }
 
-    /// (∂q̈/∂q, ∂q̈/∂q̇) at (q, q̇) under excitation F.
+    /// (∂q̈/∂q, ∂q̈/∂q̇), 1/s² and 1/s, at (q, q̇) under excitation F, N.
     pub fn acceleration_gradient(&self, state: State, excitation: f64) -> [f64; 2] {
         let acceleration = self.acceleration(state, excitation);
         let mut sums = [0.0; 2];
@@ -61,12 +61,12 @@ impl Motion<'_> {
         sums.map(|sum| -sum / mass)
     }
 
-    /// The state `dt` later under an excitation that stays at `excitation`.
+    /// The state `dt` s later under an excitation that stays at `excitation`, N.
     pub fn step_held(&self, state: State, dt: f64, excitation: f64) -> State {
         self.step_linear(state, dt, excitation, excitation)
     }
 
-    /// The state `dt` later under an excitation that runs straight from `from` to `to`.
+    /// The state `dt` s later under an excitation that runs straight from `from` to `to`, N.
     pub fn step_linear(&self, state: State, dt: f64, from: f64, to: f64) -> State {
         let middle = 0.5 * (from + to);
         let first = self.slope(state, from);

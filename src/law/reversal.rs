@@ -9,10 +9,16 @@ use super::Effect;
 /// Pieces into which a step may be cut; the last one goes through to its end.
 pub(super) const MOST_CUTS: usize = 12;
 
-/// Evaluations of a search for a root.
+/// Newton's steps towards the instant of rest: each squares the error, so that four lead from 0.1 of the step to rounding.
+pub(super) const REFINEMENTS: usize = 4;
+
+/// Share of a step within which the instant of rest is known: rounding of the state leaves some 10⁻¹⁴ of it.
+pub(super) const NEGLIGIBLE: f64 = 1e-13;
+
+/// Evaluations of a search for a root: halving alone needs 50 from the whole bracket to [`RESOLUTION`].
 const EVALUATIONS: usize = 60;
 
-/// Share of a bracket within which a root is known.
+/// Share of a bracket within which a root is known: a few spacings of numbers at 1.
 const RESOLUTION: f64 = 1e-15;
 
 /// How far past its reversal, in Stribeck speeds, friction is continued as if it had not reversed.

@@ -9,11 +9,11 @@ use super::{Effect, Expression, Hold, Samples, State, Term};
 pub struct Trajectory<'a> {
     /// Time, s, increasing.
     pub t: &'a [f64],
-    /// Displacement.
+    /// Displacement, m.
     pub q: &'a [f64],
-    /// Velocity.
+    /// Velocity, m/s.
     pub qd: &'a [f64],
-    /// Excitation.
+    /// Excitation, N.
     pub excitation: &'a [f64],
     /// What the excitation did between samples.
     pub hold: Hold,

@@ -5,16 +5,11 @@
 //! diag(1, q̈⁺ ÷ q̈⁻), and diag(1, 0) where it comes to stick.
 
 use super::compiled::Table;
-use super::reversal::{MOST_CUTS, direction_from_rest, release, rest_within};
+use super::reversal::{MOST_CUTS, NEGLIGIBLE, REFINEMENTS, direction_from_rest, release, rest_within};
 use super::{Compiled, Linearized, State};
 
-/// Steps towards the instant of rest.
-const REFINEMENTS: usize = 4;
-
-/// Share of a step within which the instant of rest is known.
-const NEGLIGIBLE: f64 = 1e-13;
-
-/// Largest factor by which a reversal may change δq̇: friction makes it smaller, a force that pushes could make it anything.
+/// Largest factor by which a reversal may change δq̇. Friction makes it smaller, so that 10 bounds only what no friction does:
+/// a force that pushes could make it anything.
 const LARGEST_RATIO: f64 = 10.0;
 
 impl Compiled {

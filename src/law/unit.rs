@@ -108,7 +108,9 @@ const fn unit(name: &'static str, quantity: Quantity, factor: f64) -> Unit {
     Unit { name, quantity, factor }
 }
 
+/// One degree, rad.
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
+/// One revolution, rad.
 const TURN: f64 = 2.0 * std::f64::consts::PI;
 
 const UNITS: [Unit; 51] = [

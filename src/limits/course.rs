@@ -3,10 +3,10 @@
 use super::LimitsError;
 use crate::law::{Drive, Motion, State};
 
-/// Share of a radian by which the motion may turn in a step of integration.
+/// Angle, rad, by which the motion may turn in a step of integration: one of order 4 then errs by 0.2⁵ ÷ 120, 3e-6 of it.
 const TURN: f64 = 0.2;
 
-/// Most steps of integration between two samples.
+/// Most steps of integration between two samples: 51 rad at [`TURN`], eight periods, which no record resolves.
 const MOST_PARTS: f64 = 256.0;
 
 /// A stretch of a record without gaps.
@@ -20,7 +20,7 @@ pub struct Course {
     pub states: Vec<State>,
 }
 
-/// Std of the sensors' noise, q and q̇; `None` for a quantity that is not measured.
+/// Std of the sensors' noise, q in m and q̇ in m/s; `None` for a quantity that is not measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensors(pub [Option<f64>; 2]);
 
@@ -44,7 +44,7 @@ impl Sensors {
 }
 
 impl Course {
-    /// A law's own motion from a state.
+    /// A law's own motion from a state: at the times `t`, s, under one drive fewer than times.
     pub fn own(motion: &Motion, start: State, t: Vec<f64>, drives: Vec<Drive>) -> Course {
         let mut course = Course { t, drives, states: vec![start] };
         for k in 0..course.drives.len() {

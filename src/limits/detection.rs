@@ -8,7 +8,7 @@ use super::LimitsError;
 use super::course::{Course, Sensors};
 use super::law::Law;
 
-/// Instants at which the switch is tried.
+/// Instants at which the switch is tried: enough for a median, whose own scatter is then 1.25 ÷ √200 of theirs.
 pub(super) const STARTS: usize = 200;
 
 /// Share of the record over which these lie: what follows is left for seeing the switch.
@@ -17,13 +17,13 @@ pub(super) const SHARE: f64 = 0.5;
 /// Delays of a change, s; `None` where the record ends before it is seen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Detection {
-    /// Of a switch at the record's start.
+    /// Of a switch at the record's start, s.
     pub at_start: Option<f64>,
-    /// Of switches at many instants of its first half: the median …
+    /// Of switches at many instants of its first half: the median, s.
     pub median: Option<f64>,
-    /// … the smallest …
+    /// The smallest of those, s.
     pub smallest: Option<f64>,
-    /// … and the largest.
+    /// The largest of those, s.
     pub largest: Option<f64>,
     /// How many instants were tried.
     pub tried: usize,

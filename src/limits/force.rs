@@ -4,14 +4,11 @@
 //! passes the level.
 
 use super::LimitsError;
-use super::bound::{Bound, SETTLED_ERROR};
+use super::bound::{Bound, GROWTH, SETTLED_ERROR};
 use super::detection::{Detection, SHARE, STARTS};
 use super::law::Law;
 use crate::law::State;
 use nalgebra::DMatrix;
-
-/// Part by which the record grows between two looks for the shortest one.
-const GROWTH: f64 = 0.01;
 
 /// Where the motion was at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]

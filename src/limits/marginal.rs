@@ -11,7 +11,8 @@ use super::law::Law;
 use super::sensitivity::{Column, Variation};
 use nalgebra::DMatrix;
 
-/// A quantity that is not measured may at first lie this many times its largest value away.
+/// A quantity that is not measured may at first lie this many times its largest value away: its std is then
+/// 10⁴ in variance beyond what it ever is, and the bound feels it by 10⁻⁴.
 const UNKNOWN: f64 = 100.0;
 
 /// What is known of the state at the start of a course.

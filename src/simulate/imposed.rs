@@ -12,9 +12,6 @@ use super::scenario::Scenario;
 use crate::law::{Hold, State, Term, Trajectory, term_series};
 use serde::{Deserialize, Serialize};
 
-/// Share of a sample interval by which the last sample may miss the duration.
-const TIME_JITTER: f64 = 1e-3;
-
 /// The readings of a whole scenario, one per `excitation.sample_time`, from 0 to its duration.
 ///
 /// # Errors
@@ -22,7 +19,7 @@ const TIME_JITTER: f64 = 1e-3;
 pub fn record(scenario: &Scenario) -> Result<Vec<Reading>, ScenarioError> {
     scenario.check()?;
     let sample_time = scenario.excitation.sample_time;
-    let last = (scenario.duration / sample_time + TIME_JITTER).floor() as u64;
+    let last = (scenario.duration / sample_time + Scenario::TIME_JITTER).floor() as u64;
     let t: Vec<f64> = (0..=last).map(|index| index as f64 * sample_time).collect();
     let phases = scenario.excitation.phases(scenario.seed);
     let states: Vec<State> = t.iter().map(|t| imposed(scenario, &phases, *t)).collect();
@@ -58,7 +55,7 @@ fn imposed(scenario: &Scenario, phases: &[f64], t: f64) -> State {
 
 /// The stage of a sample; one that begins at the sample, but for rounding, is its.
 fn stage_at(scenario: &Scenario, t: f64) -> usize {
-    scenario.stage_at(t + TIME_JITTER * scenario.excitation.sample_time)
+    scenario.stage_at(t + Scenario::TIME_JITTER * scenario.excitation.sample_time)
 }
 
 /// Σ θ_j f_j at every sample, the coefficients those of its stage.

@@ -28,5 +28,5 @@ pub use hidden::Hidden;
 pub use imposed::Specimen;
 pub use parametric::{LawParameter, ParametricLaw, ParametricLawError};
 pub use plant::{Plant, PlantError, SimulateError, Truth, record};
-pub use reading::Reading;
+pub use reading::{Reading, columns};
 pub use scenario::{Scenario, SensorNoise, Stage};

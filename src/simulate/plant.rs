@@ -50,9 +50,6 @@ pub enum PlantError {
     },
 }
 
-/// Share of a grid interval by which a caller's time may miss a grid point and still mean it.
-const TIME_JITTER: f64 = 1e-3;
-
 /// A plant: its scenario, which does not change, and where it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plant {
@@ -162,7 +159,7 @@ impl Plant {
 
     /// Differences of time that rounding explains, s.
     fn resolution(&self, t: f64) -> f64 {
-        1e-9 * self.scenario.excitation.sample_time + 4.0 * f64::EPSILON * t.abs()
+        Scenario::ROUNDING * self.scenario.excitation.sample_time + 4.0 * f64::EPSILON * t.abs()
     }
 
     fn node_time(&self, node: u64) -> f64 {
@@ -183,7 +180,7 @@ impl Plant {
 
     /// The interval of the excitation's grid to which t belongs.
     fn interval(&self, t: f64) -> u64 {
-        (t / self.scenario.excitation.sample_time + TIME_JITTER).floor().max(0.0) as u64
+        (t / self.scenario.excitation.sample_time + Scenario::TIME_JITTER).floor().max(0.0) as u64
     }
 
     /// The excitation that is held over an interval of the grid. Its amplitude and frequency are those of the stage
@@ -279,7 +276,7 @@ pub fn record(scenario: &Scenario) -> Result<Vec<Reading>, SimulateError> {
     }
     let mut plant = Plant::new(scenario.clone())?;
     let sample_time = scenario.excitation.sample_time;
-    let last = (scenario.duration / sample_time + TIME_JITTER).floor() as u64;
+    let last = (scenario.duration / sample_time + Scenario::TIME_JITTER).floor() as u64;
     let mut readings = Vec::with_capacity(last as usize + 1);
     for index in 0..=last {
         plant.advance_to(index as f64 * sample_time)?;

@@ -14,6 +14,9 @@ use std::ops::Range;
 /// Smallest change of any number at a switch, relative to its old value; 1/C then changes by a tenth at least.
 const CHANGE: f64 = 0.12;
 
+/// Instants in a second at which a switch may lie.
+const INSTANTS: f64 = 1e4;
+
 const DUFFING: [Range<f64>; 6] = [0.7..1.4, 0.15..0.6, 2.5..6.0, 1.0..4.0, 1.4..3.0, 1.1..1.9];
 const LIMIT_CYCLE: [Range<f64>; 6] = [0.7..1.4, 0.3..1.2, 0.7..1.3, 0.7..1.4, 0.8..1.8, 0.8..1.4];
 const FOCUS: [Range<f64>; 6] = [0.7..1.4, 0.3..1.2, -0.8..-0.3, 0.7..1.4, 0.8..1.8, 0.8..1.4];
@@ -37,7 +40,7 @@ pub(super) fn stages(van_der_pol_plant: bool, seed: u64) -> (Vec<Stage>, f64) {
         let stage = if van_der_pol_plant { van_der_pol } else { duffing };
         stages.push(stage(start, [a, b, c, d], amplitude, omega));
         numbers = Some(drawn);
-        start = ((start + generator.random_range(12.0..25.0)) * 1e4).round() / 1e4;
+        start = ((start + generator.random_range(12.0..25.0)) * INSTANTS).round() / INSTANTS;
     }
     (stages, start)
 }

@@ -7,10 +7,16 @@ use serde::{Deserialize, Serialize};
 pub struct Reading {
     /// Time, s.
     pub t: f64,
-    /// Displacement with its sensor noise.
+    /// Displacement with its sensor noise, m.
     pub q: f64,
-    /// Velocity with its sensor noise.
+    /// Velocity with its sensor noise, m/s.
     pub qd: f64,
-    /// The excitation that is held from this instant on, with its sensor noise.
+    /// The excitation that is held from this instant on, with its sensor noise, N.
     pub excitation: f64,
+}
+
+/// The columns t, q, q̇ and F of a record, each with one value a reading, SI units.
+pub fn columns(record: &[Reading]) -> [Vec<f64>; 4] {
+    let column = |value: fn(&Reading) -> f64| record.iter().map(value).collect();
+    [column(|own| own.t), column(|own| own.q), column(|own| own.qd), column(|own| own.excitation)]
 }

@@ -79,7 +79,14 @@ impl Scenario {
     /// oscillations up to 1 Hz, by less than 1e-8 up to 10 Hz.
     pub const INNER_STEP: f64 = 5e-4;
 
-    /// A scenario with the default grid, no sensor noise, starting at rest.
+    /// Share of a grid interval by which a time may miss a grid point and still mean it: hosts jitter in the last bits, and no
+    /// grid is finer than a millionth of the communication step.
+    pub(super) const TIME_JITTER: f64 = 1e-3;
+
+    /// Share of a grid interval that rounding of a quotient of two decimal times may leave.
+    pub(super) const ROUNDING: f64 = 1e-9;
+
+    /// A scenario of `duration` s with the default grid, no sensor noise, starting at rest.
     pub fn new(name: &str, terms: Vec<Term>, stages: Vec<Stage>, duration: f64) -> Scenario {
         Scenario {
             name: name.into(),
@@ -112,7 +119,7 @@ impl Scenario {
 
     /// Number of inner steps in one interval of the excitation's grid.
     pub fn substeps(&self) -> u64 {
-        (self.excitation.sample_time / self.inner_step - 1e-9).ceil().max(1.0) as u64
+        (self.excitation.sample_time / self.inner_step - Scenario::ROUNDING).ceil().max(1.0) as u64
     }
 
     /// Index of the stage at time t, s; a switch belongs to the new stage.

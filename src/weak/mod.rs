@@ -17,7 +17,7 @@ mod regression;
 mod row;
 mod variation;
 
-pub use functional::{Functional, Pole, signal};
+pub(crate) use functional::{Functional, Pole, signal};
 pub use regression::{Direction, Fit, Regression};
 pub use row::{Row, Section};
 pub use variation::Variation;

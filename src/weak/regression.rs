@@ -7,8 +7,15 @@ use crate::law::Model;
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
-/// Singular values below this fraction of the largest, columns scaled to unit length, count as zero.
+/// Singular values below this fraction of the largest, columns scaled to unit length, count as zero: rounding of
+/// the factor leaves 10⁻¹⁴, readings of 16 bits 10⁻⁵ of a direction.
 const RANK_TOLERANCE: f64 = 1e-9;
+
+/// Square of an unknown's share in open directions below which the rows determine it: its value then moves by 10⁻³ of them.
+const OPEN: f64 = 1e-6;
+
+/// Share in an open direction from which an unknown is named as part of it: the root of [`OPEN`].
+const NAMED: f64 = 1e-3;
 
 /// A combination of unknowns that the rows leave open: the unknowns with a share in it.
 pub type Direction = Vec<usize>;
@@ -39,7 +46,7 @@ pub struct Regression {
 /// A least-squares solution of minimal norm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Fit {
-    /// θ, n.
+    /// θ, n of them, in the units of the rows.
     pub coefficients: Vec<f64>,
     /// Diagonal of (AᵀA)⁺, n: times the residual's variance it is the variance of θ, were the rows independent.
     pub spread: Vec<f64>,
@@ -52,7 +59,7 @@ pub struct Fit {
     /// Length of the right side ÷ length of the unknown's column, n: the value at which its term alone would be as large as the
     /// right side; infinite for a column of zeros.
     pub reach: Vec<f64>,
-    /// RMS of the residual over the rows.
+    /// RMS of the residual over the rows, in their unit.
     pub residual: f64,
     /// Right singular vectors that do not count, one row of n for each.
     null: Vec<f64>,
@@ -144,7 +151,7 @@ impl Regression {
         fit.condition = if fit.rank > 0 { largest / smallest } else { f64::INFINITY };
         for unknown in 0..n {
             let open: f64 = (0..N).filter(|i| !counts(*i)).map(|i| right_vectors[(i, unknown)].powi(2)).sum();
-            fit.determined[unknown] = scale[unknown] > 0.0 && open < 1e-6;
+            fit.determined[unknown] = scale[unknown] > 0.0 && open < OPEN;
         }
         let mut direction = 0;
         for index in (0..N).filter(|index| !counts(*index)) {
@@ -197,7 +204,7 @@ impl Fit {
     /// The combinations of unknowns that the rows leave open, each by the unknowns that share in it.
     pub fn open_directions(&self) -> Vec<Direction> {
         let n = self.coefficients.len();
-        let members = |row: &[f64]| (0..n).filter(|unknown| row[*unknown].abs() > 1e-3).collect::<Vec<_>>();
+        let members = |row: &[f64]| (0..n).filter(|unknown| row[*unknown].abs() > NAMED).collect::<Vec<_>>();
         self.null.chunks(n.max(1)).map(members).filter(|direction| !direction.is_empty()).collect()
     }
 }

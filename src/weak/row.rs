@@ -1,25 +1,21 @@
 //! One weak equation from one interval of samples.
 
 use super::Variation;
-use crate::law::{Hold, Monomial, Term};
+use crate::law::{GAUSS, Hold, Monomial, Term};
 use serde::{Deserialize, Serialize};
-
-/// Gauss–Legendre points on 0 ≤ x ≤ 1, exact for polynomials of degree 5.
-const GAUSS: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 /// Samples of one interval [T₁, T₂]; all slices are of one length ≥ 3.
 #[derive(Clone, Copy, Debug)]
 pub struct Section<'a> {
     /// Time, s.
     pub t: &'a [f64],
-    /// Displacement.
+    /// Displacement, m.
     pub q: &'a [f64],
-    /// Velocity.
+    /// Velocity, m/s.
     pub qd: &'a [f64],
     /// Whether the velocity is measured; where it is an estimate, as few integrals as possible use it.
     pub qd_measured: bool,
-    /// Excitation.
+    /// Excitation, N.
     pub excitation: &'a [f64],
     /// What the excitation did between samples.
     pub hold: Hold,
@@ -28,11 +24,11 @@ pub struct Section<'a> {
 /// Computes weak equations for a set of terms.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// The integral of each term against φ.
+    /// The integral of each term against φ, SI units times s.
     pub terms: Vec<f64>,
     /// What white sensor noise of std 1 on each sample of (q, q̇) adds to the variance of each term's integral.
     pub noise: Vec<[f64; 2]>,
-    /// The integral of the excitation against φ.
+    /// The integral of the excitation against φ, N s.
     pub excitation: f64,
     /// ∫ φ² dt, s.
     pub norm: f64,

@@ -25,7 +25,7 @@ pub enum Variation {
 }
 
 impl Variation {
-    /// [φ, dφ/ds, d²φ/ds²].
+    /// [φ, dφ/ds, d²φ/ds²] at 0 ≤ s ≤ 1, all without unit.
     pub fn at(self, s: f64) -> [f64; 3] {
         match self {
             Variation::Polynomial { power } => polynomial(s, i32::from(power)),

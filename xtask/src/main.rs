@@ -5,6 +5,7 @@ mod crosscheck;
 mod error;
 mod fmu;
 mod libclang;
+mod picture;
 mod python;
 mod readme;
 mod real;
@@ -38,7 +39,8 @@ usage: cargo xtask CHORE
   real [--only NAME].. [--json OUT] [--switchid PATH]
                      what the command line makes of the real records in $SWITCHID_DATA, beside an
                      independent regression's answers; status 1 where a figure misses its floor.
-                     NAME is a record, transfer or silverbox; PATH is a built command line";
+                     NAME is a record, transfer or silverbox; PATH is a built command line
+  picture            draws docs/switching.svg anew: motion, true and identified coefficients, alarms";
 
 /// The crate of the measuring programs.
 const MEASURE: &str = "switchid-measure";
@@ -67,6 +69,7 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
             cargo(&["run", "--quiet", "--release", "--package", MEASURE, "--bin", program, "--"], rest)
         }
         ("real", rest) => real::real(rest),
+        ("picture", []) => picture::picture(),
         ("--help" | "-h" | "help", _) => {
             println!("{USAGE}");
             Ok(())

@@ -1,16 +1,23 @@
-//! The README's shell commands, run as they stand.
+//! The documents' shell commands, run as they stand.
 
 use crate::command::{root, run};
 use crate::error::Error;
 use std::process::Command;
 
-/// Runs every ```` ```sh ```` block of README.md in the workspace's root, in order; lines that call `cargo xtask` are
-/// left out, since CI runs those itself.
+/// The documents whose commands a reader runs first.
+const DOCUMENTS: [&str; 2] = ["README.md", "docs/command-line.md"];
+
+/// Runs every ```` ```sh ```` block of a document in the workspace's root, in order, one document after the other; lines
+/// that call `cargo xtask` are left out, since CI runs those itself.
 ///
 /// # Errors
-/// [`Error::Document`] when there is no such block, [`Error::Failed`] when a command fails.
+/// [`Error::Document`] where a document has no such block, [`Error::Failed`] when a command fails.
 pub fn commands() -> Result<(), Error> {
-    let path = root().join("README.md");
+    DOCUMENTS.into_iter().try_for_each(commands_of)
+}
+
+fn commands_of(document: &str) -> Result<(), Error> {
+    let path = root().join(document);
     let text =
         std::fs::read_to_string(&path).map_err(|source| Error::File { action: "read", path: path.clone(), source })?;
     let blocks = shell_blocks(&text);

@@ -30,7 +30,7 @@ pub fn test() -> Result<(), Error> {
     steps.check("FMUs", fmu::build);
     steps.check("FMUs through the fmi crate", fmi_crate);
     steps.check("command line of the cross-check", fmu::build_command);
-    steps.check("README's commands", readme::commands);
+    steps.check("commands of the documents", readme::commands);
     let interpreter = steps.run("Python environment", python::environment);
     steps.check("harness tests", || pytest(&interpreter?));
     steps.finish()

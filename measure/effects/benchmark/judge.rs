@@ -175,7 +175,7 @@ fn judge_several(posed: &Posed, problem: &Problem, start: f64) -> Outcome {
     let visible = (0..problem.lacking.len()).all(shows);
     let ratio = (answer == Answer::Right).then(|| principal(&last.errors) / whole);
     let steps: Vec<String> =
-        found.steps.iter().map(|step| format!("{:?} -{:?} {:.4}", step.effect, step.removed, step.error())).collect();
+        found.steps.iter().map(|step| format!("{:?} {:?} {:.4}", step.effect, step.ties, step.error())).collect();
     let words = format!("steps {}, then {} | true {whole:.4}", steps.join(", "), words(&found.last));
     Outcome { answer, visible, tie, ratio, seconds, words }
 }

@@ -137,7 +137,7 @@ impl<'a> View<'a> {
             "interval, s",
             "σ",
             "2D, s",
-            "limit of e, true terms / whole model",
+            "limit of e: true / all terms",
             "ours: mean (median)",
             "÷ limit",
             "published: mean (median)",

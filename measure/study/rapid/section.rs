@@ -1,7 +1,7 @@
 //! What rapid switching says.
 
 use super::super::chart::{Axis, Kind, Line, Panel};
-use super::super::figure::{Claim, Picture, Section, table};
+use super::super::figure::{Claim, Picture, Section, split_table};
 use super::super::follow::{RIGHT, Run, Stage};
 use super::super::plant::Plant;
 use super::super::statistics::{factor, mean, median, percent, quantile, share, small};
@@ -22,6 +22,10 @@ type Who = fn(&Outcome) -> &Run;
 const OURS: Who = |outcome| &outcome.ours;
 const PUBLISHED: Who = |outcome| &outcome.published;
 
+/// Columns of [`HEAD`] that name a setting.
+const KEYS: usize = 3;
+/// Column of [`HEAD`] at which a page breaks it.
+const BREAK: usize = 11;
 const HEAD: [&str; 16] = [
     "plant",
     "σ",
@@ -34,7 +38,7 @@ const HEAD: [&str; 16] = [
     "stale",
     "wrong",
     "worst e",
-    "vouched: z²",
+    "validated: z²",
     "z within 2",
     "told",
     "told: z²",
@@ -51,16 +55,17 @@ pub fn section(measured: &[(Point, Outcome)]) -> Section {
             let names = [plant.name().into(), format!("{noise}"), format!("{spacing} T₀")];
             names.into_iter().chain(group.cells(who, spacing * plant.period())).collect()
         };
-        table(&HEAD, settings().map(row))
+        let rows: Vec<Vec<String>> = settings().map(row).collect();
+        split_table(KEYS, BREAK, &HEAD, &rows)
     };
     let text = format!(
         "{}\n\nAfter eight natural periods T₀ of a first law, twelve switches at equal distances, each to a law drawn anew. *Identified*: e < 0.05² at \
          the end of the stage. *Could be*: the limit of the tracking delay is shorter than the stage. *Stale*: share of all \
          time at which the method says `valid` of a law that has ended and no alarm was raised since; *wrong*: share at which it says so of a law after \
          the switch's own alarm, and e is above 0.05²; *worst e* is of those. *Told*: share of the coefficients that have a std at the end of \
-         a stage. z is the error of a coefficient ÷ its stated std: z² should average 1, and {} of all |z| lie below 2. *Vouched*: the coefficients \
+         a stage. z is the error of a coefficient ÷ its stated std: z² should average 1, and {} of all |z| lie below 2. *Validated*: the coefficients \
          last called valid in each stage after its alarm; *told*: all that have a std at its end, its switch detected or not. A law of ours \
-         must have stood while its record grew by a tenth before switches from it are looked for: one that comes sooner is taken into the law, and \
+         must be stable while its record grows by a tenth before switches from it are looked for: one that comes sooner is taken into the law, and \
          until the record since is long enough for another, what is told is of a record with two laws and more.\n\n**Ours**\n\n{}\n**Published method**\n\n{}",
         fails(measured),
         percent(WITHIN_TWO),

@@ -8,7 +8,7 @@ pub(super) use report::{CandidateReport, TimingReport, WindowReport};
 pub(super) use text::{answer, candidates, verdict};
 
 use super::error::CommandError;
-use super::input::{Input, ModelArguments};
+use super::input::{Input, InputArguments};
 use super::output;
 use super::progress::Waiting;
 use crate::diagnose::diagnose_stages;
@@ -31,18 +31,15 @@ Errors are the RMS weak residual ÷ std of the weak target over windows of 0.1, 
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
 pub(super) struct Arguments {
-    /// The recordings (CSV with a header, MAT or Parquet), or sections of them: DATA@t0:t1 in seconds
-    #[arg(required = true)]
-    data: Vec<String>,
     #[command(flatten)]
-    model: ModelArguments,
+    input: InputArguments,
     /// Print one JSON document instead of text
     #[arg(long)]
     json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    let input = Input::open(&arguments.data, &arguments.model)?;
+    let input = Input::open(&arguments.input.data, &arguments.input.model)?;
     let found = Waiting::on("diagnosing", || find(&input))?;
     if arguments.json {
         output::print_json(&report::Report::of(&found, &input))

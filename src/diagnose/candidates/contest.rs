@@ -188,7 +188,8 @@ fn column(record: &Record, equation: &Equation, term: Term) -> (Column, bool) {
         Target::Inertia => record.accelerates(term),
         Target::Force => record.uses_excitation(term),
     };
-    (record.term(term, equation.timing), holds_target)
+    let column = record.term(term, equation.timing);
+    (equation.begun(record, term, &column).unwrap_or(column), holds_target)
 }
 
 fn is_within(term: Term, scale: &Scale) -> bool {

@@ -77,7 +77,9 @@ impl Variant {
         let mut all = vec![Variant { term: self.term, spacing }];
         let Term::Effect(effect) = self.term else { return all };
         let values = effect.inner_values();
-        for index in (0..values.len()).filter(|index| is_continuous(effect, *index)) {
+        // powers of the excitation are whole numbers
+        let continuous = if matches!(effect, Effect::ExcitationGainNonlinearity { .. }) { 0 } else { values.len() };
+        for index in 0..continuous {
             for power in [-2, -1, 1, 2] {
                 let mut moved = values.clone();
                 moved[index] *= spacing.powi(power);
@@ -86,15 +88,6 @@ impl Variant {
             }
         }
         all
-    }
-}
-
-/// Whether the inner parameter of that position has neighbours on a grid that is narrowed; the others are left to the fit.
-fn is_continuous(effect: Effect, index: usize) -> bool {
-    match effect {
-        Effect::ExcitationGainNonlinearity { .. } => false,
-        Effect::Hysteresis { .. } => index == 0,
-        _ => true,
     }
 }
 

@@ -4,4 +4,4 @@ mod contest;
 mod grid;
 
 pub(super) use contest::{Contender, contender, contest};
-pub use grid::{Variant, candidates, same_effect, variants};
+pub use grid::same_effect;

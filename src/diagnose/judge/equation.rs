@@ -4,6 +4,7 @@
 //! q̈ = F/m − Σ (θ_j/m) f_j; F = m q̈ + Σ θ_j f_j where F is the output, or is the noisier. A column ∫ φ' F dt beside them takes what a
 //! little delay of the excitation would explain.
 
+use super::beginning;
 use super::record::{Column, Record, Timing};
 use super::regression::{self, Normal};
 use super::windows::COUNT;
@@ -49,7 +50,7 @@ impl Equation {
         nuisance: bool,
     ) -> Equation {
         let right = match target {
-            Target::Inertia => record.measured_inertia(),
+            Target::Inertia => record.measured_inertia(timing.hold),
             Target::Force => record.force(timing),
         };
         let mut left = Vec::new();
@@ -65,7 +66,28 @@ impl Equation {
         let functions = [0, 1, 2].map(|which| record.windows[which].functions);
         let spread = [0, 1, 2].map(|which| spread(&right[which], functions[which]));
         let tells = [0, 1, 2].map(|which| record.windows[which].length >= record.sample_time);
-        Equation { terms: terms.to_vec(), target, timing, right, spread, functions, tells, takes_delay, left }
+        let mut equation =
+            Equation { terms: terms.to_vec(), target, timing, right, spread, functions, tells, takes_delay, left };
+        for index in 0..terms.len() {
+            let begun = equation.place(index).and_then(|place| {
+                Some((place, beginning::begun(record, terms[index], &equation.left, place, &equation.right)?))
+            });
+            begun.into_iter().for_each(|(place, column)| equation.left[place] = column);
+        }
+        equation
+    }
+
+    /// The column of one more term that has a memory, as it was when the record began; none of a term without.
+    pub(in crate::diagnose) fn begun(&self, record: &Record, term: Term, column: &Column) -> Option<Column> {
+        let left: Vec<Column> = self.left.iter().chain([column]).cloned().collect();
+        beginning::begun(record, term, &left, self.left.len(), &self.right)
+    }
+
+    /// Which column a term has; none where it is the target or stands in the excitation's.
+    pub(super) fn place(&self, index: usize) -> Option<usize> {
+        let own = |term: &&Term| has_column(**term, self.target);
+        let first = self.left.len() - usize::from(self.takes_delay) - self.terms.iter().filter(own).count();
+        own(&&self.terms[index]).then(|| first + self.terms[..index].iter().filter(own).count())
     }
 
     /// The columns of one window length.
@@ -86,19 +108,21 @@ impl Equation {
 
     /// The same with the inertia term of another record as its target.
     pub(in crate::diagnose) fn for_motion(&self, record: &Record) -> Equation {
-        let right = record.measured_inertia();
+        let right = record.measured_inertia(self.timing.hold);
         let spread = [0, 1, 2].map(|which| spread(&right[which], self.functions[which]));
         Equation { right, spread, ..self.clone() }
+    }
+
+    /// The same regressors for other rows, such as noise.
+    pub(in crate::diagnose) fn for_rows(&self, right: Column) -> Equation {
+        Equation { right, ..self.clone() }
     }
 
     /// The same without the term of that position.
     pub(in crate::diagnose) fn without(&self, index: usize) -> Equation {
         let mut equation = self.clone();
-        let own = |term: &&Term| has_column(**term, self.target);
-        let place = self.terms[..index].iter().filter(own).count();
-        let first = self.left.len() - usize::from(self.takes_delay) - self.terms.iter().filter(own).count();
-        if own(&&self.terms[index]) {
-            equation.left.remove(first + place);
+        if let Some(place) = self.place(index) {
+            equation.left.remove(place);
         }
         equation.terms.remove(index);
         equation

@@ -4,6 +4,7 @@
 //! ([`equation`]) by a robust regression ([`regression`]). Its error is that of equations it was not fitted to ([`held_out`]); beside it
 //! stand what the sensors alone would leave ([`floor`]) and how likely a gain is by chance ([`significance`]).
 
+mod beginning;
 mod equation;
 mod estimate;
 mod floor;
@@ -17,7 +18,7 @@ mod windows;
 pub use equation::Target;
 pub(super) use equation::{Equation, delay_of};
 pub(super) use estimate::{Estimate, estimate};
-pub(super) use floor::{disturbed, floor, noise_share};
+pub(super) use floor::{Bootstrap, floor, noise_share};
 pub(super) use held_out::{Folds, HeldOut, Screen};
 pub(super) use instruments::instrumented;
 pub use record::Timing;

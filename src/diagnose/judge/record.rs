@@ -95,14 +95,26 @@ impl Record {
         self.windows.iter().zip(column).for_each(|(windows, rows)| windows.add(order, cells, factor, rows));
     }
 
-    /// ∫ φ q̈ dt = −∫ φ' q̇ dt = ∫ φ'' q dt of the readings: of q̇ where it is measured, else of q.
-    pub(in crate::diagnose) fn measured_inertia(&self) -> Column {
-        let mut column = self.column(1, |(.., nodes)| nodes.integrals(&nodes.qd), -1.0);
+    /// ∫ φ q̈ dt = −∫ φ' q̇ dt = ∫ φ'' q dt of the readings: of q̇ where it is measured, else of q. Under a force that is held q̇ is a straight
+    /// line between readings, which no smoothed motion is.
+    pub(in crate::diagnose) fn measured_inertia(&self, hold: Hold) -> Column {
+        let reads = |(index, number, _): &(usize, usize, Nodes)| self.motions[*index].tracks[*number].read[1];
+        let is_straight = |piece: &(usize, usize, Nodes)| hold == Hold::Zero && reads(piece);
+        let velocity = |piece: &(usize, usize, Nodes)| {
+            let (index, number, nodes) = piece;
+            let motion = &self.motions[*index];
+            if is_straight(piece) { nodes.straight(motion, *number) } else { nodes.integrals(&nodes.qd) }
+        };
+        let mut column = self.column(1, velocity, -1.0);
         for (channel, order, factor) in [(0, 2, 1.0), (1, 1, -1.0)] {
-            let own = |(index, number, nodes): &(usize, usize, Nodes)| {
-                let motion = &self.motions[*index];
-                let taken = if motion.tracks[*number].read[1] { 1 } else { 0 };
-                if taken == channel { nodes.remainder(motion, *number, channel) } else { vec![[0.0; 2]; nodes.cells()] }
+            let own = |piece: &(usize, usize, Nodes)| {
+                let (index, number, nodes) = piece;
+                let taken = usize::from(reads(piece));
+                if taken == channel && !is_straight(piece) {
+                    nodes.remainder(&self.motions[*index], *number, channel)
+                } else {
+                    vec![[0.0; 2]; nodes.cells()]
+                }
             };
             self.add(order, &self.nodes.iter().map(own).collect(), factor, &mut column);
         }
@@ -130,9 +142,27 @@ impl Record {
     /// ∫ φ f dt of a term.
     pub(in crate::diagnose) fn term(&self, term: Term, timing: Timing) -> Column {
         match term {
-            Term::Inertia => self.measured_inertia(),
+            // the readings' noise in a column that explains would make its coefficient too small
+            Term::Inertia => self.column(1, |(.., nodes)| nodes.integrals(&nodes.qd), -1.0),
             _ => self.column(0, |piece| piece.2.integrals(&self.series(term, piece, timing)), 1.0),
         }
+    }
+
+    /// Number of pieces.
+    pub(super) fn pieces(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// A function of the time since a piece began, s, as a force; 0 in all other pieces.
+    pub(super) fn in_piece(&self, number: usize, value: impl Fn(f64) -> f64) -> Column {
+        let mut column = [0, 1, 2].map(|which| vec![0.0; self.windows[which].rows()]);
+        let own = |(index, (.., nodes)): (usize, &(usize, usize, Nodes))| {
+            let inside = index == number;
+            let values: Vec<f64> = nodes.elapsed().map(|t| if inside { value(t) } else { 0.0 }).collect();
+            nodes.integrals(&values)
+        };
+        self.add(0, &self.nodes.iter().enumerate().map(own).collect(), 1.0, &mut column);
+        column
     }
 
     /// Whether a term holds q̈ itself.

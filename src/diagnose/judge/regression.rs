@@ -103,3 +103,10 @@ pub(super) fn fit(columns: &[&[f64]], target: &[f64], counted: &[f64]) -> Option
     }
     Some((solution, weights))
 }
+
+/// Adds a column times a factor to another.
+pub(super) fn add(column: &mut super::record::Column, other: &super::record::Column, factor: f64) {
+    for (rows, more) in column.iter_mut().zip(other) {
+        rows.iter_mut().zip(more).for_each(|(value, more)| *value += factor * more);
+    }
+}

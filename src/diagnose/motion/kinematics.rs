@@ -19,6 +19,9 @@ const SHARED: f64 = 0.5;
 /// Share of q̇'s variance that the derivative of q must explain where it is a velocity at all.
 const EXPLAINED: f64 = 0.5;
 
+/// Blocks over which a std is taken: each is as long as the motion's slowest usual change, or longer.
+const BLOCKS: usize = 32;
+
 /// Times that the delay is corrected.
 const STEPS: usize = 3;
 
@@ -61,13 +64,13 @@ impl Kinematics {
         let count = right.len() as f64;
         let mean = right.iter().sum::<f64>() / count;
         let spread: f64 = right.iter().map(|value| (value - mean).powi(2)).sum();
-        let std = |index: usize| (found.inverse[(index, index)] * left / count).sqrt();
+        let std = found.std(&rows, &residuals);
         let scale = found.solution[0];
         Some(Kinematics {
             lag: lag + found.solution[1] / scale,
-            lag_std: std(1) / scale.abs(),
+            lag_std: std[1] / scale.abs(),
             scale,
-            scale_std: std(0),
+            scale_std: std[0],
             offset: found.solution[2],
             explained: 1.0 - left / spread,
             is_derivative: shared(pieces, tracks, &residuals)? > SHARED,
@@ -144,6 +147,18 @@ impl Regression {
         let solution = &inverse * &moment;
         let total: f64 = right.iter().map(|value| value * value).sum();
         Some(Regression { left: (total - solution.dot(&moment)).max(0.0), solution, inverse })
+    }
+
+    /// Std of the solution by the sandwich over contiguous blocks: what is left of smoothed readings is coloured.
+    fn std<const P: usize>(&self, rows: &[[f64; P]], residuals: &[f64]) -> Vec<f64> {
+        let length = rows.len().div_ceil(BLOCKS);
+        let scores = rows.chunks(length).zip(residuals.chunks(length)).map(|(rows, residuals)| {
+            let add =
+                |sum: DVector<f64>, (row, residual): (&[f64; P], &f64)| sum + DVector::from_row_slice(row) * *residual;
+            &self.inverse * rows.iter().zip(residuals).fold(DVector::zeros(P), add)
+        });
+        let squares = scores.fold(DVector::<f64>::zeros(P), |sum, step| sum + step.component_mul(&step));
+        squares.iter().map(|square| square.sqrt()).collect()
     }
 
     fn residuals<const P: usize>(&self, rows: &[[f64; P]], right: &[f64]) -> Vec<f64> {

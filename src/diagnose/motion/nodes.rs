@@ -3,7 +3,7 @@
 //! Nodes are as close as the readings or closer; several make a cell, over which everything is summed before it meets a test function.
 
 use super::smoothed::Motion;
-use super::track::readings;
+use super::track::{UNREAD, readings};
 use crate::diagnose::Piece;
 use crate::law::{Hold, NODES, Trajectory};
 
@@ -56,9 +56,9 @@ impl Nodes {
         self.t.len() / self.per_cell
     }
 
-    /// Length of a cell, s.
-    pub(in crate::diagnose) fn cell(&self) -> f64 {
-        self.width * self.per_cell as f64
+    /// Time since the piece began at every node, s.
+    pub(in crate::diagnose) fn elapsed(&self) -> impl Iterator<Item = f64> {
+        self.t.iter().map(|t| t - self.start)
     }
 
     /// The motion under an excitation at the nodes.
@@ -87,22 +87,46 @@ impl Nodes {
         values.chunks_exact(self.per_cell).map(sum).collect()
     }
 
-    /// What the readings of a channel have beyond the smoothed motion, integrated over the cells: with it the smoothed motion is the
-    /// measured one again, without what smoothing may take from it.
+    /// What the readings of a channel have beyond the smoothed motion, a straight line from reading to reading, integrated over the cells: with it
+    /// the smoothed motion is the measured one again, without what smoothing may take from it.
     pub(in crate::diagnose) fn remainder(&self, motion: &Motion, number: usize, channel: usize) -> Vec<[f64; 2]> {
+        let sensors = &motion.sensors;
+        let own = |state: &[f64; 4]| sensors.reading(channel, state);
+        self.integrals(&self.followed(motion, number, channel, own))
+    }
+
+    /// The readings of q̇ on straight lines, integrated over the cells: what q̇ does under a force that is held.
+    pub(in crate::diagnose) fn straight(&self, motion: &Motion, number: usize) -> Vec<[f64; 2]> {
+        self.integrals(&self.followed(motion, number, 1, |_| 0.0))
+    }
+
+    /// Readings less `than` of the smoothed state, at the nodes, on straight lines from reading to reading that is taken.
+    fn followed(&self, motion: &Motion, number: usize, channel: usize, than: impl Fn(&[f64; 4]) -> f64) -> Vec<f64> {
         let (piece, track, sensors) = (&motion.pieces[number], &motion.tracks[number], &motion.sensors);
-        let mut sums = vec![[0.0; 2]; self.cells()];
-        let Some(values) = readings(piece, track.read)[channel] else { return sums };
-        let last = piece.len() - 1;
-        for (k, (value, state)) in values.iter().zip(&track.states).enumerate() {
-            let weight = 0.5 * (piece.t[(k + 1).min(last)] - piece.t[k.saturating_sub(1)]);
-            let sure = track.share * weight / track.doubt[channel].get(k).copied().unwrap_or(1.0);
-            let place = (piece.t[k] - sensors.lag(channel) - self.start) / self.cell();
-            let Some(sum) = sums.get_mut(place as usize).filter(|_| place >= 0.0) else { continue };
-            let beyond = sure * (value / sensors.unit(channel) - sensors.reading(channel, state));
-            *sum = [sum[0] + beyond, sum[1] + beyond * (place.fract() - 0.5)];
-        }
-        sums
+        let Some(values) = readings(piece, track.read)[channel] else { return vec![0.0; self.t.len()] };
+        let doubt = |k: usize| track.doubt[channel].get(k).copied().unwrap_or(1.0);
+        let taken = (0..piece.len()).filter(|k| doubt(*k) < UNREAD);
+        let point = |k: usize| {
+            let state = &track.states[k];
+            let smoothed = sensors.reading(channel, state);
+            let beyond = (values[k] / sensors.unit(channel) - smoothed) / doubt(k);
+            [piece.t[k] - sensors.lag(channel), smoothed + beyond - than(state)]
+        };
+        self.interpolated(&taken.map(point).collect::<Vec<_>>())
+    }
+
+    /// Values at the nodes on straight lines between points [t, value]; the first and the last value beyond them.
+    fn interpolated(&self, points: &[[f64; 2]]) -> Vec<f64> {
+        let mut k = 0;
+        let at = |t: &f64| {
+            while k + 1 < points.len() && points[k + 1][0] <= *t {
+                k += 1;
+            }
+            let [from, value] = points.get(k).copied().unwrap_or_default();
+            let [to, next] = points.get(k + 1).copied().unwrap_or([f64::INFINITY, value]);
+            value + (next - value) * ((t - from) / (to - from)).max(0.0)
+        };
+        self.t.iter().map(at).collect()
     }
 }
 

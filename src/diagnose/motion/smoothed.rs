@@ -3,7 +3,7 @@
 use super::kinematics::Kinematics;
 use super::noise::sensor_noise;
 use super::spline::{Sensors, Spline};
-use super::track::{Track, follow, readings, track};
+use super::track::{Track, UNREAD, follow, readings, track};
 use crate::diagnose::Piece;
 use crate::diagnose::piece::thinned;
 use crate::identify::Recording;
@@ -15,6 +15,9 @@ const RATIO: f64 = 1.5;
 
 /// Factor by which the likeliest cutoff is raised: one that is too low biases coefficients, one that is too high lets a little more noise in.
 const MARGIN: f64 = 1.5;
+
+/// −2 ln likelihood by which a q̇ that comes late must be likelier than a punctual one, as most are: chance gives it once in 10⁴.
+const LATE: f64 = 15.0;
 
 /// Samples from which the cutoff is chosen, at most.
 const LOOKED_AT: usize = 4000;
@@ -28,9 +31,6 @@ const RESOLVED: f64 = 10.0;
 /// Smallest noise std ÷ range of a channel: rounding of the numbers in a file.
 const ROUNDED: f64 = 1e-7;
 
-/// Factor on the variance of a reading that is not to be taken.
-const UNREAD: f64 = 1e12;
-
 /// The motion of one recording.
 #[derive(Clone, Debug)]
 pub(in crate::diagnose) struct Motion {
@@ -42,13 +42,6 @@ pub(in crate::diagnose) struct Motion {
     pub(in crate::diagnose) pieces: Vec<Piece>,
     /// Their motions.
     pub(in crate::diagnose) tracks: Vec<Track>,
-}
-
-impl Sensors {
-    /// With the likeliest cutoff itself.
-    pub(in crate::diagnose) fn without_margin(self) -> Sensors {
-        Sensors { cutoff: self.cutoff / MARGIN, ..self }
-    }
 }
 
 impl Motion {
@@ -74,10 +67,26 @@ impl Motion {
             return Motion { kinematics: Some(kinematics), ..self };
         }
         let both = [true, true];
-        let sensors = Sensors { lag: kinematics.lag, scale: kinematics.scale, ..self.sensors };
-        let sensors = likeliest(&self.pieces, sensors, both);
+        let late = Sensors { lag: kinematics.lag, scale: kinematics.scale, ..self.sensors };
+        let late = likeliest(&self.pieces, late, both);
+        let punctual = Sensors { lag: 0.0, ..late };
+        let deviance = |sensors: Sensors| deviance(&self.pieces, sensors, both);
+        let sensors = if deviance(punctual) < deviance(late) + LATE { punctual } else { late };
         let tracks = follow(&self.pieces, sensors, both);
         Motion { kinematics: Some(kinematics), sensors, tracks, ..self }
+    }
+
+    /// The smoothed motion as its sensors would read it without noise.
+    pub(in crate::diagnose) fn as_followed(&self) -> Motion {
+        let mut motion = self.clone();
+        for (piece, track) in motion.pieces.iter_mut().zip(&self.tracks) {
+            for (channel, values) in [&mut piece.q, &mut piece.qd].into_iter().enumerate() {
+                let read = |state| self.sensors.unit(channel) * self.sensors.reading(channel, state);
+                let all = || track.states.iter().map(read).collect();
+                *values = values.as_ref().filter(|_| track.read[channel]).map(|_| all()).or_else(|| values.take());
+            }
+        }
+        motion
     }
 
     /// The motion as every second reading shows it, from the first or from the second on.
@@ -87,7 +96,7 @@ impl Motion {
                 let usual = |k: usize| whole.doubt[channel].get(k).copied().unwrap_or(1.0);
                 (0..piece.len()).map(|k| if k % 2 == first { usual(k) } else { UNREAD }).collect()
             });
-            Track { share: 2.0, ..track(piece, self.sensors, whole.read, doubt) }
+            track(piece, self.sensors, whole.read, doubt)
         });
         Motion { tracks: tracks.collect(), ..self.clone() }
     }
@@ -136,6 +145,12 @@ fn noise_levels(pieces: &[Piece]) -> [f64; 2] {
     })
 }
 
+/// −2 ln likelihood of all readings, a constant apart.
+fn deviance(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> f64 {
+    let of = |piece: &Piece| Spline::new(&piece.t, sensors, read, [&[], &[]]).deviance(readings(piece, read));
+    pieces.iter().map(of).sum()
+}
+
 /// The sensors with the cutoff under which the readings are likeliest, with a margin.
 fn likeliest(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> Sensors {
     let parts = thinned(pieces, LOOKED_AT);
@@ -144,13 +159,9 @@ fn likeliest(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> Sensors {
     let top = NYQUIST * PI / distance;
     // a motion slower than the parts that are looked at is a polynomial in each of them, whatever the cutoff
     let least = 2.0 * TAU / parts.iter().map(duration).fold(0.0, f64::max);
-    let deviance = |cutoff: &f64| -> f64 {
-        let sensors = Sensors { cutoff: *cutoff, ..sensors };
-        let of = |piece: &Piece| Spline::new(&piece.t, sensors, read, [&[], &[]]).deviance(readings(piece, read));
-        parts.iter().map(of).sum()
-    };
+    let at = |cutoff: f64| deviance(&parts, Sensors { cutoff, ..sensors }, read);
     let cutoffs = std::iter::successors(Some(top), |cutoff| Some(cutoff / RATIO)).take_while(|cutoff| *cutoff > least);
-    let best = cutoffs.map(|cutoff| (deviance(&cutoff), cutoff)).min_by(|a, b| a.0.total_cmp(&b.0));
+    let best = cutoffs.map(|cutoff| (at(cutoff), cutoff)).min_by(|a, b| a.0.total_cmp(&b.0));
     let cutoff = best.map_or(top, |(_, cutoff)| cutoff);
     Sensors { cutoff: (MARGIN * cutoff).min(top), ..sensors }
 }

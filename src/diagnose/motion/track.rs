@@ -6,6 +6,9 @@ use crate::diagnose::Piece;
 /// Distance from the smoothed motion, in robust std, beyond which a single reading is a wild one (one in 10⁹ were the noise Gaussian).
 const WILD: f64 = 6.0;
 
+/// Factor on the variance of a reading that is not to be taken.
+pub(super) const UNREAD: f64 = 1e12;
+
 /// The motion of one piece.
 #[derive(Clone, Debug)]
 pub(in crate::diagnose) struct Track {
@@ -13,8 +16,6 @@ pub(in crate::diagnose) struct Track {
     pub(in crate::diagnose) read: [bool; 2],
     /// Factor on the variance of every reading by channel; empty where none is wild.
     pub(in crate::diagnose) doubt: [Vec<f64>; 2],
-    /// For how many samples each reading that is taken stands.
-    pub(in crate::diagnose) share: f64,
     /// Position, velocity, acceleration and jerk at every sample.
     pub(in crate::diagnose) states: States,
 }
@@ -28,7 +29,7 @@ pub(in crate::diagnose) fn readings(piece: &Piece, read: [bool; 2]) -> [Option<&
 impl Track {
     /// The same readings smoothed another way.
     pub(in crate::diagnose) fn resmoothed(&self, piece: &Piece, sensors: Sensors) -> Track {
-        Track { share: self.share, ..track(piece, sensors, self.read, self.doubt.clone()) }
+        track(piece, sensors, self.read, self.doubt.clone())
     }
 }
 
@@ -45,7 +46,7 @@ pub(in crate::diagnose) fn follow(pieces: &[Piece], sensors: Sensors, read: [boo
 pub(in crate::diagnose) fn track(piece: &Piece, sensors: Sensors, read: [bool; 2], doubt: [Vec<f64>; 2]) -> Track {
     let spline = Spline::new(&piece.t, sensors, read, [&doubt[0], &doubt[1]]);
     let states = spline.smooth(readings(piece, read));
-    Track { read, doubt, share: 1.0, states }
+    Track { read, doubt, states }
 }
 
 /// By what factor the variance of each reading is larger than usual; empty where no reading is wild.

@@ -3,7 +3,7 @@
 use super::errors::{TIE, WindowError, are_adequate, errors};
 use super::law::Law;
 use crate::diagnose::judge::{
-    Blocks, COUNT, Equation, Estimate, Folds, HeldOut, Record, Target, Timing, delay_of, disturbed, estimate, floor,
+    Blocks, Bootstrap, COUNT, Equation, Estimate, Folds, HeldOut, Record, Target, Timing, delay_of, estimate, floor,
     instrumented, noise_share,
 };
 use crate::identify::Recording;
@@ -34,8 +34,8 @@ const LONGEST: f64 = 0.3;
 pub(in crate::diagnose) struct Case {
     pub(in crate::diagnose) record: Record,
     pub(in crate::diagnose) folds: Folds,
-    /// The record under other draws of the sensors' noise.
-    disturbed: Vec<Record>,
+    /// Its motion as the sensors would read it again.
+    bootstrap: Bootstrap<Record>,
     /// Which column stands alone, whatever the candidates.
     pub(in crate::diagnose) target: Target,
     /// What the excitation did between samples, where the user says so.
@@ -68,10 +68,10 @@ impl Case {
     ) -> Option<Case> {
         let record = Record::new(recordings, expressions)?;
         let is_output = !terms.contains(&Term::Inertia);
-        let disturbed = disturbed(&record, record.force_noise(is_output));
+        let bootstrap = Bootstrap::of(&record, record.force_noise(is_output))?;
         let folds = Folds::new(&record);
         let mut case =
-            Case { record, folds, disturbed, target: Target::Inertia, hold, inertia, halves: OnceCell::new() };
+            Case { record, folds, bootstrap, target: Target::Inertia, hold, inertia, halves: OnceCell::new() };
         if is_output {
             case.target = Target::Force;
         } else if case.record.forced {
@@ -83,35 +83,59 @@ impl Case {
     /// The inertia term where its propagated noise is worth the word: as a regressor it would bias its own coefficient by the square of
     /// its noise ÷ signal. Else the force, for there are forces that no term has.
     fn noisier(&self) -> Target {
-        let noise = noise_share(&self.record, &self.disturbed);
+        let noise = noise_share(&self.bootstrap);
         if noise > NEGLIGIBLE { Target::Inertia } else { Target::Force }
     }
 
     /// A law of these terms with the hold that suits it, a little delay of the excitation refitted beside it. None where the record is too
     /// short for it.
     pub(in crate::diagnose) fn stand(&self, terms: &[Term]) -> Option<Standing> {
-        self.at(terms, self.centred(terms, self.punctual(terms).timing))
+        self.at(terms, self.timed(terms))
+    }
+
+    /// The hold that suits a law best, each with the little delay that suits it: a wrong hold and half a sample's delay look alike, so that of
+    /// equally good ones that with the least delay is taken.
+    fn timed(&self, terms: &[Term]) -> Timing {
+        let delay = own_delay(terms);
+        let all: Vec<(f64, f64, Timing)> = self.holds().into_iter().map(|hold| self.held(terms, hold)).collect();
+        let least = all.iter().map(|(error, ..)| *error).fold(f64::INFINITY, f64::min);
+        let ties = all.into_iter().filter(|(error, ..)| *error <= least + TIE);
+        let best = ties.min_by(|a, b| a.1.total_cmp(&b.1));
+        best.map_or(Timing { hold: Hold::Linear, delay }, |(_, _, timing)| timing)
+    }
+
+    /// The error under a hold with the delay that suits it, how far that is from the law's own, s, and when the excitation then acted.
+    fn held(&self, terms: &[Term], hold: Hold) -> (f64, f64, Timing) {
+        let own = own_delay(terms);
+        let timing = self.centred(terms, Timing { hold, delay: own });
+        let equation = Equation::new(&self.record, terms, self.target, timing, true);
+        let error = self.error(&equation);
+        let more = self.estimated(equation).and_then(|found| found.delay).map_or(0.0, |[step, _]| step);
+        (error, (timing.delay + more - own).abs(), timing)
     }
 
     /// The law with the hold that suits it best, and no more delay than it has itself.
     pub(in crate::diagnose) fn punctual(&self, terms: &[Term]) -> Equation {
-        let delay = terms.iter().find_map(|term| delay_of(*term)).unwrap_or(0.0);
+        let delay = own_delay(terms);
         let at = |hold: Hold| Equation::new(&self.record, terms, self.target, Timing { hold, delay }, false);
-        let holds = match self.hold {
+        let all = self.holds().into_iter().map(|hold| at(hold)).map(|equation| (self.error(&equation), equation));
+        let best = all.min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map_or_else(|| at(Hold::Linear), |(_, equation)| equation)
+    }
+
+    /// What the excitation may have done between samples.
+    fn holds(&self) -> Vec<Hold> {
+        match self.hold {
             Some(hold) => vec![hold],
             None if self.record.forced => vec![Hold::Linear, Hold::Zero, Hold::BandLimited],
             None => vec![Hold::Linear],
-        };
-        let error = |equation: &Equation| -> f64 {
-            let errors = self.folds.judge(equation).errors;
-            errors.iter().filter(|error| error.is_finite()).map(|error| error.ln()).sum()
-        };
-        let mut all = holds.into_iter().map(at);
-        let first = at(self.hold.unwrap_or(Hold::Linear));
-        let Some(second) = all.nth(1) else { return first };
-        let others = std::iter::once(second).chain(all).map(|equation| (error(&equation), equation));
-        let best = (error(&first), first);
-        others.fold(best, |best, other| if other.0 < best.0 { other } else { best }).1
+        }
+    }
+
+    /// Σ ln held-out error over the window lengths.
+    fn error(&self, equation: &Equation) -> f64 {
+        let errors = self.folds.judge(equation).errors;
+        errors.iter().filter(|error| error.is_finite()).map(|error| error.ln()).sum()
     }
 
     /// The timing about which what is left of a delay is small: its column is only the first term of a series.
@@ -134,8 +158,8 @@ impl Case {
     /// The law with the delay of the excitation, up to three tenths of T₀, under which it explains most; none where its inertia would be
     /// negative: half a period of delay turns a law round.
     pub(in crate::diagnose) fn delayed(&self, terms: &[Term]) -> Option<f64> {
-        let punctual = self.punctual(terms).timing;
-        let at = |delay: f64| Equation::new(&self.record, terms, self.target, Timing { delay, ..punctual }, true);
+        let hold = self.timed(terms).hold;
+        let at = |delay: f64| Equation::new(&self.record, terms, self.target, Timing { hold, delay }, true);
         let longest = LONGEST * self.record.period;
         let sizes = std::iter::successors(Some(self.record.sample_time), |size| Some(GROWTH * size));
         let judged = |delay: f64| self.folds.judge(&at(delay));
@@ -173,8 +197,7 @@ impl Case {
         let blocks = Blocks::new(&self.record, &held);
         let estimate = estimate(&self.record, &equation, &blocks, self.inertia)?;
         let same = |other: &Record| Equation::new(other, &equation.terms, self.target, equation.timing, true);
-        let others: Vec<Equation> = self.disturbed.iter().map(same).collect();
-        let floor = floor(&equation, &estimate.solutions, &others, &held.errors);
+        let floor = floor(&equation, &estimate.solutions, &self.bootstrap.map(same), &held.errors, Some(&self.folds));
         Some(Standing { equation, held, estimate, floor, blocks })
     }
 
@@ -185,8 +208,7 @@ impl Case {
         let solutions = [solution.clone(), solution.clone(), solution];
         let held = HeldOut::as_given(&equation, &solutions);
         let same = |other: &Record| Equation::new(other, &equation.terms, self.target, equation.timing, false);
-        let others: Vec<Equation> = self.disturbed.iter().map(same).collect();
-        let floor = floor(&equation, &solutions, &others, &held.errors);
+        let floor = floor(&equation, &solutions, &self.bootstrap.map(same), &held.errors, None);
         let errors = errors(&self.record, &held, &held, &floor);
         Some((errors, are_adequate(&errors)))
     }
@@ -226,4 +248,9 @@ impl Case {
         let worse = own.iter().zip(&other).map(|(own, other)| (own.after / other.after).ln());
         (worse.filter(|worse| !worse.is_nan()).sum::<f64>() <= TIE * COUNT as f64).then_some(unbiased)
     }
+}
+
+/// The delay that is among a law's terms, s.
+fn own_delay(terms: &[Term]) -> f64 {
+    terms.iter().find_map(|term| delay_of(*term)).unwrap_or(0.0)
 }

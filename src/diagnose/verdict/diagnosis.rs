@@ -10,7 +10,7 @@ use super::errors::{ADEQUATE, TIE, WindowError, are_adequate, errors};
 use super::law::{Law, effect_name};
 use super::remainder;
 use crate::diagnose::candidates::{Contender, contest};
-use crate::diagnose::judge::{COUNT, PRINCIPAL, delay_of};
+use crate::diagnose::judge::{COUNT, HeldOut, PRINCIPAL, delay_of};
 use crate::law::{Catalogue, Effect, Inner, Term};
 
 /// Chance, shared among all candidates tried, below which a gain is none.
@@ -23,7 +23,7 @@ const WORTH: f64 = 0.95;
 const LARGE: f64 = 0.816;
 
 /// Ratio of errors in one window that disqualifies: 2 % worse.
-const WORSE: f64 = 1.02;
+pub(super) const WORSE: f64 = 1.02;
 
 /// Most candidates in a tie.
 const TIED: usize = 3;
@@ -242,23 +242,7 @@ impl Entry {
 
     /// What its gain leaves to doubt.
     fn doubted(&self, floor: &[f64; COUNT]) -> Option<Doubt> {
-        let ratios = self.contender.held.ratios(&self.contender.before);
-        if ratios.iter().any(|ratio| *ratio > WORSE) || self.contender.held.errors.iter().any(|error| *error >= 1.0) {
-            return Some(Doubt::Worse);
-        }
-        let mean = self.contender.score / ratios.len().max(1) as f64;
-        let large = self.is_large(floor);
-        let significant = self.p_value.is_some_and(|p| p < LEVEL) && mean.exp() <= WORTH;
-        (!(large || significant)).then_some(Doubt::Chance)
-    }
-
-    /// Whether it takes a third of the error's energy in every window that leaves more than the sensors do, of two at least.
-    fn is_large(&self, floor: &[f64; COUNT]) -> bool {
-        let errors = self.contender.before.errors.iter().zip(&self.contender.held.errors).zip(floor);
-        let beyond = errors.filter(|((before, _), floor)| **before > ADEQUATE * **floor);
-        let ratios: Vec<f64> = beyond.map(|((before, after), _)| after / before).collect();
-        let told = self.contender.held.ratios(&self.contender.before).len();
-        ratios.len() >= told.min(2) && !ratios.is_empty() && ratios.iter().all(|ratio| *ratio <= LARGE)
+        doubt_of_gain(&self.contender.before, &self.contender.held, self.p_value, floor)
     }
 
     fn describe(&self, case: &Case, standing: &Standing) -> Candidate {
@@ -283,6 +267,31 @@ impl Entry {
     }
 }
 
+/// What a gain from one law to another leaves to doubt, with its probability by chance and the floor of the first.
+pub(super) fn doubt_of_gain(
+    before: &HeldOut,
+    after: &HeldOut,
+    p_value: Option<f64>,
+    floor: &[f64; COUNT],
+) -> Option<Doubt> {
+    let ratios = after.ratios(before);
+    if ratios.iter().any(|ratio| *ratio > WORSE) || after.errors.iter().any(|error| *error >= 1.0) {
+        return Some(Doubt::Worse);
+    }
+    let mean = after.score(before) / ratios.len().max(1) as f64;
+    let significant = p_value.is_some_and(|p| p < LEVEL) && mean.exp() <= WORTH;
+    (!(is_large(before, after, floor) || significant)).then_some(Doubt::Chance)
+}
+
+/// Whether a gain takes a third of the error's energy in every window that leaves more than the sensors do, of two at least.
+fn is_large(before: &HeldOut, after: &HeldOut, floor: &[f64; COUNT]) -> bool {
+    let errors = before.errors.iter().zip(&after.errors).zip(floor);
+    let beyond = errors.filter(|((before, _), floor)| **before > ADEQUATE * **floor);
+    let ratios: Vec<f64> = beyond.map(|((before, after), _)| after / before).collect();
+    let told = after.ratios(before).len();
+    ratios.len() >= told.min(2) && !ratios.is_empty() && ratios.iter().all(|ratio| *ratio <= LARGE)
+}
+
 /// The smallest effect that the best one contains and is not significantly better than.
 fn smallest(case: &Case, standing: &Standing, entries: &[Entry], best: usize) -> usize {
     let name = |index: usize| effect_name(entries[index].contender.term, &case.record.expressions);
@@ -303,10 +312,11 @@ fn smallest(case: &Case, standing: &Standing, entries: &[Entry], best: usize) ->
     (0..entries.len()).find(|index| may_stand(*index)).unwrap_or(best)
 }
 
-/// Those that are as good as the winner, it first.
+/// Those that are at least as good as the winner, it first; one that the law's own terms nearly are cannot win alone, but may be what is there.
 fn ties(case: &Case, entries: &[Entry], winner: usize) -> Vec<Vec<String>> {
     let best = entries[winner].contender.score;
-    let near = |entry: &&Entry| entry.doubt.is_none() && (entry.contender.score - best).abs() <= TIE * COUNT as f64;
+    let stands = |entry: &&Entry| matches!(entry.doubt, None | Some(Doubt::Trap));
+    let near = |entry: &&Entry| stands(entry) && entry.contender.score <= best + TIE * COUNT as f64;
     let others = entries.iter().enumerate().filter(|(index, entry)| *index != winner && near(entry));
     let first = std::iter::once(effect_name(entries[winner].contender.term, &case.record.expressions));
     let group: Vec<String> =

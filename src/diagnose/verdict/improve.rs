@@ -3,7 +3,8 @@
 use super::case::{Case, Standing};
 use super::diagnosis::{Diagnosis, Finding, diagnose};
 use super::errors::{TIE, WindowError};
-use super::law::Law;
+use super::exchange::{Exchange, Seen, added, joined, paired, seen};
+use super::law::{Law, effect_name};
 use crate::diagnose::candidates::{contender, same_effect};
 use crate::diagnose::judge::{COUNT, PRINCIPAL, delay_of};
 use crate::law::Term;
@@ -16,8 +17,6 @@ const STEPS: usize = 6;
 pub struct Step {
     /// The effect that was added; none for the model as it came.
     pub effect: Option<String>,
-    /// Effects that it made superfluous, taken out again.
-    pub removed: Vec<String>,
     /// Effects that the recordings cannot tell apart, the one that was added first.
     pub ties: Vec<Vec<String>>,
     /// Held-out errors of the law, by window length.
@@ -44,33 +43,109 @@ pub struct Improvement {
 
 /// Diagnoses and adds until the law is adequate, or what is left is not in the catalogue. None where the record is too short.
 pub(in crate::diagnose) fn improve(case: &Case, terms: &[Term]) -> Option<Improvement> {
-    let first = case.stand(terms)?;
-    let mut steps = vec![Step {
-        effect: None,
-        removed: Vec::new(),
-        ties: Vec::new(),
-        errors: case.errors_of(&first),
-        law: case.law(&first),
-    }];
-    let mut law = terms.to_vec();
-    let mut standing = first;
-    let mut last = diagnose(case, &law)?;
-    while last.finding == Finding::Missing && steps.len() <= STEPS {
-        let Some(added) = last.candidates.first().map(|candidate| candidate.term) else { break };
-        let joined: Vec<Term> = law.iter().copied().chain([added]).collect();
-        let Some(next) = case.stand(&joined) else { break };
-        let Some((smaller, next, removed)) = without_superfluous(case, (joined, next), terms, added) else { break };
-        if !(next.held.score(&standing.held) < 0.0 || delay_of(added).is_some()) {
+    let mut search =
+        Search { case, original: terms, terms: terms.to_vec(), standing: case.stand(terms)?, ties: Vec::new() };
+    let mut last = diagnose(case, terms)?;
+    for _ in 0..STEPS {
+        let went_on = match last.finding {
+            Finding::Missing => search.add(&last),
+            Finding::Unexplained => search.pair(),
+            Finding::Adequate => false,
+        };
+        if !went_on {
             break;
         }
-        let ties = std::mem::take(&mut last.indistinguishable);
-        let step =
-            Step { effect: last.effect.clone(), removed, ties, errors: case.errors_of(&next), law: case.law(&next) };
-        steps.push(step);
-        (law, standing) = (smaller, next);
-        last = diagnose(case, &law)?;
+        search.settle();
+        last = diagnose(case, &search.terms)?;
     }
-    Some(Improvement { steps, last })
+    Some(Improvement { steps: search.staircase()?, last })
+}
+
+/// A law on its way to what the record shows.
+struct Search<'a> {
+    case: &'a Case,
+    original: &'a [Term],
+    terms: Vec<Term>,
+    standing: Standing,
+    /// What added effects cannot be told from.
+    ties: Vec<(Term, Vec<Vec<String>>)>,
+}
+
+impl Search<'_> {
+    /// Adds what a diagnosis names; false where it does not help.
+    fn add(&mut self, found: &Diagnosis) -> bool {
+        let Some(named) = found.candidates.first().map(|candidate| candidate.term) else { return false };
+        let terms = joined(&self.terms, named);
+        let Some(standing) = self.case.stand(&terms) else { return false };
+        let helps = standing.held.score(&self.standing.held) < 0.0 || delay_of(named).is_some();
+        helps && self.take(Exchange { terms, standing, ties: found.indistinguishable.clone() })
+    }
+
+    /// Exchanges added effects until all stand.
+    fn settle(&mut self) {
+        for round in 0..STEPS {
+            let pairs = round == 0 && added(self.original, &self.terms).len() == 2;
+            if !(self.exchange() || pairs && self.pair()) {
+                break;
+            }
+        }
+    }
+
+    /// Exchanges one added effect for a better one; false where all stand.
+    fn exchange(&mut self) -> bool {
+        if added(self.original, &self.terms).len() < 2 {
+            return false;
+        }
+        let Seen { exchange, ties } = seen(self.case, self.original, &self.terms, &self.standing);
+        self.ties.extend(ties);
+        exchange.is_some_and(|exchange| self.take(exchange))
+    }
+
+    /// Takes the best pair of effects; false where none is better.
+    fn pair(&mut self) -> bool {
+        paired(self.case, self.original, &self.terms, &self.standing).is_some_and(|pair| self.take(pair))
+    }
+
+    /// Takes a law, less what its newest effect makes superfluous.
+    fn take(&mut self, Exchange { terms, standing, ties }: Exchange) -> bool {
+        let Some(newest) = terms.last().copied() else { return false };
+        let Some((terms, standing)) = without_superfluous(self.case, (terms, standing), self.original, newest) else {
+            return false;
+        };
+        (self.terms, self.standing) = (terms, standing);
+        self.ties.push((newest, ties));
+        true
+    }
+
+    /// The effects that the law has in the end, each time the one that helps most.
+    fn staircase(&self) -> Option<Vec<Step>> {
+        let mut left: Vec<Term> =
+            self.terms.iter().copied().filter(|term| !self.original.iter().any(|own| own == term)).collect();
+        let mut terms = self.original.to_vec();
+        let mut standing = self.case.stand(&terms)?;
+        let mut steps = vec![self.step(None, &standing)];
+        while !left.is_empty() {
+            let tried = left.iter().map(|term| Some((*term, self.case.stand(&joined(&terms, *term))?)));
+            let score = |(_, next): &(Term, Standing)| next.held.score(&standing.held);
+            let (best, next) = tried.flatten().min_by(|a, b| score(a).total_cmp(&score(b)))?;
+            left.retain(|term| *term != best);
+            terms.push(best);
+            steps.push(self.step(Some(best), &next));
+            standing = next;
+        }
+        Some(steps)
+    }
+
+    fn step(&self, effect: Option<Term>, standing: &Standing) -> Step {
+        let same = |term: Term| effect.is_some_and(|effect| same_effect(effect, term));
+        let ties = self.ties.iter().rev().find(|(term, _)| same(*term)).map(|(_, ties)| ties.clone());
+        Step {
+            effect: effect.map(|effect| effect_name(effect, &self.case.record.expressions)),
+            ties: ties.unwrap_or_default(),
+            errors: self.case.errors_of(standing),
+            law: self.case.law(standing),
+        }
+    }
 }
 
 /// The law without effects that were added before and are not worth the word beside the newest one.
@@ -79,21 +154,16 @@ fn without_superfluous(
     (mut terms, mut standing): (Vec<Term>, Standing),
     original: &[Term],
     newest: Term,
-) -> Option<(Vec<Term>, Standing, Vec<String>)> {
-    let mut removed = Vec::new();
+) -> Option<(Vec<Term>, Standing)> {
     loop {
-        let added = |term: &Term| {
-            let own = original.iter().any(|own| same_effect(*own, *term));
-            *term != newest && !own && delay_of(*term).is_none()
-        };
-        let weakest = (0..terms.len()).filter(|index| added(&terms[*index])).find_map(|index| {
-            let equation = standing.equation.without(index);
+        let old = added(original, &terms).into_iter().filter(|place| terms[*place] != newest);
+        let weakest = old.into_iter().find_map(|place| {
+            let equation = standing.equation.without(place);
             let held = case.folds.judge(&equation);
-            (held.score(&standing.held) < TIE * COUNT as f64).then_some((index, equation))
+            (held.score(&standing.held) < TIE * COUNT as f64).then_some((place, equation))
         });
-        let Some((index, equation)) = weakest else { return Some((terms, standing, removed)) };
-        let law = case.law(&standing);
-        removed.push(law.effect_name(terms.remove(index)));
+        let Some((place, equation)) = weakest else { return Some((terms, standing)) };
+        terms.remove(place);
         standing = case.of(equation)?;
     }
 }

@@ -3,6 +3,7 @@
 mod case;
 mod diagnosis;
 mod errors;
+mod exchange;
 mod improve;
 mod law;
 mod model;

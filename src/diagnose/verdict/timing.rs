@@ -4,6 +4,7 @@ use super::case::Case;
 use super::errors::TIE;
 use super::law::Law;
 use crate::diagnose::judge::{COUNT, delay_of};
+use crate::law::Term;
 
 /// Std that a delay must be away from 0 to be said.
 const SURE: f64 = 3.0;
@@ -80,8 +81,12 @@ impl Clock {
     }
 }
 
-/// Whether the law's held-out errors are clearly lower with the delay of F refitted than without any but its own.
+/// Whether the law's held-out errors are clearly lower with the delay of F refitted than without any but its own. Where F is the output,
+/// a delay τ of c q̇ + k q is c τ q̈ + k τ q̇, a mass and a damping as well: no sensor is blamed for it.
 fn is_clear(case: &Case, law: &Law) -> bool {
+    if !law.terms.contains(&Term::Inertia) {
+        return false;
+    }
     let punctual = case.folds.judge(&case.punctual(&law.terms));
     let standing = case.at(&law.terms, law.timing);
     standing.is_some_and(|standing| standing.held.score(&punctual) < -TIE * COUNT as f64)

@@ -97,8 +97,12 @@ fn coefficients(stage: &Value, reference: &Law) -> Vec<Coefficient> {
 }
 
 impl Coefficient {
-    /// Within [`WITHIN`] std of the reference, and told where the reference's window lengths agree.
+    /// Within [`WITHIN`] std of the reference, and told where the reference's window lengths agree; withheld where they do not.
     fn is_right(&self) -> bool {
+        let withheld = self.value.is_none() && self.agree == Some(false);
+        if withheld {
+            return true;
+        }
         let near = self.distance.is_some_and(|distance| distance <= WITHIN);
         let told = self.relative_std.is_some_and(|share| share < TOLD);
         near && (told || self.agree != Some(true))
@@ -186,6 +190,14 @@ mod tests {
         let law = Law { same_form: true, coefficients: BTreeMap::from([("qd".to_string(), vec![1.0])]) };
         let absent = coefficients(&Value::Null, &law);
         assert!(!absent[0].is_right() && absent[0].distance.is_none());
+    }
+
+    #[test]
+    fn a_coefficient_may_be_withheld_that_the_reference_does_not_agree_on_itself() {
+        let law =
+            |reference: &[f64]| Law { same_form: true, coefficients: [("qd".to_string(), reference.to_vec())].into() };
+        assert!(coefficients(&Value::Null, &law(&[-0.011, -0.016]))[0].is_right());
+        assert!(!coefficients(&Value::Null, &law(&[195.0, 193.0]))[0].is_right());
     }
 
     #[test]

@@ -1,0 +1,36 @@
+//! What a hidden mass did before the record began: its free response, which the recorded motion does not give.
+//!
+//! The memory of an effect runs through the whole record from rest. A hidden mass that was moving when the record began adds
+//! e^(−ζωt) (a cos ω_d t + b sin ω_d t) in every piece, which is linear in a and b: they are fitted beside the law once, and its column is then
+//! that of the mass as it moved.
+
+use super::record::{Column, Record};
+use super::regression::{self, Normal};
+use super::windows::PRINCIPAL;
+use crate::law::{Effect, Term};
+
+/// The column of a hidden resonator, at that place among a law's, with what it did before the record began; none of another term.
+pub(super) fn begun(record: &Record, term: Term, left: &[Column], place: usize, right: &Column) -> Option<Column> {
+    let responses = responses(record, term)?;
+    let columns: Vec<&[f64]> = left.iter().chain(&responses).map(|column| column[PRINCIPAL].as_slice()).collect();
+    let right = &right[PRINCIPAL];
+    let solution = Normal::of(&columns, right, &vec![1.0; right.len()]).solve()?;
+    let coefficient = Some(solution[place]).filter(|value| *value != 0.0)?;
+    let mut column = left[place].clone();
+    for (response, value) in responses.iter().zip(&solution[left.len()..]) {
+        regression::add(&mut column, response, value / coefficient);
+    }
+    Some(column)
+}
+
+/// The two free responses of a hidden resonator in every piece; none of another term, or of one that does not swing.
+fn responses(record: &Record, term: Term) -> Option<Vec<Column>> {
+    let Term::Effect(Effect::HiddenResonator { frequency, damping_ratio }) = term else { return None };
+    let (omega, damping) = (frequency.value(), damping_ratio.value());
+    let swings = omega * (1.0 - damping * damping).sqrt();
+    let fades = omega * damping;
+    let of =
+        |piece: usize, shape: fn(f64) -> f64| record.in_piece(piece, move |t| (-fades * t).exp() * shape(swings * t));
+    let both = |piece: usize| [of(piece, f64::cos), of(piece, f64::sin)];
+    (damping < 1.0).then(|| (0..record.pieces()).flat_map(both).collect())
+}

@@ -1,0 +1,122 @@
+//! Added effects seen anew beside each other: one effect may imitate two, and is then named before them.
+//!
+//! Adding the best effect, then the best beside it, never revises the first. Here each added effect is taken out in turn and what the judge names in
+//! its place put there, as in stepwise selection with exchange (Miller, *Subset Selection in Regression*, 2002, sect. 3.4); and the best
+//! pairs are sought as such, for neither of two may be the best alone.
+
+use super::case::{Case, Standing};
+use super::diagnosis::{Diagnosis, Doubt, Finding, diagnose, doubt_of_gain};
+use super::errors::TIE;
+use super::law::effect_name;
+use crate::diagnose::candidates::same_effect;
+use crate::diagnose::judge::{COUNT, delay_of};
+use crate::law::{Catalogue, Term};
+
+/// Single effects beside which a second is sought.
+const ALTERNATIVES: usize = 5;
+
+/// A law with other effects in the place of some.
+pub(super) struct Exchange {
+    pub(super) terms: Vec<Term>,
+    pub(super) standing: Standing,
+    /// Effects that cannot be told from the last term.
+    pub(super) ties: Vec<Vec<String>>,
+}
+
+/// Added effects, each seen anew beside the others.
+pub(super) struct Seen {
+    /// The law in which one of them is exchanged for what the judge names in its place, or has the inner parameters that suit it beside the
+    /// others; none where all stand.
+    pub(super) exchange: Option<Exchange>,
+    /// What each cannot be told from, the others being there.
+    pub(super) ties: Vec<(Term, Vec<Vec<String>>)>,
+}
+
+/// Every added effect of a law beside the others.
+pub(super) fn seen(case: &Case, original: &[Term], terms: &[Term], standing: &Standing) -> Seen {
+    let (mut exchanges, mut ties) = (Vec::new(), Vec::new());
+    for place in added(original, terms) {
+        let (rest, old) = ([&terms[..place], &terms[place + 1..]].concat(), terms[place]);
+        let Some(exchange) = with_named(case, rest) else { continue };
+        let new = exchange.terms[terms.len() - 1];
+        if same_effect(new, old) {
+            ties.push((old, exchange.ties.clone()));
+        }
+        if exchange.standing.held.score(&standing.held) < worth(case, old, new) {
+            exchanges.push(exchange);
+        }
+    }
+    Seen { exchange: exchanges.into_iter().min_by(|a, b| compare(a, b, standing)), ties }
+}
+
+/// Score below which one effect takes another's place: a smaller one need not be better than one that contains it, new inner parameters alone
+/// are worth the word or none.
+fn worth(case: &Case, old: Term, new: Term) -> f64 {
+    let [contained, containing] = [new, old].map(|term| effect_name(term, &case.record.expressions));
+    match (same_effect(old, new), Catalogue::is_contained(&contained, &containing)) {
+        (true, _) => -TIE,
+        (_, true) => TIE * COUNT as f64,
+        _ => 0.0,
+    }
+}
+
+/// The best law with two effects in the place of one or two: each of the best single effects is tried with the best beside it. None where
+/// the law has more, or no two are better: beyond chance than one; than two by their errors or, these being equal, with fewer inner
+/// parameters.
+pub(super) fn paired(case: &Case, original: &[Term], terms: &[Term], standing: &Standing) -> Option<Exchange> {
+    let own = added(original, terms);
+    if own.is_empty() || own.len() > 2 {
+        return None;
+    }
+    let rest: Vec<Term> = (0..terms.len()).filter(|place| !own.contains(place)).map(|place| terms[place]).collect();
+    let others = alternatives(&diagnose(case, &rest)?);
+    let pairs = others.into_iter().filter_map(|other| with_named(case, joined(&rest, other)));
+    let best = pairs.min_by(|a, b| compare(a, b, standing))?;
+    let score = best.standing.held.score(&standing.held);
+    let better = if own.len() == 1 {
+        let gains = standing.blocks.gains(&case.record, &standing.held, &best.standing.held);
+        let chance = standing.blocks.p_values(&[gains]).map(|values| values[0]);
+        doubt_of_gain(&standing.held, &best.standing.held, chance, &standing.floor).is_none()
+    } else {
+        let simpler = parameters(&best.terms) < parameters(terms);
+        score < if simpler { TIE * COUNT as f64 } else { -TIE }
+    };
+    better.then_some(best)
+}
+
+/// Inner parameters of a law.
+fn parameters(terms: &[Term]) -> usize {
+    terms.iter().filter_map(|term| term.effect()).map(|effect| effect.inner().len()).sum()
+}
+
+/// A law with what its diagnosis names as its last term.
+fn with_named(case: &Case, terms: Vec<Term>) -> Option<Exchange> {
+    let found = diagnose(case, &terms)?;
+    let named = found.candidates.first().filter(|_| found.finding == Finding::Missing)?.term;
+    let terms = joined(&terms, named);
+    let standing = case.stand(&terms)?;
+    Some(Exchange { terms, standing, ties: found.indistinguishable })
+}
+
+/// The best candidates, as far as only chance speaks against them.
+fn alternatives(found: &Diagnosis) -> Vec<Term> {
+    let may_be = found.candidates.iter().filter(|candidate| matches!(candidate.doubt, None | Some(Doubt::Chance)));
+    let helps = may_be.filter(|candidate| candidate.score < 0.0);
+    helps.take(ALTERNATIVES).map(|candidate| candidate.term).collect()
+}
+
+fn compare(a: &Exchange, b: &Exchange, standing: &Standing) -> std::cmp::Ordering {
+    let score = |exchange: &Exchange| exchange.standing.held.score(&standing.held);
+    score(a).total_cmp(&score(b))
+}
+
+/// Places of the effects that were added; a delay is no effect among others.
+pub(super) fn added(original: &[Term], terms: &[Term]) -> Vec<usize> {
+    let own = |term: Term| original.iter().any(|own| same_effect(*own, term));
+    (0..terms.len()).filter(|place| !own(terms[*place]) && delay_of(terms[*place]).is_none()).collect()
+}
+
+/// Terms with one more.
+pub(super) fn joined(terms: &[Term], new: Term) -> Vec<Term> {
+    terms.iter().copied().chain([new]).collect()
+}
