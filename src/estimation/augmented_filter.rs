@@ -1,8 +1,9 @@
 //! The Kalman filter of one coordinate's state together with the coefficients of its law, which may wander.
 //!
-//! With κ_j = θ_j ÷ m and b = 1 ÷ m the acceleration is linear in what is sought, q̈ = b F − Σ κ_j f_j: the extended filter (Ljung, IEEE
-//! TAC 24, 1979) of (q, q̇, θ) follows a product of two unknowns and is biased, that of (q, q̇, κ, b) is linear in the unknowns but for
-//! the state that they share. The covariance P is (2 + n) × (2 + n); an interval takes it to Φ P Φᵀ + Q with Φ = [A B; 0 I].
+//! With κ_j = θ_j ÷ m and b = 1 ÷ m the acceleration is linear in what is sought, q̈ = b F − Σ κ_j f_j: the extended
+//! filter (Ljung, IEEE TAC 24, 1979) of (q, q̇, θ) follows a product of two unknowns and is biased, that of (q, q̇, κ,
+//! b) is linear in the unknowns but for the state that they share. The covariance P is (2 + n) × (2 + n); an interval
+//! takes it to Φ P Φᵀ + Q with Φ = [A B; 0 I].
 
 use super::filter::Channel;
 use super::pass::{IntervalMap, Observation};
@@ -104,7 +105,8 @@ impl AugmentedFilter {
         self.scaled.len() + 2
     }
 
-    /// Each coefficient θ, and the inertia, wanders by a std that is given relative to its `reach`; the inertia takes all of κ and b with it.
+    /// Each coefficient θ, and the inertia, wanders by a std that is given relative to its `reach`; the inertia takes
+    /// all of κ and b with it.
     pub fn wander(&mut self, unknowns: &Unknowns, reach: &[f64], [width, of_inertia]: [f64; 2]) {
         let (size, mass) = (self.size(), self.mass(unknowns));
         let AugmentedFilter { covariance, scaled, .. } = self;
@@ -258,7 +260,8 @@ mod tests {
         Unknowns { terms: &TERMS, free: &[0, 1, 2], free_terms: &TERMS, inertia: 0, free_inertia: Some(0) }
     }
 
-    /// A filter that begins with coefficients a tenth off and is told that they may be, after `seconds` of a driven motion seen without noise.
+    /// A filter that begins with coefficients a tenth off and is told that they may be, after `seconds` of a driven
+    /// motion seen without noise.
     fn followed(seconds: f64, wander: f64) -> AugmentedFilter {
         let mut joint = AugmentedFilter::new(3, 3);
         let all = TRUTH.map(|value| 1.1 * value);

@@ -11,7 +11,8 @@ const TOLERANCE: f64 = 1e-12;
 pub struct Information {
     /// Number of unknowns n.
     pub n: usize,
-    /// n × n, row-major, upper triangle, and room for the last row's lane; what stands below the diagonal means nothing.
+    /// n × n, row-major, upper triangle, and room for the last row's lane; what stands below the diagonal means
+    /// nothing.
     pub matrix: Vec<f64>,
     /// n.
     pub score: Vec<f64>,
@@ -67,7 +68,8 @@ impl Information {
         }
     }
 
-    /// Takes two innovations at once: their sensitivities, each n long and filled up with zeros, residuals, and 1 ÷ variances.
+    /// Takes two innovations at once: their sensitivities, each n long and filled up with zeros, residuals, and 1 ÷
+    /// variances.
     #[inline]
     pub fn add_pair(&mut self, sensitivities: [&[Lane]; 2], residuals: [f64; 2], weights: [f64; 2]) {
         let [first, second] = sensitivities;

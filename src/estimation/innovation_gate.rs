@@ -4,7 +4,7 @@ use super::filter::Channel;
 use serde::{Deserialize, Serialize};
 
 /// A reading this many stds off is far off: by chance one in five hundred million is.
-const FAR: f64 = 6.0;
+pub const OUTLYING: f64 = 6.0;
 
 /// Readings far off that are no outliers, of a sensor that is not known for them and of one that is …
 const LASTS: [u32; 2] = [3, 4];
@@ -18,8 +18,8 @@ const GROWS: f64 = 1.5;
 /// Two in a row this many stds off are beyond what a sensor scatters.
 const BEYOND: f64 = 30.0;
 
-/// A reading that does not count speaks of another law as one this many stds off does, from a sensor known for outliers; from another as one
-/// that is just not far off.
+/// A reading that does not count speaks of another law as one this many stds off does, from a sensor known for
+/// outliers; from another as one that is just not far off.
 const DOUBTFUL: f64 = 3.0;
 
 /// What a channel's last readings were like.
@@ -37,7 +37,7 @@ impl InnovationGate {
     #[inline]
     pub fn admits(&mut self, channel: Channel, residual: f64, variance: f64) -> bool {
         let index = channel as usize;
-        let far = residual * residual > FAR * FAR * variance;
+        let far = residual * residual > OUTLYING * OUTLYING * variance;
         let row = self.far[index] & 1 == 1;
         self.outlier[index] |= self.far[index] == 1 << (AMONG - 1);
         self.far[index] = (self.far[index] << 1 | u32::from(far)) & ((1 << AMONG) - 1);
@@ -54,7 +54,7 @@ impl InnovationGate {
     /// 1 ÷ variance with which a reading that does not count speaks of another law.
     #[inline]
     pub fn precision(&self, channel: Channel, residual: f64) -> f64 {
-        let stds = if self.outlier[channel as usize] { DOUBTFUL } else { FAR };
+        let stds = if self.outlier[channel as usize] { DOUBTFUL } else { OUTLYING };
         (stds / residual).powi(2)
     }
 }
@@ -93,10 +93,10 @@ mod tests {
         assert_eq!(admitted(&readings)[9..], [false, false, true, false]);
         assert_eq!(admitted(&[&readings[..], &[9.0]].concat())[13..], [true]);
         let mut guard = InnovationGate::default();
-        assert_eq!(guard.precision(Channel::Qd, 60.0), (FAR / 60.0).powi(2));
+        assert_eq!(guard.precision(Channel::Qd, 60.0), (OUTLYING / 60.0).powi(2));
         readings
             .iter()
-            .for_each(|residual| assert!(guard.admits(Channel::Qd, *residual, 1.0) == (residual.abs() < FAR)));
+            .for_each(|residual| assert!(guard.admits(Channel::Qd, *residual, 1.0) == (residual.abs() < OUTLYING)));
         assert_eq!(guard.precision(Channel::Qd, 60.0), (DOUBTFUL / 60.0).powi(2));
     }
 

@@ -1,30 +1,40 @@
 //! How well a law explains a record, and what the record says about its coefficients.
 //!
-//! Everything stands on the innovations ε of a Kalman filter for (q, q̇) under a law with coefficients θ (Ljung, *System
-//! Identification*, 2nd ed., ch. 7 and 10; Särkkä, *Bayesian Filtering and Smoothing*, ch. 16): with s the variance that
-//! the filter states for ε, a record has the log-likelihood −½ Σ (ε²/s + ln s). The filter allows for sensor noise in both
-//! channels and for a white force that the law does not have. As that force goes to zero the fit becomes the maximum
-//! likelihood of the trajectory, with its initial state marginalised; as it grows, that of the equation error.
+//! Everything stands on the innovations ε of a Kalman filter for (q, q̇) under a law with coefficients θ (Ljung,
+//! *System Identification*, 2nd ed., ch. 7 and 10; Särkkä, *Bayesian Filtering and Smoothing*, ch. 16): with s the
+//! variance that the filter states for ε, a record has the log-likelihood −½ Σ (ε²/s + ln s). The filter allows for
+//! sensor noise in both channels and for a white force that the law does not have. As that force goes to zero the fit
+//! becomes the maximum likelihood of the trajectory, with its initial state marginalised; as it grows, that of the
+//! equation error.
 //!
-//! - [`Filter`]: the state and its covariance, from sample to sample;
+//! - [`DifferenceNoise`]: the sensors' noise before any law;
+//! - [`Filter`]: the state and its covariance, from sample to sample, begun by [`initial_state`];
 //! - [`InnovationGate`]: readings that are no part of the motion;
 //! - [`Pass`]: one run over a record: likelihood, score and Fisher information of the coefficients;
 //! - [`AugmentedFilter`]: the state together with coefficients that may wander;
-//! - [`ScoreTest`]: effects that the law does not have, tested in the stream;
-//! - [`Information`]: sums of what is known of the coefficients, and [`Solution`], what follows from them; [`System`] solves them.
+//! - [`ScoreTest`]: effects that the law does not have, tested in the stream; [`TermSelection`]: which of those that it
+//!   may have it has;
+//! - [`Information`]: sums of what is known of the coefficients, and [`Solution`], what follows from them; [`System`]
+//!   solves them.
 
 mod augmented_filter;
+mod difference_noise;
 mod filter;
 mod information;
+mod initial_state;
 mod innovation_gate;
 mod pass;
 mod score_test;
 mod symmetric;
+mod term_selection;
 
 pub use augmented_filter::{AugmentedFilter, Start, Unknowns};
+pub use difference_noise::DifferenceNoise;
 pub use filter::{Channel, Filter, Innovation, Noise};
 pub use information::{Information, Solution};
-pub use innovation_gate::InnovationGate;
+pub use initial_state::initial_state;
+pub use innovation_gate::{InnovationGate, OUTLYING};
 pub use pass::{IntervalMap, Observation, Pass, RIVALS, Track, gains};
 pub use score_test::{Missing, ScoreTest};
 pub use symmetric::{Lane, LogSum, System, WIDTH};
+pub use term_selection::TermSelection;

@@ -138,7 +138,8 @@ pub struct Pass {
     pub map: IntervalMap,
     /// What readings that do not count say of another law, by channel.
     pub set_aside: [Option<Innovation>; 2],
-    /// Parts into which an interval is cut: what the fastest motion asks for, of the run before at first, then of this one too.
+    /// Parts into which an interval is cut: what the fastest motion asks for, of the run before at first, then of this
+    /// one too.
     pub parts: usize,
     rival_filters: [Filter; 2],
     fastest: f64,
@@ -201,8 +202,8 @@ impl Pass {
         self.seeking = false;
     }
 
-    /// Takes one sample; `free` are the terms whose coefficients are sought, the same ones throughout a run, as are those of the
-    /// motion. Returns the innovations by channel.
+    /// Takes one sample; `free` are the terms whose coefficients are sought, the same ones throughout a run, as are
+    /// those of the motion. Returns the innovations by channel.
     pub fn step(
         &mut self,
         motion: &Motion,
@@ -231,8 +232,9 @@ impl Pass {
         &self.rows[channel as usize].as_flattened()[..self.sensitivity.len()]
     }
 
-    /// Carries the sensitivity of the state to an unknown beside the free terms, an acceleration over the last interval per unit of it,
-    /// over that interval and through its measurements. Returns that of the expected measurements by channel, and the state's.
+    /// Carries the sensitivity of the state to an unknown beside the free terms, an acceleration over the last interval
+    /// per unit of it, over that interval and through its measurements. Returns that of the expected measurements by
+    /// channel, and the state's.
     #[inline]
     pub fn carry(&self, [q, qd]: [f64; 2], acceleration: f64, gains: [[f64; 2]; 2]) -> ([f64; 2], [f64; 2]) {
         let [[a, b], [c, d]] = self.map.transition;
@@ -312,7 +314,8 @@ pub fn gains(innovations: &[Option<Innovation>; 2]) -> [[f64; 2]; 2] {
     innovations.map(|innovation| innovation.map_or([0.0; 2], |innovation| innovation.gain))
 }
 
-/// A sensitivity of the state through the measurements of both channels: what it is of the expected ones, and what is left of it.
+/// A sensitivity of the state through the measurements of both channels: what it is of the expected ones, and what is
+/// left of it.
 #[inline]
 fn measured([q, qd]: [f64; 2], [first, second]: [[f64; 2]; 2]) -> ([f64; 2], [f64; 2]) {
     let row = q;

@@ -1,8 +1,9 @@
 //! What the law in use lacks most: the score test of effects that it does not have, in the stream.
 //!
-//! Beside a run of the filter the sensitivity of the innovations to each candidate's coefficient is carried, as if it were a term with
-//! coefficient 0. With M and g the information and score of the law's own terms, c, i and s those of a candidate beside them, its gain in
-//! log-likelihood is ½ (s − cᵀM⁻¹g)² ÷ (i − cᵀM⁻¹c) (Rao, *Proc. Cambridge Phil. Soc.* 44 (1948), 50).
+//! Beside a run of the filter the sensitivity of the innovations to each candidate's coefficient is carried, as if it
+//! were a term with coefficient 0. With M and g the information and score of the law's own terms, c, i and s those of a
+//! candidate beside them, its gain in log-likelihood is ½ (s − cᵀM⁻¹g)² ÷ (i − cᵀM⁻¹c) (Rao, *Proc. Cambridge Phil.
+//! Soc.* 44 (1948), 50).
 
 use super::filter::{Channel, Innovation};
 use super::information::{Information, Solution};
@@ -55,7 +56,8 @@ struct Candidate {
 }
 
 impl ScoreTest {
-    /// The catalogue's effects that one instant gives and that the law of these terms does not have, beside `n` free terms.
+    /// The catalogue's effects that one instant gives and that the law of these terms does not have, beside `n` free
+    /// terms.
     pub fn new(terms: &[Term], n: usize) -> ScoreTest {
         let absent = |term: &Term| match term {
             Term::Effect(effect) => {
@@ -132,8 +134,8 @@ impl ScoreTest {
         }
     }
 
-    /// The candidate with the most evidence, `overdispersion` being what the law's lasting error makes of a nat; none below
-    /// the evidence at which one is named, or with a sign that physics does not allow.
+    /// The candidate with the most evidence, `overdispersion` being what the law's lasting error makes of a nat; none
+    /// below the evidence at which one is named, or with a sign that physics does not allow.
     pub fn missing(&mut self, active: &[bool], overdispersion: f64) -> Option<Missing> {
         self.active.copy_from_slice(active);
         self.solution.solve(&self.own, &self.active);

@@ -1,8 +1,9 @@
 //! Small symmetric positive systems \[A | b\], eliminated in room that is fixed at construction.
 //!
-//! A = Uᵀ D U with U unit upper triangular (Golub and Van Loan, *Matrix Computations*, 4.1): no square roots, and b goes through the
-//! elimination as one more column, which leaves z = U⁻ᵀ b. Rows are cut into lanes of four numbers, so that the innermost
-//! loops have a fixed length (a lane is read whole before it is written, or they would not vectorise); what stands below the diagonal in a row's first lane is carried along and never read.
+//! A = Uᵀ D U with U unit upper triangular (Golub and Van Loan, *Matrix Computations*, 4.1): no square roots, and b
+//! goes through the elimination as one more column, which leaves z = U⁻ᵀ b. Rows are cut into lanes of four numbers, so
+//! that the innermost loops have a fixed length (a lane is read whole before it is written, or they would not
+//! vectorise); what stands below the diagonal in a row's first lane is carried along and never read.
 
 use serde::{Deserialize, Serialize};
 
@@ -76,7 +77,8 @@ impl System {
         self.rows[row * self.lanes..(row + 1) * self.lanes].as_flattened_mut()
     }
 
-    /// Takes row-major n × n matrices' sum as A, of which the upper triangle counts; each has room for a row's last lane behind it.
+    /// Takes row-major n × n matrices' sum as A, of which the upper triangle counts; each has room for a row's last
+    /// lane behind it.
     #[inline]
     pub fn load(&mut self, first: &[f64], second: Option<&[f64]>) {
         let (n, lanes) = (self.n, self.n.div_ceil(WIDTH));
@@ -114,8 +116,8 @@ impl System {
         self.row(unknown)[unknown] = 1.0;
     }
 
-    /// Eliminates. A pivot that falls below `tolerance` times its diagonal entry is not positive for what rounding leaves: its
-    /// unknown is then fixed to 0.
+    /// Eliminates. A pivot that falls below `tolerance` times its diagonal entry is not positive for what rounding
+    /// leaves: its unknown is then fixed to 0.
     pub fn eliminate(&mut self, tolerance: f64) {
         let lanes = self.lanes;
         for (row, slot) in self.inverse_pivots.iter_mut().enumerate() {
@@ -138,7 +140,8 @@ impl System {
         }
     }
 
-    /// Takes more right sides through the elimination, the columns of B, of which a row has as many lanes as n needs: U⁻ᵀ B.
+    /// Takes more right sides through the elimination, the columns of B, of which a row has as many lanes as n needs:
+    /// U⁻ᵀ B.
     pub fn forward(&self, columns: &mut [Lane]) {
         let width = self.n.div_ceil(WIDTH);
         for k in 0..self.n {

@@ -1,15 +1,15 @@
 //! How well coefficients that are known beforehand explain a record.
 //!
-//! A record's information I and score g about a point θ₀ make its likelihood Gaussian there: ln L(θ₀ + δ) = g·δ − ½ δᵀIδ. A prior of
-//! the coefficients, δ normal about μ with precision Λ, then has the log-evidence (MacKay, *Information Theory, Inference, and Learning
-//! Algorithms*, ch. 28)
+//! A record's information I and score g about a point θ₀ make its likelihood Gaussian there: ln L(θ₀ + δ) = g·δ − ½
+//! δᵀIδ. A prior of the coefficients, δ normal about μ with precision Λ, then has the log-evidence (MacKay,
+//! *Information Theory, Inference, and Learning Algorithms*, ch. 28)
 //!
 //! ```text
 //! ln ∫ L p dδ − ln L(θ₀) = g·μ − ½ μᵀIμ + ½ hᵀ(I + Λ)⁻¹h − ½ ln det(I + Λ) + ½ ln det Λ,   h = g − Iμ
 //! ```
 //!
-//! A law seen before and "some law that switches may lead to" are two such beliefs: their difference says, in nats, which of them
-//! the record speaks for. The wider belief pays for what it leaves open.
+//! A law seen before and "some law that switches may lead to" are two such beliefs: their difference says, in nats,
+//! which of them the record speaks for. The wider belief pays for what it leaves open.
 
 use super::single_change::SingleChange;
 use crate::estimation::Information;
@@ -17,7 +17,7 @@ use crate::estimation::{System, WIDTH};
 use serde::{Deserialize, Serialize};
 
 /// Pivots this far below their diagonal are rounding.
-const TOLERANCE: f64 = 1e-13;
+pub(super) const TOLERANCE: f64 = 1e-13;
 
 /// What is believed of n coefficients before a record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -97,8 +97,8 @@ impl BayesFactor {
         at_offset + 0.5 * (self.system.squares() - self.system.log_determinant() + belief.log_determinant)
     }
 
-    /// Log-evidence, nats, of a change of one coefficient alone against the belief that has just been weighed; `precision` is 1/τ² of
-    /// each.
+    /// Log-evidence, nats, of a change of one coefficient alone against the belief that has just been weighed;
+    /// `precision` is 1/τ² of each.
     pub fn evidence_of_a_change(&mut self, belief: &GaussianPrior, precision: &[f64]) -> f64 {
         self.single.evidence(&self.record, &self.system, &belief.open, precision)
     }

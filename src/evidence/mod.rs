@@ -1,7 +1,8 @@
 //! Whether a record speaks for a change of the law.
 //!
-//! Everything stands on the information and score that a filter run gives about the coefficients ([`crate::estimation`]): they make its
-//! likelihood Gaussian there, and every hypothesis about the coefficients a log Bayes factor in nats.
+//! Everything stands on the information and score that a filter run gives about the coefficients
+//! ([`crate::estimation`]): they make its likelihood Gaussian there, and every hypothesis about the coefficients a log
+//! Bayes factor in nats.
 //!
 //! - [`BayesFactor`]: which of two priors of the coefficients a record speaks for;
 //! - [`SingleChange`]: a change of one coefficient alone;

@@ -1,9 +1,9 @@
 //! A change of one coefficient alone.
 //!
-//! A law has many coefficients and a switch may move but one of them: to leave all of them open costs the evidence what each could have
-//! been. That one of n has changed and nothing else is a hypothesis of its own. Under the law as it was the coefficients have a posterior of
-//! precision A = M + Λ and mean x = A⁻¹(g + Λμ), M and g being the record's information and score. Beside them a change of coefficient k has
-//! the information and score
+//! A law has many coefficients and a switch may move but one of them: to leave all of them open costs the evidence what
+//! each could have been. That one of n has changed and nothing else is a hypothesis of its own. Under the law as it was
+//! the coefficients have a posterior of precision A = M + Λ and mean x = A⁻¹(g + Λμ), M and g being the record's
+//! information and score. Beside them a change of coefficient k has the information and score
 //!
 //! ```text
 //! i = Mₖₖ − Mₖ A⁻¹ Mₖᵀ,   s = gₖ − Mₖ x,
@@ -11,8 +11,7 @@
 //!
 //! and, with variance τ² before the record, the log-evidence ½ s²τ²/(1 + iτ²) − ½ ln(1 + iτ²) against no change.
 
-use crate::estimation::Information;
-use crate::estimation::{Lane, System, WIDTH};
+use crate::estimation::{Information, Lane, System, WIDTH};
 use serde::{Deserialize, Serialize};
 
 /// What a change has of its own beside the law's uncertainty, relative to all that it has; less is rounding.
@@ -33,8 +32,8 @@ impl SingleChange {
         SingleChange { crossed: vec![[0.0; WIDTH]; n * n.div_ceil(WIDTH)], changes: vec![[0.0; 2]; n] }
     }
 
-    /// Log-evidence, nats, of a change of one coefficient, each as likely as the others, against none. `system` is A and g + Λμ,
-    /// eliminated, with what is not `open` isolated; `precision` is 1/τ² of each coefficient.
+    /// Log-evidence, nats, of a change of one coefficient, each as likely as the others, against none. `system` is A
+    /// and g + Λμ, eliminated, with what is not `open` isolated; `precision` is 1/τ² of each coefficient.
     pub fn evidence(&mut self, record: &Information, system: &System, open: &[bool], precision: &[f64]) -> f64 {
         let n = record.n;
         self.cross(record, system, open);
@@ -100,7 +99,8 @@ mod tests {
         information
     }
 
-    /// ln of the normal integral exp(b·x − ½ xᵀAx) over as many unknowns as A has, without what all such integrals share.
+    /// ln of the normal integral exp(b·x − ½ xᵀAx) over as many unknowns as A has, without what all such integrals
+    /// share.
     fn log_integral(matrix: &[f64], right: &[f64]) -> f64 {
         let n = right.len();
         let mut system = System::new(n);

@@ -33,24 +33,24 @@ pub struct Stage {
     pub drifting: bool,
     /// Whether its law was validated at its end.
     pub valid: bool,
-    /// Share of the force's variance that the coefficients explain: of a law without inertia, and of one of motion where they are those of
-    /// the weak form, which are not validated.
+    /// Share of the force's variance that the coefficients explain: of a law without inertia, and of one of motion
+    /// where they are those of the weak form, which are not validated.
     pub explained: Option<f64>,
     /// What its data could not determine.
     pub unidentifiable: Vec<String>,
 }
 
 impl Stage {
-    /// The coefficients that are known, with their std: of a law that is not validated those that are known better than their own size, and
-    /// the 0 of a term that it has dropped.
+    /// The coefficients that are known, with their std: of a law that is not validated those that are known better than
+    /// their own size, and the 0 of a term that it has dropped.
     pub fn known(&self) -> impl Iterator<Item = (&Coefficient, f64)> {
         let told = |value: f64, std: f64| self.valid || value == 0.0 || std < value.abs();
         let known = self.coefficients.iter().filter_map(|coefficient| Some((coefficient, coefficient.std?)));
         known.filter(move |(coefficient, std)| told(coefficient.value, *std))
     }
 
-    /// The terms whose coefficients are not known as well as a law that is vouched for asks, and for how many more seconds such motion
-    /// would have to go on; those left out of which nothing can be said.
+    /// The terms whose coefficients are not known as well as a law that is vouched for asks, and for how many more
+    /// seconds such motion would have to go on; those left out of which nothing can be said.
     pub fn lacking(&self) -> impl Iterator<Item = (Term, f64)> {
         let needed = self.coefficients.iter().filter_map(|coefficient| Some((coefficient.term, coefficient.needed?)));
         needed.filter(|(_, seconds)| *seconds > 0.0)
@@ -91,9 +91,9 @@ const HOLD_TRIALS: [usize; 3] = [1500, 3000, 6000];
 /// Log-likelihood, nats, by which a hold falls out before that.
 const BEATEN: f64 = 500.0;
 
-/// The hold under which the first stretch of the recording has the largest likelihood; a straight line where none gives a law,
-/// which errs least where nothing is known. Always by our method: the publication's states no likelihood. Of a model with numbers only,
-/// all are estimated.
+/// The hold under which the first stretch of the recording has the largest likelihood; a straight line where none gives
+/// a law, which errs least where nothing is known. Always by our method: the publication's states no likelihood. Of a
+/// model with numbers only, all are estimated.
 pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) -> Hold {
     let numbers_only = model.check_free(true).is_err();
     let freed = numbers_only.then(|| model.freed());
@@ -130,8 +130,9 @@ fn drop_beaten(rivals: &mut Vec<(Hold, Identifier)>, samples: f64) {
     rivals.retain(|(_, identifier)| identifier.likelihood().is_none_or(|own| samples * (best - own) < BEATEN));
 }
 
-/// Steps an identifier over every sample and collects the stages. Each gap of the recording starts a new identifier, since
-/// nothing may be integrated over it; laws are recognised behind it. `watch` is called after every sample with its index.
+/// Steps an identifier over every sample and collects the stages. Each gap of the recording starts a new identifier,
+/// since nothing may be integrated over it; laws are recognised behind it. `watch` is called after every sample with
+/// its index.
 ///
 /// # Errors
 /// [`BuildError`] when settings or model are refused.

@@ -141,7 +141,8 @@ impl Identifier {
         }
     }
 
-    /// The same identifier with laws to recognise, from before its first sample; the publication's method recognises none.
+    /// The same identifier with laws to recognise, from before its first sample; the publication's method recognises
+    /// none.
     ///
     /// # Errors
     /// [`SavedLawsError`] where they belong to another model or make no sense.
@@ -167,8 +168,8 @@ impl Identifier {
         &self.output
     }
 
-    /// Log-likelihood per measurement of the present stage's law, to compare settings on one record by; `None` while there is no
-    /// law, and for the publication's method, which has none.
+    /// Log-likelihood per measurement of the present stage's law, to compare settings on one record by; `None` while
+    /// there is no law, and for the publication's method, which has none.
     pub fn likelihood(&self) -> Option<f64> {
         match &self.engine {
             Engine::Default(tracker) => tracker.likelihood(),

@@ -11,7 +11,6 @@ mod force_law;
 mod functional;
 mod identification;
 mod identifier;
-mod initial_state;
 mod library;
 mod outputs;
 mod parameters;

@@ -131,8 +131,8 @@ const SCALARS: [Scalar; 17] = [
 ];
 
 impl Outputs {
-    /// The outputs for these terms, with the names that FMU and trace give them: all `coef.`, all `std.`, all `needed.`, the
-    /// rest.
+    /// The outputs for these terms, with the names that FMU and trace give them: all `coef.`, all `std.`, all
+    /// `needed.`, the rest.
     pub fn describe(terms: &[Term]) -> Vec<OutputDescription> {
         let real =
             |name: String, description: String| OutputDescription { name, kind: OutputKind::Real(None), description };

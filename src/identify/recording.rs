@@ -223,7 +223,8 @@ fn is_constant(values: &[f64]) -> bool {
     values.iter().all(|value| *value == values[0])
 }
 
-/// Settings that fit a recording: its channels, a `sample_time` that is its own and thins nothing, a window that holds enough samples.
+/// Settings that fit a recording: its channels, a `sample_time` that is its own and thins nothing, a window that holds
+/// enough samples.
 pub fn settings_for(recording: &Recording, base: Settings) -> Settings {
     let sample_time = recording.sample_time().min(NEVER_TOO_SOON * recording.shortest_interval());
     let max_window = base.max_window.clamp(2e3 * sample_time, 1e6 * sample_time);

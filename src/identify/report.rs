@@ -41,8 +41,8 @@ pub struct Coefficient {
     pub value: f64,
     /// Its std; `None` while the coefficient is not known.
     pub std: Option<f64>,
-    /// How many more seconds of such a record it needs until it is known as well as a law that is vouched for asks; 0 when it is, `None`
-    /// while nothing can be said.
+    /// How many more seconds of such a record it needs until it is known as well as a law that is vouched for asks; 0
+    /// when it is, `None` while nothing can be said.
     pub needed: Option<f64>,
 }
 
@@ -67,7 +67,8 @@ pub struct Output {
     pub status: Status,
     /// Whether the present law is validated; every std is known then.
     pub valid: bool,
-    /// Whether the coefficients move: they are followed as they go, and vouched for as long as their stated e is below 0.2².
+    /// Whether the coefficients move: they are followed as they go, and vouched for as long as their stated e is below
+    /// 0.2².
     pub drifting: bool,
     /// Deviation of eq. (4) over T; 0 before the first law.
     pub deviation: f64,
@@ -81,8 +82,9 @@ pub struct Output {
     pub prediction_qd: f64,
     /// The effect of the catalogue that the present law lacks most; `None` where none stands out.
     pub missing: Option<Missing>,
-    /// Share of the force's variance that the published coefficients explain: of a law without inertia, and of one of motion where they are
-    /// those of the weak form; `None` for a law of motion that states its own std, and while nothing is known.
+    /// Share of the force's variance that the published coefficients explain: of a law without inertia, and of one of
+    /// motion where they are those of the weak form; `None` for a law of motion that states its own std, and while
+    /// nothing is known.
     pub explained: Option<f64>,
     /// Estimated std of the displacement's sensor noise; `None` while not known or not measured.
     pub noise_q: Option<f64>,

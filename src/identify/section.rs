@@ -6,6 +6,13 @@ use crate::law::Hold;
 use crate::weak::Section;
 use serde::{Deserialize, Serialize};
 
+/// Samples in the longest variation of weak rows, where the window has room for it: half a period of a motion of 4096
+/// samples a period.
+pub const LONGEST_VARIATION: usize = 2048;
+
+/// Rows begin this fraction of a variation apart: nearer ones share nearly all that they say.
+pub const OVERLAP: usize = 8;
+
 /// Room for one section.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SectionBuffer {
@@ -22,7 +29,8 @@ impl SectionBuffer {
         SectionBuffer { t: empty(), q: empty(), qd: empty(), excitation: empty() }
     }
 
-    /// Copies the samples `first` to `last`; a displacement or velocity that is not measured is estimated from the other.
+    /// Copies the samples `first` to `last`; a displacement or velocity that is not measured is estimated from the
+    /// other.
     pub fn load(&mut self, problem: &Problem, window: &Window, first: u64, last: u64) {
         for (slot, number) in (first..=last).enumerate() {
             let sample = window.sample(number);

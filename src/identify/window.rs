@@ -2,7 +2,7 @@
 
 use super::sample::Sample;
 use super::settings::Channels;
-use crate::estimation::Observation;
+use crate::estimation::{Filter, Noise, Observation, initial_state};
 use crate::law::{BandLimited, Drive, Hold, REACH, look_ahead};
 use serde::{Deserialize, Serialize};
 
@@ -61,8 +61,8 @@ impl Pace {
         self.dt > 0.0 && dt > GAP * self.dt
     }
 
-    /// Over an interval in which samples are missing the excitation is known at its ends alone: intensity of the white force that may
-    /// have been there besides, N² s.
+    /// Over an interval in which samples are missing the excitation is known at its ends alone: intensity of the white
+    /// force that may have been there besides, N² s.
     fn unseen(&self, dt: f64, moved: f64) -> f64 {
         match self.is_gap(dt) {
             true => (1.0 - self.dt / dt) * (self.roughness * self.dt + 0.25 * moved * moved * dt),
@@ -129,6 +129,14 @@ impl Window {
         let dt = after.t - before.t;
         let unseen = self.pace.unseen(dt, after.excitation - before.excitation);
         Observation { dt, drive, measured, unseen }
+    }
+
+    /// The state at sample `start` from that sample and the next alone, where a filter run begins.
+    pub fn initial_state(&self, start: u64, noise: &Noise) -> Filter {
+        let pair = [start, (start + 1).min(self.end() - 1)].map(|number| *self.sample(number));
+        let [q, qd] = [pair.map(|sample| sample.q), pair.map(|sample| sample.qd)];
+        let measured = [self.channels.q.then_some(q), self.channels.qd.then_some(qd)];
+        initial_state(measured, pair[1].t - pair[0].t, noise)
     }
 
     /// Interpolates the excitation after sample `start`; beyond the ends of the record its last value stays.

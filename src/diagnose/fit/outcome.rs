@@ -1,7 +1,7 @@
 //! What a run of the filter over a piece needs and leaves.
 
 use crate::diagnose::piece::Piece;
-use crate::estimation::{Channel, Filter, Innovation, LogSum, Noise, Observation};
+use crate::estimation::{Channel, Filter, Innovation, LogSum, Noise, Observation, initial_state};
 use crate::law::{Drive, Line, NODES, State, Term};
 use nalgebra::{DMatrix, DVector};
 
@@ -261,20 +261,6 @@ pub(super) fn beside(observation: &Observation, coefficients: &[f64], forces: &[
 
 /// The state at the first sample, from it and its neighbours alone.
 pub(super) fn first_state(piece: &Piece, noise: &Noise) -> Filter {
-    let [q, qd] = noise.sensor;
-    let dt = piece.t[1] - piece.t[0];
-    match piece.measured() {
-        [Some(displacement), Some(velocity)] => {
-            Filter { state: State { q: displacement[0], qd: velocity[0] }, covariance: [q, 0.0, qd] }
-        }
-        [Some(displacement), None] => {
-            let slope = (displacement[1] - displacement[0]) / dt;
-            let spread = 10.0 * (slope * slope + q / (dt * dt));
-            Filter { state: State { q: displacement[0], qd: slope }, covariance: [q, 0.0, spread] }
-        }
-        [_, velocity] => {
-            let first = velocity.map_or(0.0, |velocity| velocity[0]);
-            Filter { state: State { q: 0.0, qd: first }, covariance: [1.0, 0.0, qd] }
-        }
-    }
+    let measured = piece.measured().map(|channel| channel.map(|values| [values[0], values[1]]));
+    initial_state(measured, piece.t[1] - piece.t[0], noise)
 }

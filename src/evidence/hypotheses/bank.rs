@@ -1,23 +1,22 @@
 //! Hypotheses that the law switched, at many instants at once.
 //!
-//! Each [`Hypothesis`] says: since its start the coefficients differ by δ from those in use. δ makes the innovations ε of the
-//! law in use linear in it, ε = ψδ + white, ψ carried from sensitivity 0 at the start (the state is continuous across a
-//! switch). With M = Σψψᵀ/s and g = Σψε/s, and a Gaussian prior N(μ, Λ⁻¹) of δ, the log-evidence of the data since the
-//! start is
+//! Each [`Hypothesis`] says: since its start the coefficients differ by δ from those in use. δ makes the innovations ε
+//! of the law in use linear in it, ε = ψδ + white, ψ carried from sensitivity 0 at the start (the state is continuous
+//! across a switch). With M = Σψψᵀ/s and g = Σψε/s, and a Gaussian prior N(μ, Λ⁻¹) of δ, the log-evidence of the data
+//! since the start is
 //!
 //! ```text
 //! ½ (g + Λμ)ᵀ (M + Λ)⁻¹ (g + Λμ) − ½ μᵀΛμ − ½ ln det(M + Λ) + ½ ln det Λ   (+ what all priors share)
 //! ```
 //!
-//! "No switch" has the information that the stage gave on its coefficients up to the start, on all that the law may have or on its own
-//! alone; "switch" a prior as wide as physics makes plausible, of all coefficients or of one ([`SingleChange`]). Their difference is
-//! the evidence of a switch (Willsky and Jones 1976, with a prior in the place of the maximum). Starts are kept on a grid whose spacing grows
-//! with age, and where the evidence has a peak.
+//! "No switch" has the information that the stage gave on its coefficients up to the start, on all that the law may
+//! have or on its own alone; "switch" a prior as wide as physics makes plausible, of all coefficients or of one
+//! ([`SingleChange`]). Their difference is the evidence of a switch (Willsky and Jones 1976, with a prior in the place
+//! of the maximum). Starts are kept on a grid whose spacing grows with age, and where the evidence has a peak.
 
 use super::hypothesis::{Hypothesis, Law};
-use super::no_change::TOLERANCE;
 use crate::estimation::{Innovation, IntervalMap, Lane, System, WIDTH};
-use crate::evidence::bayes_factor::{BayesFactor, GaussianPrior, likelihood};
+use crate::evidence::bayes_factor::{BayesFactor, GaussianPrior, TOLERANCE, likelihood};
 use crate::evidence::single_change::{SingleChange, either, log_sum};
 use serde::{Deserialize, Serialize};
 
@@ -136,7 +135,8 @@ impl Bank {
         }
     }
 
-    /// Looks at up to `looks` hypotheses: first that which may by now hold most, then those that have waited longest for their age.
+    /// Looks at up to `looks` hypotheses: first that which may by now hold most, then those that have waited longest
+    /// for their age.
     pub fn look(&mut self, looks: usize) {
         let promises = self.hypotheses[..self.count].iter().map(Hypothesis::promise).enumerate();
         if let Some((index, _)) = promises.max_by(|a, b| a.1.total_cmp(&b.1)) {
@@ -183,7 +183,8 @@ impl Bank {
         self.hypotheses[(self.latest(suspect, level) + 1).min(self.count - 1)].start
     }
 
-    /// Writes the starts with most evidence into `starts`, in their order; those that are left where few are plausible repeat the last.
+    /// Writes the starts with most evidence into `starts`, in their order; those that are left where few are plausible
+    /// repeat the last.
     pub fn likeliest_starts(&self, starts: &mut [u64]) {
         let least = self.suspect().map_or(0.0, |suspect| suspect.evidence) - FAR_BELOW;
         let mut bound = (f64::INFINITY, usize::MAX);
@@ -208,8 +209,9 @@ impl Bank {
         self.system.solve(change);
     }
 
-    /// Log-evidence, nats, of a switch to coefficients that are known beforehand, their offset counted from those in use, at the start
-    /// that suits them best; and of a switch to any law at that start. Both against the law in use exactly as it is.
+    /// Log-evidence, nats, of a switch to coefficients that are known beforehand, their offset counted from those in
+    /// use, at the start that suits them best; and of a switch to any law at that start. Both against the law in use
+    /// exactly as it is.
     pub fn of_known_law(&mut self, belief: &GaussianPrior, weighing: &mut BayesFactor) -> [f64; 2] {
         let fit = |index: usize| likelihood(&self.hypotheses[index].information, &belief.offset);
         let starts = (0..self.count).map(|index| (index, fit(index)));
@@ -254,8 +256,8 @@ impl Bank {
         0.5 * (self.system.squares() - self.system.log_determinant() + self.spread_log_determinant)
     }
 
-    /// The hypothesis whose neighbours leave the smallest gap, relative to their age; the suspect is kept, and one that stands out as much
-    /// from its other neighbours.
+    /// The hypothesis whose neighbours leave the smallest gap, relative to their age; the suspect is kept, and one that
+    /// stands out as much from its other neighbours.
     fn least_missed(&self, now: u64) -> usize {
         let suspect = self.suspect();
         let most = suspect.map_or(0.0, |suspect| suspect.evidence);
@@ -345,7 +347,8 @@ mod tests {
         (0..8).map(|k| [0.0, 0.1 * (0.05 * (f64::from(k) + 1.0) * number as f64).sin()]).collect()
     }
 
-    /// A bank that has seen `samples`, q̇ alone measured with std 1; at sample `switch` a coefficient moves by `change`.
+    /// A bank that has seen `samples`, q̇ alone measured with std 1; at sample `switch` a coefficient moves by
+    /// `change`.
     fn bank(samples: u64, switch: u64, change: f64) -> Bank {
         let mut generator = ChaCha8Rng::seed_from_u64(7);
         let (mut bank, mut information) = (Bank::new(8, 12), Information::none(8));

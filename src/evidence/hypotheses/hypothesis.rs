@@ -1,7 +1,8 @@
 //! One hypothesis: since its start the law has been another one.
 
-use super::no_change::{NoChange, TOLERANCE};
+use super::no_change::NoChange;
 use crate::estimation::{Information, Lane, System, WIDTH};
+use crate::evidence::bayes_factor::TOLERANCE;
 use serde::{Deserialize, Serialize};
 
 /// What the law in use knows of its coefficients when a hypothesis starts.
@@ -17,13 +18,15 @@ pub struct Law<'a> {
     pub explains: bool,
 }
 
-/// A law that explains its record is trusted with this fraction of its information: its covariance is that of a linearisation.
+/// A law that explains its record is trusted with this fraction of its information: its covariance is that of a
+/// linearisation.
 const CAUTION: f64 = 0.3;
 
 /// One that does not, with this: what it leaves comes and goes with the motion.
 const MORE_CAUTION: f64 = 0.03;
 
-/// No law is trusted to be constant more exactly than to this part of what a switch moves: below lies what the integration errs by.
+/// No law is trusted to be constant more exactly than to this part of what a switch moves: below lies what the
+/// integration errs by.
 const FINEST: f64 = 1e-7;
 
 /// Looks at a hypothesis this much older come half as often, samples.
@@ -49,7 +52,8 @@ pub(super) struct Hypothesis {
     /// ∂q/∂δ and ∂q̇/∂δ, each n long and filled up with zeros.
     pub(super) sensitivity: [Vec<Lane>; 2],
     pub(super) information: Information,
-    /// Λ of "no switch", as [`Information::matrix`]: the record's, and of terms that the law has dropped what they could be.
+    /// Λ of "no switch", as [`Information::matrix`]: the record's, and of terms that the law has dropped what they
+    /// could be.
     prior: Vec<f64>,
     /// Λμ of "no switch": what the stage up to the start says about the coefficients in use.
     pull: Vec<f64>,
@@ -163,7 +167,8 @@ impl Hypothesis {
 mod tests {
     use super::*;
 
-    /// The probabilities of a law with both of two coefficients and with the first alone, the second told to the std 1/√`told`.
+    /// The probabilities of a law with both of two coefficients and with the first alone, the second told to the std
+    /// 1/√`told`.
     fn weights(told: f64) -> [f64; 2] {
         let mut information = Information::none(2);
         information.add(&[10.0, 0.0], 0.0, 1.0);

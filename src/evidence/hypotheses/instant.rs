@@ -1,12 +1,14 @@
 //! How well the hypotheses together know the instant of a switch.
 //!
-//! The evidence e of a hypothesis is the log-likelihood ratio of all data under "the law switched at its start" to that under "it did not".
-//! With every instant as likely beforehand, the density of the instant is exp(e), taken as linear between neighbouring starts.
+//! The evidence e of a hypothesis is the log-likelihood ratio of all data under "the law switched at its start" to that
+//! under "it did not". With every instant as likely beforehand, the density of the instant is exp(e), taken as linear
+//! between neighbouring starts.
 
 use super::bank::Bank;
 
 impl Bank {
-    /// Root mean square of the distance between the switch and `instant`, s; `time` is that of a sample, `now` that of the last one.
+    /// Root mean square of the distance between the switch and `instant`, s; `time` is that of a sample, `now` that of
+    /// the last one.
     pub fn distance_of_switch(&self, instant: f64, now: f64, time: impl Fn(u64) -> f64) -> Option<f64> {
         let live = &self.hypotheses[..self.count];
         let most = live.iter().map(|hypothesis| hypothesis.evidence).max_by(f64::total_cmp)?;

@@ -1,10 +1,8 @@
 //! "No switch": the law until a hypothesis starts, with certain terms.
 
 use crate::estimation::System;
+use crate::evidence::bayes_factor::TOLERANCE;
 use serde::{Deserialize, Serialize};
-
-/// Pivots this far below their diagonal are rounding.
-pub(super) const TOLERANCE: f64 = 1e-13;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct NoChange {
@@ -35,9 +33,9 @@ impl NoChange {
         (self.at_mean, self.log_determinant) = (system.squares(), system.log_determinant());
     }
 
-    /// Shares the probability with the same law without some of its coefficients: what they gain in likelihood, against how much of what each
-    /// could have been, 1/√`precision`, the record leaves (Dickey, *Ann. Math. Stat.* 42 (1971), 204). What it could have been is in the
-    /// prior that both were settled with.
+    /// Shares the probability with the same law without some of its coefficients: what they gain in likelihood, against
+    /// how much of what each could have been, 1/√`precision`, the record leaves (Dickey, *Ann. Math. Stat.* 42 (1971),
+    /// 204). What it could have been is in the prior that both were settled with.
     pub(super) fn share(&mut self, fewer: &mut NoChange, precision: &[f64]) {
         let dropped =
             self.active.iter().zip(&fewer.active).zip(precision).filter(|((own, fewer), _)| **own && !**fewer);

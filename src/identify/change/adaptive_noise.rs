@@ -1,7 +1,8 @@
-//! How loud the sensors are now, in terms of what the law's record knows of them: noise that changes is followed at once.
+//! How loud the sensors are now, in terms of what the law's record knows of them: noise that changes is followed at
+//! once.
 //!
-//! Noise differs from sample to sample; what a switch adds to the innovations lasts. Half the mean square of successive differences
-//! (von Neumann, *Ann. Math. Stat.* 12 (1941), 367) hears the one and hardly the other.
+//! Noise differs from sample to sample; what a switch adds to the innovations lasts. Half the mean square of successive
+//! differences (von Neumann, *Ann. Math. Stat.* 12 (1941), 367) hears the one and hardly the other.
 
 use crate::estimation::{Innovation, Noise};
 use serde::{Deserialize, Serialize};
@@ -12,7 +13,8 @@ const NOW: f64 = 150.0;
 /// Samples that count for what is published.
 const LATELY: f64 = 1000.0;
 
-/// Below this ratio of variances the noise counts as unchanged when switches are weighed: by chance it is exceeded once in 2000 samples.
+/// Below this ratio of variances the noise counts as unchanged when switches are weighed: by chance it is exceeded once
+/// in 2000 samples.
 const LOUDER: f64 = 1.5;
 
 /// A variance that differs by less than this part lately is unchanged.

@@ -2,13 +2,13 @@
 
 use crate::identify::settings::Settings;
 
-/// A law that is known from this many samples at the switch needs twice the evidence: its information is that of a linearisation, whose
-/// error falls as the record grows.
+/// A law that is known from this many samples at the switch needs twice the evidence: its information is that of a
+/// linearisation, whose error falls as the record grows.
 const LINEARISATION: f64 = 2000.0;
 
-/// Under the right law the evidence rises by chance as if one sample in so many were a trial of its own: neighbouring samples and starts
-/// share their noise, and the evidence is a mean over all sizes of a switch. With one in 100 an interval of 60 s gives 0.62 to 1.67 times
-/// the alarms asked for, by plant and library.
+/// Under the right law the evidence rises by chance as if one sample in so many were a trial of its own: neighbouring
+/// samples and starts share their noise, and the evidence is a mean over all sizes of a switch. With one in 100 an
+/// interval of 60 s gives 0.62 to 1.67 times the alarms asked for, by plant and library.
 const SAMPLES_PER_TRIAL: f64 = 85.0;
 
 /// Evidence that chance brings once in some ten thousand samples, nats.
@@ -19,6 +19,9 @@ const UNPROVEN: f64 = 10.0;
 
 /// Least threshold, nats, however short the false-alarm interval: odds of twenty to one.
 const LEAST: f64 = 3.0;
+
+/// Samples for which a suspicion keeps the law in use from being renewed: what comes may belong to another law.
+pub const SUSPENSE: u64 = 1000;
 
 /// What a law in use has to its credit when a switch is weighed against it.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +45,8 @@ impl Decision {
 
     /// The threshold, before what the law usually meets.
     pub fn threshold(&self, settings: &Settings) -> f64 {
-        // what chance brings is known of a law that explains its record; of another all evidence seen counts as its usual one
+        // what chance brings is known of a law that explains its record; of another all evidence seen counts as its
+        // usual one
         let trial = if self.explains { SAMPLES_PER_TRIAL } else { 1.0 };
         self.caution() * (settings.false_alarm_interval / (trial * settings.sample_time)).ln().max(LEAST)
     }

@@ -1,8 +1,8 @@
 //! The evidence of a switch that the law in use meets without one.
 //!
-//! Under the right law it stays below what the false-alarm interval asks. A real record has error that no law models: its
-//! evidence rises again and again, and only what stands out from that is a switch. What chance brings in the time gone by does not count,
-//! nor what rose once while the law was still young and has not come again since.
+//! Under the right law it stays below what the false-alarm interval asks. A real record has error that no law models:
+//! its evidence rises again and again, and only what stands out from that is a switch. What chance brings in the time
+//! gone by does not count, nor what rose once while the law was still young and has not come again since.
 
 use serde::{Deserialize, Serialize};
 

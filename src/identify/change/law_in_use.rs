@@ -1,4 +1,5 @@
-//! The law in use, run along with the stream: its innovations, and how uncertain they are by what is not known of the law.
+//! The law in use, run along with the stream: its innovations, and how uncertain they are by what is not known of the
+//! law.
 
 use super::adaptive_noise::AdaptiveNoise;
 use crate::estimation::{Innovation, Noise, Observation, Pass};
@@ -9,10 +10,12 @@ use crate::identify::window::Window;
 use crate::law::Motion;
 use serde::{Deserialize, Serialize};
 
-/// The law's own covariance counts this many times where it leaves the state open, as long as it is that of a linearisation …
+/// The law's own covariance counts this many times where it leaves the state open, as long as it is that of a
+/// linearisation …
 const CAUTION: f64 = 10.0;
 
-/// … which it is over a record of so many samples. It falls with the fourth power of the length then: the hypotheses know it too.
+/// … which it is over a record of so many samples. It falls with the fourth power of the length then: the hypotheses
+/// know it too.
 const LINEAR: f64 = 4000.0;
 
 /// An error of the law acts one way for this many samples at most.
@@ -89,8 +92,8 @@ impl LawInUse {
         [q.or(q_aside), qd.or(qd_aside)]
     }
 
-    /// Slopes after an interval. The inertia's goes with the acceleration, which a rough excitation turns around faster than the motion
-    /// follows: such errors do not last.
+    /// Slopes after an interval. The inertia's goes with the acceleration, which a rough excitation turns around faster
+    /// than the motion follows: such errors do not last.
     fn follow_slopes(&mut self, dt: f64, inertia: Option<usize>) {
         let share = dt / (self.lasting + dt);
         for (index, (slope, input)) in self.slopes.iter_mut().zip(&self.run.map.input).enumerate() {
@@ -99,8 +102,8 @@ impl LawInUse {
         }
     }
 
-    /// Intensity of the acceleration that the law's own uncertainty leaves open, (m/s²)² s: where the motion leaves what its record has
-    /// seen, an uncertain law must not bind the state.
+    /// Intensity of the acceleration that the law's own uncertainty leaves open, (m/s²)² s: where the motion leaves
+    /// what its record has seen, an uncertain law must not bind the state.
     fn uncertainty(&self) -> f64 {
         let slopes = &self.slopes;
         let rows = self.covariance.chunks_exact(slopes.len()).zip(slopes);
@@ -111,8 +114,8 @@ impl LawInUse {
     }
 
     /// Takes over the segment's estimate and the run that led to it.
-    pub fn adopt(&mut self, problem: &Problem, segment: &mut Segment, window: &Window) {
-        segment.hand_over(problem, window, &mut self.run);
+    pub fn adopt(&mut self, segment: &mut Segment, window: &Window) {
+        segment.hand_over(window, &mut self.run);
         self.all.copy_from_slice(&segment.all);
         self.active.copy_from_slice(&segment.active);
         self.adaptive.refer(&self.noise, &segment.noise);
@@ -162,7 +165,7 @@ impl LawInUse {
         self.follow_scales(scales, window);
         (self.overdispersion, self.dispersed_at) = (1.0, window.ready());
         (self.explains, self.proven) = (true, true);
-        trials.hand_over(place, problem, window, &mut self.run);
+        trials.hand_over(place, window, &mut self.run);
         self.run.information.merge(&law.information);
         self.all.copy_from_slice(&problem.known);
         problem.scatter(&law.coefficients, &mut self.all);

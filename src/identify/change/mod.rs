@@ -12,7 +12,7 @@ mod empirical_null;
 mod law_in_use;
 mod prediction;
 
-pub use decision::{Decision, false_alarm_level};
+pub use decision::{Decision, SUSPENSE, false_alarm_level};
 pub use empirical_null::EmpiricalNull;
 pub use law_in_use::LawInUse;
 pub use prediction::Prediction;

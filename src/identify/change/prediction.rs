@@ -9,7 +9,8 @@ use crate::identify::settings::Settings;
 use crate::law::{Motion, State};
 use serde::{Deserialize, Serialize};
 
-/// A deviation this many times the usual one is out of the ordinary: it decides nothing unless the user gives a threshold.
+/// A deviation this many times the usual one is out of the ordinary: it decides nothing unless the user gives a
+/// threshold.
 const UNUSUAL: f64 = 4.0;
 
 /// Share of the latest interval in the usual deviation.
@@ -95,7 +96,8 @@ impl Prediction {
         }
     }
 
-    /// The given threshold, or [`UNUSUAL`] times the usual deviation under this law and what its noise alone would give.
+    /// The given threshold, or [`UNUSUAL`] times the usual deviation under this law and what its noise alone would
+    /// give.
     fn threshold(&self, settings: &Settings, law: &LawInUse) -> f64 {
         if settings.deviation_threshold > 0.0 {
             return settings.deviation_threshold;

@@ -1,22 +1,23 @@
 //! Coefficients that drift away from a law which explained its record.
 //!
-//! After an alarm two stories are told of the record from a while before it: the law switched at the instant that the evidence found, and
-//! the coefficients wander, a random walk of one of several intensities. Each is a filter of the state and the coefficients together
-//! ([`AugmentedFilter`]), so that each has a likelihood: that of the record, whatever it predicts. A switch makes slow wandering improbable at once,
-//! for the jump is nowhere near what a walk does between two samples; a drift makes any constant law improbable a period or two later. A
-//! walk fast enough to look like a switch speaks for one.
+//! After an alarm two stories are told of the record from a while before it: the law switched at the instant that the
+//! evidence found, and the coefficients wander, a random walk of one of several intensities. Each is a filter of the
+//! state and the coefficients together ([`AugmentedFilter`]), so that each has a likelihood: that of the record,
+//! whatever it predicts. A switch makes slow wandering improbable at once, for the jump is nowhere near what a walk
+//! does between two samples; a drift makes any constant law improbable a period or two later. A walk fast enough to
+//! look like a switch speaks for one.
 //!
-//! When slow wandering has won, its filters go on with the stream: their mean by weight is the law, their covariance its std. A filter
-//! whose coefficients have ceased to wander is begun again and again from the likeliest of them, until for some periods it loses nothing: the
-//! coefficients rest.
+//! When slow wandering has won, its filters go on with the stream: their mean by weight is the law, their covariance
+//! its std. A filter whose coefficients have ceased to wander is begun again and again from the likeliest of them,
+//! until for some periods it loses nothing: the coefficients rest.
 
 use crate::estimation::{AugmentedFilter, Channel, InnovationGate, Noise, Observation, Start, Unknowns};
-use crate::identify::initial_state::first_state;
 use crate::identify::problem::Problem;
 use crate::identify::window::Window;
 use serde::{Deserialize, Serialize};
 
-/// Std of the wandering over a natural period relative to the reach, of the coefficients and of the inertia. The last is too fast for a drift.
+/// Std of the wandering over a natural period relative to the reach, of the coefficients and of the inertia. The last
+/// is too fast for a drift.
 const INTENSITIES: [[f64; 2]; 5] = [[0.01, 0.0], [0.03, 0.0], [0.01, 0.01], [0.03, 0.03], [0.1, 0.1]];
 
 /// How many of them are a drift.
@@ -55,7 +56,8 @@ const MEMORY: f64 = 4.0;
 /// Log-likelihood by which coefficients that wander are told from ones that rest, nats.
 const WANDERED: f64 = 5.0;
 
-/// Coefficients that may have been at rest for this many natural periods are; a constant law that has explained as many is the law.
+/// Coefficients that may have been at rest for this many natural periods are; a constant law that has explained as many
+/// is the law.
 const REST: f64 = 2.0;
 
 /// How far the trial of a drift, or its following, has come.
@@ -71,8 +73,8 @@ enum Course {
 pub struct Before<'a> {
     /// All coefficients of the law before.
     pub all: &'a [f64],
-    /// Value of each free coefficient at which its force moves the acceleration by as much as the law's own forces do; 0 where the law
-    /// does not have it.
+    /// Value of each free coefficient at which its force moves the acceleration by as much as the law's own forces do;
+    /// 0 where the law does not have it.
     pub reach: &'a [f64],
     /// Noise under that law.
     pub noise: Noise,
@@ -160,7 +162,7 @@ impl AugmentedDrift {
         if let Some(index) = problem.free_inertia() {
             self.reach[index] = before.all[problem.inertia];
         }
-        let first = first_state(problem, window, before.start, &before.noise);
+        let first = window.initial_state(before.start, &before.noise);
         let [q, _, qd] = first.covariance;
         let start = Start { all: before.all, reach: &self.reach, width: WIDTH, state: first.state, variances: [q, qd] };
         self.rivals.iter_mut().for_each(|rival| rival.begin(&unknowns, &start));

@@ -4,10 +4,10 @@
 //! θ⁺ = θ + w,  w ~ N(0, Q)        h·θ = r + v,  v ~ N(0, R)
 //! ```
 //!
-//! Q is diagonal: each coefficient wanders by a given part of its *reach*, the value at which its term alone would be as large as the
-//! right side, per length of the variation. R is what the sensors leave in the residual, and a part of the row's own size: error of
-//! the law. Noise in h biases least squares; its expectation is taken out of the score (errors in variables; Fuller,
-//! *Measurement Error Models*, 1987, 1.2).
+//! Q is diagonal: each coefficient wanders by a given part of its *reach*, the value at which its term alone would be
+//! as large as the right side, per length of the variation. R is what the sensors leave in the residual, and a part of
+//! the row's own size: error of the law. Noise in h biases least squares; its expectation is taken out of the score
+//! (errors in variables; Fuller, *Measurement Error Models*, 1987, 1.2).
 
 use serde::{Deserialize, Serialize};
 
@@ -94,7 +94,8 @@ impl RandomWalk {
         }
     }
 
-    /// Takes a row; returns the logarithm of its probability density, for r in units of its usual size and up to a constant.
+    /// Takes a row; returns the logarithm of its probability density, for r in units of its usual size and up to a
+    /// constant.
     pub fn learn(&mut self, row: &Equation) -> f64 {
         let noise = row.variance + self.error * self.error * row.size.max(row.right * row.right);
         self.set_gain(row.left);

@@ -39,8 +39,8 @@ impl SensorNoise {
         }
     }
 
-    /// Variances by channel, those given by the user where there are any. They are upper bounds, where an excitation is rough by far: `most`
-    /// is a lower one, if there is one.
+    /// Variances by channel, those given by the user where there are any. They are upper bounds, where an excitation is
+    /// rough by far: `most` is a lower one, if there is one.
     pub fn variances(&self, settings: &Settings, most: [f64; 2]) -> [f64; 2] {
         let given = [settings.noise_q, settings.noise_qd];
         let seen = |index: usize| self.variance[index].min(most[index]);

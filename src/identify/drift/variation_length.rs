@@ -1,5 +1,5 @@
-//! What weak rows of one variation length say of coefficients that may wander: a bank of [`RandomWalk`]s, weighed against each other by
-//! how well they predict the next row.
+//! What weak rows of one variation length say of coefficients that may wander: a bank of [`RandomWalk`]s, weighed
+//! against each other by how well they predict the next row.
 
 use super::random_walk::{Equation, RandomWalk};
 use crate::identify::problem::Problem;
@@ -13,8 +13,8 @@ const INDEPENDENT: [f64; 2] = [0.25, 0.5];
 /// How far the coefficients wander over a variation, relative to their reach; 0 first: the law is constant.
 const INTENSITIES: [f64; 5] = [0.0, 0.006, 0.02, 0.06, 0.2];
 
-/// Whether the inertia wanders like the others: the excitation fixes the scale of all coefficients, and a law that loosens it is
-/// attenuated.
+/// Whether the inertia wanders like the others: the excitation fixes the scale of all coefficients, and a law that
+/// loosens it is attenuated.
 const INERTIA_WANDERS: [bool; 2] = [false, true];
 
 /// How large the law's own error is, relative to a row.
@@ -103,8 +103,8 @@ impl VariationLength {
         (mean(wandering) / mean(constant)).ln()
     }
 
-    /// Takes a row formed about `all`, with sensor variances by channel. The row ends this `part` of a variation after the last one;
-    /// `memory` is for how many variations it counts in the score.
+    /// Takes a row formed about `all`, with sensor variances by channel. The row ends this `part` of a variation after
+    /// the last one; `memory` is for how many variations it counts in the score.
     pub fn take(&mut self, problem: &Problem, row: &Row, sensor: [f64; 2], part: f64, memory: f64) {
         let right = self.load(problem, row, sensor, part);
         let [share, overlap] = INDEPENDENT.map(|apart| (part / apart).min(1.0));

@@ -1,18 +1,19 @@
 //! Coefficients that move while the record runs: slow drift, and moves that are no jumps.
 //!
-//! A segment has one law. Where none explains its record because the coefficients move, they are tracked here:
-//! weak rows against variations φ with ∫ φ dt = 0, which leave an offset of the sensor out, are the measurements of a random walk
-//! ([`super::random_walk`]). How far the coefficients wander and how far the law errs is a bank of rivals ([`super::variation_length`]), weighed by their predictions.
-//! Long variations keep more noise and faster modes out, short ones follow sooner: the length whose next row is predicted
-//! best, relative to its size, is taken.
+//! A segment has one law. Where none explains its record because the coefficients move, they are tracked here: weak
+//! rows against variations φ with ∫ φ dt = 0, which leave an offset of the sensor out, are the measurements of a random
+//! walk ([`super::random_walk`]). How far the coefficients wander and how far the law errs is a bank of rivals
+//! ([`super::variation_length`]), weighed by their predictions. Long variations keep more noise and faster modes out,
+//! short ones follow sooner: the length whose next row is predicted best, relative to its size, is taken.
 //!
-//! Coefficients that drift are told from constant ones by the likelihood of the rivals that wander to that of those that do not.
+//! Coefficients that drift are told from constant ones by the likelihood of the rivals that wander to that of those
+//! that do not.
 
 use super::oscillation::Oscillation;
 use super::sensor_noise::SensorNoise;
 use super::variation_length::VariationLength;
 use crate::identify::problem::Problem;
-use crate::identify::section::SectionBuffer;
+use crate::identify::section::{LONGEST_VARIATION, OVERLAP, SectionBuffer};
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
 use crate::weak::{Row, Variation};
@@ -21,14 +22,8 @@ use serde::{Deserialize, Serialize};
 /// Samples in the shortest variation.
 const SHORTEST: usize = 64;
 
-/// Samples in the longest variation, where the window has room for it.
-const LONGEST: usize = 2048;
-
 /// Odd about its middle, so that its integral is zero; smooth enough to keep faster modes out.
 const VARIATION: Variation = Variation::SmoothSine { mode: 2 };
-
-/// Rows begin this fraction of a variation apart.
-const OVERLAP: usize = 8;
 
 /// For how many of the longest variations a row counts in the choice of the length.
 const MEMORY: f64 = 16.0;
@@ -67,7 +62,7 @@ pub struct WeakRowDrift {
 impl WeakRowDrift {
     /// Room for the problem's unknowns and for variations up to a quarter of the window.
     pub fn new(problem: &Problem, capacity: usize) -> WeakRowDrift {
-        let longest = LONGEST.min(capacity / 4).max(SHORTEST);
+        let longest = LONGEST_VARIATION.min(capacity / 4).max(SHORTEST);
         let lengths = (0..).map(|octave| SHORTEST << octave).take_while(|samples| *samples <= longest);
         WeakRowDrift {
             lengths: lengths.map(|samples| VariationLength::new(problem, samples)).collect(),
@@ -88,8 +83,9 @@ impl WeakRowDrift {
         (self.moving, self.quiet, self.since) = (0, 0, start);
     }
 
-    /// Takes the newest sample of the window and forms at most one row, under sensor noise of at most these variances; returns whether
-    /// the law was renewed. Unless it is to be `thorough`, the rows of the lengths that are not in use do not overlap.
+    /// Takes the newest sample of the window and forms at most one row, under sensor noise of at most these variances;
+    /// returns whether the law was renewed. Unless it is to be `thorough`, the rows of the lengths that are not in use
+    /// do not overlap.
     pub fn step(
         &mut self,
         problem: &Problem,
@@ -164,7 +160,8 @@ impl WeakRowDrift {
         self.law().evidence > SEEN
     }
 
-    /// Whether the variations are longer than this many halves of an oscillation; below one no record of its own gives an acceptable law.
+    /// Whether the variations are longer than this many halves of an oscillation; below one no record of its own gives
+    /// an acceptable law.
     pub fn spans(&self, halves: f64) -> bool {
         self.law().samples as f64 > halves * self.oscillation.half_period()
     }
@@ -186,7 +183,8 @@ impl WeakRowDrift {
         known.sum::<f64>() / law.all.iter().map(|value| value * value).sum::<f64>()
     }
 
-    /// Whether the rows say anything of the free coefficient: it is known better than that its term may be as large as the right side.
+    /// Whether the rows say anything of the free coefficient: it is known better than that its term may be as large as
+    /// the right side.
     pub fn determines(&self, free: usize) -> bool {
         self.std(free) < self.law().reach(free)
     }

@@ -6,6 +6,8 @@ use super::noise::{ChannelNoise, Smoothness};
 use super::segment::{COHERENT, Segment};
 use super::smoother::{Instant, LONGEST, Smoother};
 use super::sums::dot;
+use crate::estimation::OUTLYING;
+use crate::identify::change::SUSPENSE;
 use crate::identify::deviation::Deviation;
 use crate::identify::problem::Problem;
 use crate::identify::report::{Coefficient, Output, Status};
@@ -20,17 +22,11 @@ const FIRST: usize = 64;
 /// Part by which a longer wait may still lower the variance of a residual.
 const GAIN_OF_WAITING: f64 = 0.05;
 
-/// Std of a residual beyond which a reading stands alone until others confirm it.
-const FAR: f64 = 6.0;
-
 /// Numbers from which on sums of products of four overflow.
 const LARGEST: f64 = 1e60;
 
 /// Readings in a row that may stand alone; one more is no outlier.
 const ALONE: usize = 2;
-
-/// Samples for which a law is not renewed while a switch is suspected.
-const SUSPENSE: u64 = 1000;
 
 /// The law of the present stage and what it stands on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -198,7 +194,7 @@ impl ForceTracker {
         }
         let of_motion = expect(&problem.terms, stage.known(), instant, &mut self.features);
         let residual = instant.force - dot(&self.features, &stage.all);
-        residual * residual > FAR * FAR * (stage.variance() + of_motion)
+        residual * residual > OUTLYING * OUTLYING * (stage.variance() + of_motion)
     }
 
     fn use_instant(&mut self, problem: &Problem, settings: &Settings, instant: Instant, now: f64, output: &mut Output) {

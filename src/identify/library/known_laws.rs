@@ -1,7 +1,8 @@
 //! Laws that were validated, kept for the day they come back.
 //!
-//! A law is kept as its coefficients θ and their precision Λ on the terms that it has. One that comes back adds its information:
-//! Λ = Λ₁ + Λ₂, Λθ = Λ₁θ₁ + Λ₂θ₂. There is room for [`ROOM`] laws; when it is full the one that was least recently in use goes.
+//! A law is kept as its coefficients θ and their precision Λ on the terms that it has. One that comes back adds its
+//! information: Λ = Λ₁ + Λ₂, Λθ = Λ₁θ₁ + Λ₂θ₂. There is room for [`ROOM`] laws; when it is full the one that was least
+//! recently in use goes.
 
 use super::known_law::{Estimate, KnownLaw};
 use crate::estimation::{Information, Solution};
@@ -12,7 +13,8 @@ use serde::{Deserialize, Serialize};
 /// Laws that are kept.
 pub const ROOM: usize = 16;
 
-/// A change of the law is known to this fraction of itself where its effect is linearised about the law before, as a std.
+/// A change of the law is known to this fraction of itself where its effect is linearised about the law before, as a
+/// std.
 const BEND: f64 = 0.05;
 
 /// What a record says on a law, nats, against certainty that the coefficients are at the record's point.
@@ -77,7 +79,8 @@ impl KnownLaws {
         self.store();
     }
 
-    /// Keeps the law of a segment that has ended under `number`. What was known of it is added, unless the segment began with that.
+    /// Keeps the law of a segment that has ended under `number`. What was known of it is added, unless the segment
+    /// began with that.
     pub fn keep(&mut self, number: u32, estimate: &Estimate, samples: u64, spread: &[f64], began_with_it: bool) {
         self.latest.take(estimate, spread, &mut self.solution);
         (self.latest.number, self.latest.samples) = (number, samples);
@@ -121,8 +124,8 @@ impl KnownLaws {
         Weighed { known: weighing.evidence(record, belief), any }
     }
 
-    /// The same about the law's own coefficients, where it is the one that has just been left: what it may lead to is a law that differs
-    /// from it in one coefficient alone, or any.
+    /// The same about the law's own coefficients, where it is the one that has just been left: what it may lead to is a
+    /// law that differs from it in one coefficient alone, or any.
     pub fn weigh_left(&mut self, place: usize, record: &Information) -> Weighed {
         let Weighed { known, any } = self.weigh(place, None, record);
         let KnownLaws { laws, belief, weighing, precision, .. } = self;
@@ -144,8 +147,8 @@ impl KnownLaws {
         best.1
     }
 
-    /// Weighs the law at `place` by the hypotheses of a switch from the law in use, about which they are linear. A change of the inertia
-    /// is told to them by what it does to the acceleration.
+    /// Weighs the law at `place` by the hypotheses of a switch from the law in use, about which they are linear. A
+    /// change of the inertia is told to them by what it does to the acceleration.
     pub fn at_a_switch(&mut self, place: usize, problem: &Problem, in_use: &[f64], bank: &mut Bank) -> Weighed {
         let KnownLaws { laws, belief, weighing, .. } = self;
         let law = &laws[place];

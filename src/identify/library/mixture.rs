@@ -1,7 +1,7 @@
 //! What speaks against a known law that was recognised, and has not stood its trial yet.
 //!
-//! Until then the published law is one of three: the recognised one, the next best known one, or one that nobody has seen, which lies
-//! about the recognised one as far as a switch goes. The std is that of their mixture.
+//! Until then the published law is one of three: the recognised one, the next best known one, or one that nobody has
+//! seen, which lies about the recognised one as far as a switch goes. The std is that of their mixture.
 
 use super::known_law::KnownLaw;
 use serde::{Deserialize, Serialize};

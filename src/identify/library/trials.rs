@@ -1,12 +1,11 @@
 //! Known laws on trial: the filter of each runs over the record since a stage's start.
 //!
-//! The state is marginalised by the filter, the law's own uncertainty by its covariance (`evidence::BayesFactor`). A few samples are
-//! run at a step, shared among the laws, until all have caught up with the stream; then they are weighed against each other and each
-//! against "a law that a switch may lead to".
+//! The state is marginalised by the filter, the law's own uncertainty by its covariance (`evidence::BayesFactor`). A
+//! few samples are run at a step, shared among the laws, until all have caught up with the stream; then they are
+//! weighed against each other and each against "a law that a switch may lead to".
 
 use super::known_laws::{KnownLaws, ROOM};
 use crate::estimation::{Noise, Pass};
-use crate::identify::initial_state::first_state;
 use crate::identify::problem::Problem;
 use crate::identify::window::Window;
 use crate::law::Motion;
@@ -91,23 +90,16 @@ impl Trials {
         }
     }
 
-    /// Puts all known laws on trial over the record from sample `start`, of which there are two at least. The sensors' noise is theirs
-    /// where `sensor` does not say.
-    pub fn begin(
-        &mut self,
-        known: &KnownLaws,
-        problem: &Problem,
-        window: &Window,
-        start: u64,
-        sensor: [Option<f64>; 2],
-    ) {
+    /// Puts all known laws on trial over the record from sample `start`, of which there are two at least. The sensors'
+    /// noise is theirs where `sensor` does not say.
+    pub fn begin(&mut self, known: &KnownLaws, window: &Window, start: u64, sensor: [Option<f64>; 2]) {
         (self.start, self.next_weighing) = (start, start + FEWEST);
         self.running = !known.laws().is_empty();
         for (trial, law) in self.trials.iter_mut().zip(known.laws()) {
             let own = law.noise.sensor;
             let sensor = [0, 1].map(|channel| sensor[channel].unwrap_or(own[channel]));
             trial.noise = Noise { sensor, process: law.noise.process };
-            trial.begin(problem, window, start);
+            trial.begin(window, start);
         }
     }
 
@@ -172,8 +164,8 @@ impl Trials {
         self.verdict(count)
     }
 
-    /// Log-evidence, nats, that the law at `place` was never the record's, were it any other or one that differs from it in one
-    /// coefficient; nothing where it has not seen the record but for its last samples.
+    /// Log-evidence, nats, that the law at `place` was never the record's, were it any other or one that differs from
+    /// it in one coefficient; nothing where it has not seen the record but for its last samples.
     pub fn evidence_against(&self, place: usize, known: &mut KnownLaws, window: &Window) -> Option<f64> {
         let trial = &self.trials[place];
         let seen = self.running && !trial.out && trial.next + FEWEST >= window.ready();
@@ -203,9 +195,9 @@ impl Trials {
     }
 
     /// Gives away the run of the law at `place` for another one's room; it begins anew.
-    pub fn hand_over(&mut self, place: usize, problem: &Problem, window: &Window, live: &mut Pass) {
+    pub fn hand_over(&mut self, place: usize, window: &Window, live: &mut Pass) {
         std::mem::swap(&mut self.trials[place].pass, live);
-        self.trials[place].begin(problem, window, self.start);
+        self.trials[place].begin(window, self.start);
     }
 
     /// What the record says on the law at `place`, as last weighed; nothing where it rules it out.
@@ -225,8 +217,8 @@ impl Trials {
 }
 
 impl Trial {
-    fn begin(&mut self, problem: &Problem, window: &Window, start: u64) {
-        self.pass.begin(first_state(problem, window, start, &self.noise));
+    fn begin(&mut self, window: &Window, start: u64) {
+        self.pass.begin(window.initial_state(start, &self.noise));
         self.next = start + 1;
         self.out = false;
         (self.evidence, self.against_any) = (0.0, 0.0);

@@ -80,8 +80,8 @@ impl Capture {
     }
 }
 
-/// The sample with every channel: q̇ as the last difference of q, q as the trapezoidal sum of q̇ on top of the completed
-/// sample before, F = 0.
+/// The sample with every channel: q̇ as the last difference of q, q as the trapezoidal sum of q̇ on top of the
+/// completed sample before, F = 0.
 pub fn complete(sample: Sample, before: Option<&Sample>, channels: Channels) -> Sample {
     let excitation = if channels.excitation { sample.excitation } else { 0.0 };
     let Some(before) = before else {

@@ -1,8 +1,8 @@
 //! The published identification: one weak equation per interval and variation, all solved together by pseudo-inverse.
 //!
-//! The intervals are the whole record, its halves and its quarters, each half over its neighbour. Every equation is divided by
-//! ‖δq‖, so that white sensor noise weighs alike in all of them; apart from that it is ordinary least squares, and as such
-//! takes the residuals for independent, which those of overlapping intervals are not.
+//! The intervals are the whole record, its halves and its quarters, each half over its neighbour. Every equation is
+//! divided by ‖δq‖, so that white sensor noise weighs alike in all of them; apart from that it is ordinary least
+//! squares, and as such takes the residuals for independent, which those of overlapping intervals are not.
 
 use super::capture::Capture;
 use crate::identify::problem::Problem;
@@ -13,7 +13,8 @@ use std::ops::RangeInclusive;
 /// Each interval is half as long as one of the level above.
 const LEVELS: usize = 3;
 
-/// The variations over every interval: smooth enough at its ends that quadrature does not hide what the data leave open.
+/// The variations over every interval: smooth enough at its ends that quadrature does not hide what the data leave
+/// open.
 const VARIATIONS: [Variation; 4] = [
     Variation::Polynomial { power: 6 },
     Variation::SmoothSine { mode: 2 },
@@ -83,8 +84,8 @@ impl Equations {
         &self.fit
     }
 
-    /// Std of a free coefficient by ordinary least squares: from the residual, its equations taken for independent. `None`
-    /// where the equations leave the coefficient open.
+    /// Std of a free coefficient by ordinary least squares: from the residual, its equations taken for independent.
+    /// `None` where the equations leave the coefficient open.
     pub fn std(&self, free: usize) -> Option<f64> {
         let rows = f64::from(self.regression.rows());
         let excess = rows - self.fit.rank as f64;

@@ -1,4 +1,5 @@
-//! The published method as published: `capture` a record, solve its `equations`, compare predictions; `procedure` begins anew at each switch.
+//! The published method as published: `capture` a record, solve its `equations`, compare predictions; `procedure`
+//! begins anew at each switch.
 
 mod capture;
 mod equations;

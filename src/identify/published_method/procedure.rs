@@ -1,14 +1,16 @@
 //! The published procedure: capture, identify, compare without pause, and on a switch begin anew.
 //!
 //! 1. Capture q, q̇, F for a fixed time (1 s).
-//! 2. Identify the integral-variational equation (1) from it by ordinary least squares over all terms: see [`Equations`].
-//! 3. Integrate the law freely from that instant on and compare with what is observed. When the deviation of eq. (4) over the last
-//!    T = 0.5 s passes the threshold of 0.05, the law has switched: the old data are thrown away, and 1. follows.
+//! 2. Identify the integral-variational equation (1) from it by ordinary least squares over all terms: see
+//!    [`Equations`].
+//! 3. Integrate the law freely from that instant on and compare with what is observed. When the deviation of eq. (4)
+//!    over the last T = 0.5 s passes the threshold of 0.05, the law has switched: the old data are thrown away, and 1.
+//!    follows.
 //!
-//! It is kept as published, with its weaknesses: sensor noise biases the coefficients, the first state of a prediction is
-//! a single noisy sample, the data between switch and alarm are not used, and a threshold that noise or a poor law passes on its
-//! own begins the loop of switch and re-identification anew each time. Where a record leaves the inertia open there is no law to predict
-//! with, and the next record is captured.
+//! It is kept as published, with its weaknesses: sensor noise biases the coefficients, the first state of a prediction
+//! is a single noisy sample, the data between switch and alarm are not used, and a threshold that noise or a poor law
+//! passes on its own begins the loop of switch and re-identification anew each time. Where a record leaves the inertia
+//! open there is no law to predict with, and the next record is captured.
 
 use super::capture::{Capture, complete};
 use super::equations::Equations;

@@ -1,14 +1,15 @@
 //! How much more of such a record a law needs before its coefficients are known.
 //!
-//! The information of a record grows about linearly with its length, at first faster. Over its recent half, from T/2 to T, the variance that
-//! the record alone leaves fell by some power p of the length; the variance v with all that is known is taken to fall by one that is a third of the way to 1:
+//! The information of a record grows about linearly with its length, at first faster. Over its recent half, from T/2 to
+//! T, the variance that the record alone leaves fell by some power p of the length; the variance v with all that is
+//! known is taken to fall by one that is a third of the way to 1:
 //!
 //! ```text
 //! v(T′) = v(T) (T ÷ T′)^((2p + 1) ÷ 3),   p = ln(u(T/2) ÷ u(T)) ÷ ln 2,   u of the record alone
 //! ```
 //!
-//! A coefficient is known when its variance is one n-th of what e of eq. (8) allows, or the law is; a law when e is, and it has moved by no
-//! more while its record grew by a tenth.
+//! A coefficient is known when its variance is one n-th of what e of eq. (8) allows, or the law is; a law when e is,
+//! and it has moved by no more while its record grew by a tenth.
 
 use crate::estimation::{Information, Solution};
 use serde::{Deserialize, Serialize};
@@ -29,7 +30,8 @@ pub struct Convergence {
     solutions: [Solution; 2],
     /// Number of the sample there.
     at: u64,
-    /// Lengths at which each coefficient is known, in those of the record; 1 where it is, infinite where nothing can be said.
+    /// Lengths at which each coefficient is known, in those of the record; 1 where it is, infinite where nothing can be
+    /// said.
     factors: Vec<f64>,
 }
 
@@ -132,8 +134,8 @@ impl Fall {
         }
     }
 
-    /// The same where it has to have fallen by no more than `allowed` since the trial began; trials follow each other from the length
-    /// `trial` on.
+    /// The same where it has to have fallen by no more than `allowed` since the trial began; trials follow each other
+    /// from the length `trial` on.
     fn length_after_trial(&self, allowed: f64, trial: f64, growth: f64) -> f64 {
         if !self.is_known() {
             return f64::INFINITY;

@@ -32,8 +32,8 @@ impl Segment {
         self.runs.astray >= LOST
     }
 
-    /// Whether the law would hold with other terms too: with all of them it is sure enough, it has stood long, or it explains its record
-    /// with the terms of the law before.
+    /// Whether the law would hold with other terms too: with all of them it is sure enough, it has stood long, or it
+    /// explains its record with the terms of the law before.
     pub fn stands(&self) -> bool {
         self.stability.stands(&Evidence {
             explains: self.fit.explains,
@@ -47,8 +47,8 @@ impl Segment {
         self.stands() && self.stated_error() < VALIDATED
     }
 
-    /// Whether nothing speaks against the law: no error that lasts, none that the sensors seem to have since it began, no estimate that a longer
-    /// record contradicted.
+    /// Whether nothing speaks against the law: no error that lasts, none that the sensors seem to have since it began,
+    /// no estimate that a longer record contradicted.
     pub fn is_beyond_doubt(&self) -> bool {
         let known = self.known.weight > 0.0;
         let louder = self.noise.sensor.iter().zip(self.known.noise).any(|(now, before)| *now > LOUDER * before);
@@ -101,8 +101,8 @@ impl Segment {
         self.convergence.renew(&record);
     }
 
-    /// By which factor the record that the last run ended with has to grow until the coefficient is known; infinite where nothing can be
-    /// said.
+    /// By which factor the record that the last run ended with has to grow until the coefficient is known; infinite
+    /// where nothing can be said.
     pub fn growth_needed(&self, free: usize) -> f64 {
         self.convergence.factor(free)
     }

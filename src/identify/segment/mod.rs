@@ -1,24 +1,21 @@
 //! The segment estimator: the law of the record since the last switch, refined filter run by filter run.
 //!
-//! - `weak_start`: first coefficients, from weak rows alone; `difference_noise`: the sensors' noise before any law;
-//! - `state`: what a segment holds; `refinement`: how it goes on; `noise_covariance`, `term_selection`, `prior`: its parts;
+//! - `weak_start`: first coefficients, from weak rows alone;
+//! - `state`: what a segment holds; `refinement`: how it goes on; `noise_covariance`, `prior`: its parts;
 //! - `motion_scales`: how large the motion is; `convergence`: how much longer the record has to get;
 //! - `judgement`: whether the law may be shown, validated, or replaced.
 
 mod convergence;
-mod difference_noise;
 mod judgement;
 mod motion_scales;
 mod noise_covariance;
 mod prior;
 mod refinement;
 mod state;
-mod term_selection;
 mod weak_start;
 
-pub use difference_noise::DifferenceNoise;
 pub use motion_scales::MotionScales;
 pub use prior::Prior;
 pub use refinement::GROWTH;
 pub use state::{NOISE_MEMORY, Segment};
-pub use weak_start::WeakStart;
+pub use weak_start::{Guess, WeakStart};

@@ -72,8 +72,8 @@ impl MotionScales {
         (sum / self.count.max(1.0)).sqrt()
     }
 
-    /// RMS of the acceleration that a force of the motion gives, as the law's own forces are: of a rough excitation most acts on the
-    /// inertia alone.
+    /// RMS of the acceleration that a force of the motion gives, as the law's own forces are: of a rough excitation
+    /// most acts on the inertia alone.
     pub fn restoring_acceleration(&self) -> f64 {
         let sum = if self.force > 0.0 { self.restoring.clamp(LEAST * self.force, self.force) } else { self.restoring };
         (sum / self.count.max(1.0)).sqrt()

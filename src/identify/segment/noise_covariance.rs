@@ -9,10 +9,12 @@ use crate::identify::window::Window;
 /// Variance of an innovation ÷ that of its sensor from which on the law's own error counts.
 const PROCESS_SHARE: f64 = 2.0;
 
-/// The same where the state is known from the last 30 samples alone: an innovation's variance is its sensor's times 1 + 1/30.
+/// The same where the state is known from the last 30 samples alone: an innovation's variance is its sensor's times 1 +
+/// 1/30.
 const FORGETTING: f64 = 1.0 + 1.0 / 30.0;
 
-/// Nothing tells a process noise from none under which the state is remembered for ten times the longest window, samples.
+/// Nothing tells a process noise from none under which the state is remembered for ten times the longest window,
+/// samples.
 const LIFETIME: f64 = 1e7;
 
 /// Overdispersion of a record that its law does not explain: chance does not bring it to any of a dozen coefficients.

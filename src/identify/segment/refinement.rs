@@ -1,17 +1,16 @@
 //! How the estimate of the present segment is refined, filter run by filter run over its record.
 //!
-//! A run takes the filter over all samples of the segment, a bounded number at a step, until it has caught up with the stream; then
-//! the coefficients take a Gauss–Newton step, terms without evidence are dropped, the noise levels follow the innovations, and the
-//! next run begins. Begun with much process noise the fit is that of the equation error, which is nearly linear in the
-//! coefficients; the likelihood then takes the process noise down, run by run, to where the data want it, and the fit
-//! becomes the maximum likelihood of the trajectory without passing through its wrong minima.
+//! A run takes the filter over all samples of the segment, a bounded number at a step, until it has caught up with the
+//! stream; then the coefficients take a Gauss–Newton step, terms without evidence are dropped, the noise levels follow
+//! the innovations, and the next run begins. Begun with much process noise the fit is that of the equation error, which
+//! is nearly linear in the coefficients; the likelihood then takes the process noise down, run by run, to where the
+//! data want it, and the fit becomes the maximum likelihood of the trajectory without passing through its wrong minima.
 
 use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
 use super::prior::{InertiaPrior, Prior};
 use super::state::{NOISE_MEMORY, Runs, Segment};
 use crate::estimation::{Noise, Observation, Pass};
-use crate::identify::initial_state::first_state;
 use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
@@ -24,15 +23,16 @@ pub const GROWTH: f64 = 0.02;
 /// … and by this many samples.
 const FRESH: u64 = 8;
 
-/// Effects that the law lacks are looked for again when the record has grown by this factor: most runs are spared the work.
+/// Effects that the law lacks are looked for again when the record has grown by this factor: most runs are spared the
+/// work.
 const LOOK_AGAIN: f64 = 1.4;
 
 /// The record of a segment is folded into a prior when it fills this fraction of the window.
 const FULL: f64 = 0.9;
 
 impl Segment {
-    /// Begins a stage at sample `start` from the coefficients `from` and these noise levels; before any data the coefficients
-    /// lie about `centre` with the std `spread`.
+    /// Begins a stage at sample `start` from the coefficients `from` and these noise levels; before any data the
+    /// coefficients lie about `centre` with the std `spread`.
     pub fn begin(&mut self, problem: &Problem, window: &Window, start: u64, from: &[f64], prior: Prior, noise: Noise) {
         self.start = start;
         self.coefficients.copy_from_slice(from);
@@ -68,10 +68,11 @@ impl Segment {
         self.score_test.next_look = 0;
         self.convergence.clear();
         self.run.largest = [0.0; 2];
-        self.begin_run(problem, window);
+        self.begin_run(window);
     }
 
-    /// Begins a stage at sample `start` with a law that is known: its coefficients, and its information beside the record's.
+    /// Begins a stage at sample `start` with a law that is known: its coefficients, and its information beside the
+    /// record's.
     pub fn begin_known(
         &mut self,
         problem: &Problem,
@@ -100,7 +101,7 @@ impl Segment {
         let end = window.ready();
         if self.run.next <= window.oldest() {
             self.start = window.oldest();
-            self.begin_run(problem, window);
+            self.begin_run(window);
         }
         let stop = end.min(self.run.next + budget as u64);
         while self.run.next < stop {
@@ -134,15 +135,16 @@ impl Segment {
         }
     }
 
-    /// The run that was just closed, at the head of the stream and linear about the new coefficients; the caller gets it in
-    /// exchange for another one's room. The next run begins.
-    pub fn hand_over(&mut self, problem: &Problem, window: &Window, live: &mut Pass) {
+    /// The run that was just closed, at the head of the stream and linear about the new coefficients; the caller gets
+    /// it in exchange for another one's room. The next run begins.
+    pub fn hand_over(&mut self, window: &Window, live: &mut Pass) {
         std::mem::swap(&mut self.run.filter_run, live);
         live.information.clone_from_slices(&self.information);
-        self.begin_run(problem, window);
+        self.begin_run(window);
     }
 
-    /// The run has caught up: the coefficients take a step, the structure and the noise levels follow, and the law is judged.
+    /// The run has caught up: the coefficients take a step, the structure and the noise levels follow, and the law is
+    /// judged.
     fn close(&mut self, problem: &Problem, settings: &Settings, window: &Window) {
         let track = self.run.filter_run.track;
         self.run.closed_at = self.run.next;
@@ -155,7 +157,7 @@ impl Segment {
         let Segment { selection, information, coefficients, active, solution, .. } = self;
         selection.select(information, &problem.maybe, track.total(), coefficients, active, solution);
         if !self.coefficients.iter().all(|value| value.is_finite()) {
-            return self.recover(problem, window);
+            return self.recover(window);
         }
         self.runs.astray = 0;
         self.take_step(problem);
@@ -198,14 +200,15 @@ impl Segment {
         self.fit.decrement = self.information.quadratic(&self.step) / active as f64;
     }
 
-    /// The run has left what can be integrated: it is repeated from the last coefficients with the filter closer to the data.
-    fn recover(&mut self, problem: &Problem, window: &Window) {
+    /// The run has left what can be integrated: it is repeated from the last coefficients with the filter closer to the
+    /// data.
+    fn recover(&mut self, window: &Window) {
         self.coefficients.copy_from_slice(&self.step);
         self.noise.process = if self.noise.process.is_finite() { 1e3 * self.noise.process } else { 1.0 };
         (self.fit.decrement, self.fit.gain) = (f64::INFINITY, f64::INFINITY);
         (self.runs.closed, self.runs.calm) = (0, 0);
         self.runs.astray += 1;
-        self.begin_run(problem, window);
+        self.begin_run(window);
     }
 
     /// Keeps the inertia from losing more than half of itself in one step.
@@ -247,11 +250,11 @@ impl Segment {
     }
 
     /// Begins the next run.
-    pub fn begin_run(&mut self, problem: &Problem, window: &Window) {
+    pub fn begin_run(&mut self, window: &Window) {
         let length = self.length(window.ready());
         let long = length as f64 > 0.6 * FULL * window.capacity() as f64;
         self.run.checkpoint.at = long.then_some(self.start + length / 2);
-        self.run.filter_run.begin(first_state(problem, window, self.start, &self.noise));
+        self.run.filter_run.begin(window.initial_state(self.start, &self.noise));
         self.run.next = self.start + 1;
         self.score_test.looking = self.settled() && length >= self.score_test.next_look;
         if self.score_test.looking {

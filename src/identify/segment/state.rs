@@ -3,8 +3,7 @@
 use super::convergence::Convergence;
 use super::motion_scales::MotionScales;
 use super::prior::InertiaPrior;
-use super::term_selection::TermSelection;
-use crate::estimation::{Information, Missing, Noise, Pass, ScoreTest, Solution};
+use crate::estimation::{Information, Missing, Noise, Pass, ScoreTest, Solution, TermSelection};
 use crate::identify::library::Estimate;
 use crate::identify::problem::Problem;
 use crate::identify::validation::{Constancy, SandwichFactor, Stability};

@@ -5,19 +5,13 @@
 //! ones have too few rows.
 
 use crate::identify::problem::Problem;
-use crate::identify::section::SectionBuffer;
+use crate::identify::section::{LONGEST_VARIATION, OVERLAP, SectionBuffer};
 use crate::identify::window::Window;
 use crate::weak::{Fit, Regression, Row, Variation};
 use serde::{Deserialize, Serialize};
 
 /// Samples in the shortest variation.
 const SHORTEST: usize = 32;
-
-/// Samples in the longest variation, where the window has room for it.
-const LONGEST: usize = 2048;
-
-/// Rows begin this fraction of a variation apart.
-const OVERLAP: usize = 8;
 
 /// Largest share of noise in a term that the start may rest on …
 const ATTENUATION: f64 = 0.2;
@@ -68,7 +62,7 @@ impl WeakStart {
     /// Room for the problem's unknowns and for variations up to a quarter of the window.
     pub fn new(problem: &Problem, capacity: usize) -> WeakStart {
         let n = problem.free.len();
-        let longest = LONGEST.min(capacity / 4).max(SHORTEST);
+        let longest = LONGEST_VARIATION.min(capacity / 4).max(SHORTEST);
         let lengths = (0..).map(|octave| SHORTEST << octave).take_while(|length| *length <= longest);
         let scale =
             |length| Scale { length, next: 0, regression: Regression::new(n), norm: 0.0, noise: vec![[0.0; 2]; n] };
@@ -126,8 +120,8 @@ impl WeakStart {
         }
     }
 
-    /// What the rows of the longest variation with enough of them leave open, each combination by its free terms; all terms while
-    /// there are no such rows.
+    /// What the rows of the longest variation with enough of them leave open, each combination by its free terms; all
+    /// terms while there are no such rows.
     pub fn open_directions(&self) -> Vec<Vec<usize>> {
         let n = self.equation.len();
         let enough = |scale: &&Scale| scale.regression.rows() as usize >= 2 * n + 2;
@@ -139,8 +133,8 @@ impl WeakStart {
         fit.open_directions()
     }
 
-    /// The solution of the length with the smallest predicted error, for sensor noise of these variances; none while no length
-    /// has twice as many rows as unknowns and signal enough.
+    /// The solution of the length with the smallest predicted error, for sensor noise of these variances; none while no
+    /// length has twice as many rows as unknowns and signal enough.
     pub fn guess(&mut self, problem: &Problem, sensor: [f64; 2]) -> Option<Guess<'_>> {
         let n = self.equation.len();
         // the best of those with little noise, and of long ones with much
@@ -184,8 +178,8 @@ impl Scale {
         fit.residual / excitation * (unknowns / independent).sqrt()
     }
 
-    /// The largest share of noise in what a "fit" term has of its own: least squares takes the coefficient for that much too
-    /// small (errors in variables).
+    /// The largest share of noise in what a "fit" term has of its own: least squares takes the coefficient for that
+    /// much too small (errors in variables).
     fn attenuation(&self, problem: &Problem, fit: &Fit, sensor: [f64; 2]) -> f64 {
         let terms = (0..fit.spread.len()).filter(|index| !problem.maybe[*index] && fit.determined[*index]);
         terms

@@ -1,9 +1,10 @@
 //! Other fits of the record: from the weak rows of it or of its later part, and with all error in the sensors.
 
 use super::new_record::{INERTIA_SPREAD, PRIOR_WIDTH};
-use super::state::{FRESH_START, Fitting, Setup, Tracker};
+use super::state::{FRESH_START, Fitting, NOTHING_KNOWN, Setup, Tracker};
 use crate::estimation::Noise;
-use crate::identify::segment::Prior;
+use crate::identify::problem::Problem;
+use crate::identify::segment::{Guess, Prior};
 
 /// Runs after which a fit that has not settled is given up …
 const PATIENCE: u32 = 40;
@@ -17,11 +18,9 @@ const ENOUGH: u64 = 500;
 /// A first law is tried when the weak start predicts its force this well.
 const START_ERROR: f64 = 0.3;
 
-/// The same where no displacement is measured: each weak row then has an offset of its own, which the filter does not need.
+/// The same where no displacement is measured: each weak row then has an offset of its own, which the filter does not
+/// need.
 const START_ERROR_WITHOUT_Q: f64 = 1.0;
-
-/// Std beyond which nothing is known of a coefficient.
-const NOTHING_KNOWN: f64 = 1e9;
 
 /// A first law lies within this many stds of the weak rows' coefficients.
 const START_STDS: f64 = 10.0;
@@ -29,20 +28,22 @@ const START_STDS: f64 = 10.0;
 /// Process noise of a fit with all error in the sensors, relative to that of the segment.
 const IN_THE_SENSORS: f64 = 1e-6;
 
-/// What the latest record must explain better than the whole one to replace it, nats per measurement: the noise may have changed …
+/// What the latest record must explain better than the whole one to replace it, nats per measurement: the noise may
+/// have changed …
 const CLEARLY: f64 = 0.1;
 
-/// … or, where it explains itself down to the sensors' noise and the whole one does not, in 1 ÷ √ of the number of measurements: the mean
-/// of the right law's likelihood scatters by 0.7 of that.
+/// … or, where it explains itself down to the sensors' noise and the whole one does not, in 1 ÷ √ of the number of
+/// measurements: the mean of the right law's likelihood scatters by 0.7 of that.
 const SURELY: f64 = 2.0;
 
 /// Another fit of the same record must explain it better by this, nats.
 const BETTER: f64 = 3.0;
 
 impl Tracker {
-    /// A record that has grown long without a validated law may hold a switch that nobody saw: the weak rows begin anew, so that the next
-    /// fit knows the latest record alone. How long the law needs nobody knows, nor how long it lasts: the lengths follow the universal
-    /// sequence (Luby, Sinclair and Zuckerman, *Information Processing Letters* 47 (1993), 173).
+    /// A record that has grown long without a validated law may hold a switch that nobody saw: the weak rows begin
+    /// anew, so that the next fit knows the latest record alone. How long the law needs nobody knows, nor how long it
+    /// lasts: the lengths follow the universal sequence (Luby, Sinclair and Zuckerman, *Information Processing Letters*
+    /// 47 (1993), 173).
     pub(super) fn begin_afresh(&mut self) {
         let (end, since) = (self.window.end(), self.schedule.rows_from);
         let due = match self.is_mixed() {
@@ -60,30 +61,20 @@ impl Tracker {
 
     /// Begins a segment, or another fit beside the one there is, from what the weak rows of the record say.
     pub(super) fn guess(&mut self, setup: Setup) {
-        let Setup { problem, settings } = setup;
-        if self.start.feed(problem, &self.window, 1) {
+        let problem = setup.problem;
+        if self.start.feed(problem, &self.window, 1) || !self.is_guess_due(setup) {
             return;
         }
-        let (window, since) = (&self.window, self.schedule.rows_from);
-        let covered = self.now() - window.sample(window.oldest()).t;
-        let long_enough = self.fitting != Fitting::Contested && covered >= settings.initial_window;
-        if !long_enough || window.end() < self.schedule.next_guess || since < window.oldest() {
-            return;
-        }
-        self.schedule.next_guess = window.end() + (window.end() - since) / 8 + 4;
+        let (end, since) = (self.window.end(), self.schedule.rows_from);
+        self.schedule.next_guess = end + (end - since) / 8 + 4;
         let sensor = self.sensor_noise(setup);
-        let follows = self.follows_a_law();
+        let before = self.follows_a_law().then_some(&self.monitor.law);
         let Some(guess) = self.start.guess(problem, sensor) else { return };
-        let inertia =
-            problem.free_inertia().map_or(problem.known[problem.inertia], |index| guess.fit.coefficients[index]);
-        let allowed = if problem.channels.q { START_ERROR } else { START_ERROR_WITHOUT_Q };
-        let turned = follows && inertia * self.monitor.law.all[problem.inertia] < 0.0;
-        if guess.relative_error > allowed || !(inertia.is_finite() && inertia != 0.0) || turned {
+        let Some(inertia) = believable_inertia(problem, &guess, before.map(|law| law.all[problem.inertia])) else {
             return;
-        }
+        };
         let noise = Noise { sensor, process: guess.force_intensity / (inertia * inertia) + f64::MIN_POSITIVE };
-        let fit = guess.fit;
-        let belief = &mut self.belief;
+        let (fit, belief) = (guess.fit, &mut self.belief);
         for index in 0..problem.n() {
             belief.spread[index] = fit.reach[index].max(START_STDS * guess.std[index]).min(NOTHING_KNOWN);
             belief.centre[index] = if problem.maybe[index] { 0.0 } else { fit.coefficients[index] };
@@ -92,7 +83,7 @@ impl Tracker {
             centre: &belief.centre,
             std: &belief.spread,
             log_inertia: INERTIA_SPREAD,
-            structure: follows.then_some(self.monitor.law.active.as_slice()),
+            structure: before.map(|law| law.active.as_slice()),
             noise_weight: belief.samples,
             scales: &belief.scales,
         };
@@ -100,8 +91,17 @@ impl Tracker {
             Fitting::Starting => (&mut self.segment, Fitting::Refining),
             Fitting::Refining | Fitting::Contested => (&mut self.alternative, Fitting::Contested),
         };
-        begun.begin(problem, window, since, &fit.coefficients, prior, noise);
+        begun.begin(problem, &self.window, since, &fit.coefficients, prior, noise);
         self.fitting = fitting;
+    }
+
+    /// Whether the weak rows are to be asked: no other fit is under way, they are all of samples that are still there, and there are enough
+    /// of them, or an eighth more than at the last time.
+    fn is_guess_due(&self, setup: Setup) -> bool {
+        let window = &self.window;
+        let covered = self.now() - window.sample(window.oldest()).t;
+        let free = self.fitting != Fitting::Contested && covered >= setup.settings.initial_window;
+        free && window.end() >= self.schedule.next_guess && self.schedule.rows_from >= window.oldest()
     }
 
     /// Sensor variances that a guess is begun with.
@@ -113,8 +113,8 @@ impl Tracker {
         }
     }
 
-    /// A fit with much process noise may be a maximum of the likelihood without being the largest: the other kind, all error in the
-    /// sensors, is tried from the same coefficients each time the record has doubled.
+    /// A fit with much process noise may be a maximum of the likelihood without being the largest: the other kind, all
+    /// error in the sensors, is tried from the same coefficients each time the record has doubled.
     pub(super) fn try_sensor_fit(&mut self, setup: Setup) {
         let problem = setup.problem;
         let end = self.window.ready();
@@ -161,11 +161,11 @@ impl Tracker {
             closed <= PATIENCE || promising && closed < LONG_PATIENCE
         };
         self.fitting = if goes_on { Fitting::Contested } else { Fitting::Refining };
-        self.alternative.begin_run(setup.problem, &self.window);
+        self.alternative.begin_run(&self.window);
     }
 
-    /// Whether the other fit, settled by now, is to take the segment's place. One that takes that of a law which explains its record would
-    /// begin the same law's stability check anew.
+    /// Whether the other fit, settled by now, is to take the segment's place. One that takes that of a law which
+    /// explains its record would begin the same law's stability check anew.
     fn alternative_wins(&mut self, promising: bool) -> bool {
         let agrees = self.alternative.agrees_with(&self.segment);
         if agrees {
@@ -175,7 +175,8 @@ impl Tracker {
         better && !(agrees && self.segment.fit.explains) || promising && self.alternative.is_validated()
     }
 
-    /// A first guess from which no fit can be begun is forgotten: the weak rows, more of them by now, are asked for another.
+    /// A first guess from which no fit can be begun is forgotten: the weak rows, more of them by now, are asked for
+    /// another.
     pub(super) fn give_up_guess(&mut self) -> bool {
         let lost = self.segment.is_lost() && !self.monitor.law.running;
         if lost {
@@ -200,6 +201,15 @@ impl Tracker {
     }
 }
 
+/// The inertia of a guess that predicts its force well enough, and that did not turn around since the law before.
+fn believable_inertia(problem: &Problem, guess: &Guess, before: Option<f64>) -> Option<f64> {
+    let inertia = problem.free_inertia().map_or(problem.known[problem.inertia], |index| guess.fit.coefficients[index]);
+    let allowed = if problem.channels.q { START_ERROR } else { START_ERROR_WITHOUT_Q };
+    let poor = guess.relative_error > allowed;
+    let turned = before.is_some_and(|before| inertia * before < 0.0);
+    (!poor && !turned && inertia.is_finite() && inertia != 0.0).then_some(inertia)
+}
+
 /// The universal sequence 1, 1, 2, 1, 1, 2, 4, … from its first on.
 fn universal(number: u32) -> u64 {
     let number = u64::from(number.max(1));
@@ -210,7 +220,6 @@ fn universal(number: u32) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::problem::Problem;
     use crate::identify::sample::Sample;
     use crate::identify::settings::Settings;
     use crate::law::Model;

@@ -58,7 +58,8 @@ impl Tracker {
         self.enter(Event::DriftFound(by));
     }
 
-    /// Goes on with a trial of filters with coefficients in their state, and follows what it found until a constant law is validated.
+    /// Goes on with a trial of filters with coefficients in their state, and follows what it found until a constant law
+    /// is validated.
     pub(super) fn track_augmented(&mut self, setup: Setup) {
         if self.augmented_drift.is_following() && !self.regime.is_drifting() {
             self.augmented_drift.end();
@@ -120,8 +121,8 @@ impl Tracker {
         }
     }
 
-    /// Where a law of this record was validated, only coefficients that have drifted before do so again; where none was, they have to have
-    /// moved for so long that a constant law would have been found.
+    /// Where a law of this record was validated, only coefficients that have drifted before do so again; where none
+    /// was, they have to have moved for so long that a constant law would have been found.
     fn is_sure_of_drift(&self) -> bool {
         let drift = &self.weak_row_drift;
         let had_a_law = self.regime.is_valid() || self.history.refuted_at > self.segment.start;
@@ -131,8 +132,8 @@ impl Tracker {
         }
     }
 
-    /// Most that the sensors' variances can be. Differences of q tell its noise by themselves; those of q̇ hold the increments of a rough
-    /// excitation: what the law in use says is less, where there is one.
+    /// Most that the sensors' variances can be. Differences of q tell its noise by themselves; those of q̇ hold the
+    /// increments of a rough excitation: what the law in use says is less, where there is one.
     fn most_noise(&self) -> [f64; 2] {
         let settled = self.is_refining() && self.segment.settled();
         [f64::INFINITY, if settled { self.segment.noise.sensor[1] } else { f64::INFINITY }]

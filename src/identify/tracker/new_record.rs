@@ -15,7 +15,8 @@ pub(super) const INERTIA_SPREAD: f64 = 0.5;
 /// Share of the variance of a switch's acceleration that a new law's process noise begins with.
 const UNEXPLAINED: f64 = 0.1;
 
-/// An estimate of the inertia that is beyond these times the old one is that of a change too large for its linearisation.
+/// An estimate of the inertia that is beyond these times the old one is that of a change too large for its
+/// linearisation.
 const SAME_INERTIA: std::ops::Range<f64> = 0.3..3.0;
 
 impl Tracker {

@@ -1,7 +1,8 @@
 //! Laws seen before: recognised at an alarm or soon after it, left again when the record contradicts them.
 //!
-//! At the alarm the bank of hypotheses has seen the switch already, with the state carried on from before: each known law is weighed
-//! by it at once. Where that does not decide, the laws go on trial over the record since the segment's start.
+//! At the alarm the bank of hypotheses has seen the switch already, with the state carried on from before: each known
+//! law is weighed by it at once. Where that does not decide, the laws go on trial over the record since the segment's
+//! start.
 
 use super::regime::{Event, PostAlarm, Recognition, Validated};
 use super::sighting::Sight;
@@ -12,8 +13,8 @@ use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::validation::VALIDATED;
 
-/// Evidence against any other law that makes a known one recognised in the step of the alarm, in false-alarm levels: it is more likely
-/// beforehand than all others together, and it is taken back when it was wrong.
+/// Evidence against any other law that makes a known one recognised in the step of the alarm, in false-alarm levels: it
+/// is more likely beforehand than all others together, and it is taken back when it was wrong.
 const AT_ALARM: f64 = 0.05;
 
 /// The same on trial, where the state is known from the new record alone.
@@ -32,8 +33,8 @@ const CONTRADICTED: f64 = 0.15;
 pub(super) const TRIAL_BUDGET: usize = 40;
 
 impl Tracker {
-    /// The time after an alarm in which the bank of hypotheses goes on, as long as it has watched the switch, about the law that was in use
-    /// until then: it carries the state over the switch, which the new record alone does not know.
+    /// The time after an alarm in which the bank of hypotheses goes on, as long as it has watched the switch, about the
+    /// law that was in use until then: it carries the state over the switch, which the new record alone does not know.
     pub(super) fn post_alarm(&mut self, since: u64) -> Option<PostAlarm> {
         let end = self.window.ready();
         let left = self.regime.law().map(|law| law.number);
@@ -166,7 +167,8 @@ impl Tracker {
         }
     }
 
-    /// The record contradicts the recognised law: the segment is that of a new one after all. Its coefficients are not known any more.
+    /// The record contradicts the recognised law: the segment is that of a new one after all. Its coefficients are not
+    /// known any more.
     fn withdraw(&mut self, problem: &Problem, start: u64) {
         self.enter(Event::RecognitionRefuted { after_another: self.follows_a_law() });
         self.published.forget_stds(problem);
@@ -187,20 +189,20 @@ impl Tracker {
         self.begin_new_law(problem, start);
     }
 
-    /// An alarm under a law that its trial has not confirmed yet speaks against the law, not for one more switch: the segment goes on as
-    /// that of another law.
+    /// An alarm under a law that its trial has not confirmed yet speaks against the law, not for one more switch: the
+    /// segment goes on as that of another law.
     pub(super) fn take_back(&mut self, problem: &Problem) {
         let start = self.segment.start;
         let wrong = self.regime.recognition().map(|recognition| recognition.place);
         self.withdraw(problem, start);
         let sensor = self.monitor.law.noise.sensor.map(Some);
-        self.library.trials.begin(&self.library.known, problem, &self.window, start, sensor);
+        self.library.trials.begin(&self.library.known, &self.window, start, sensor);
         wrong.into_iter().for_each(|place| self.library.trials.rule_out(place));
     }
 
-    /// Whether the law in use was recognised and never was the record's: it has held for a shorter time than it has been left by now, or
-    /// against another law all the while there is no such evidence of a switch as an alarm asks. `beyond` is by how much it passes the
-    /// threshold.
+    /// Whether the law in use was recognised and never was the record's: it has held for a shorter time than it has
+    /// been left by now, or against another law all the while there is no such evidence of a switch as an alarm asks.
+    /// `beyond` is by how much it passes the threshold.
     pub(super) fn was_never_right(&mut self, instant: u64, now: u64, beyond: f64) -> bool {
         let Some(Recognition { place, .. }) = self.regime.recognition() else { return false };
         let against = self.library.trials.evidence_against(place, &mut self.library.known, &self.window);
@@ -252,7 +254,8 @@ impl Tracker {
         }
     }
 
-    /// Leaves a recognised law that the segment's own estimate contradicts, once its trial is over; returns whether it did.
+    /// Leaves a recognised law that the segment's own estimate contradicts, once its trial is over; returns whether it
+    /// did.
     pub(super) fn leave(&mut self, setup: Setup) -> bool {
         let library = &mut self.library;
         let recognition = self.regime.recognition().filter(|_| !library.trials.is_running());
@@ -268,13 +271,13 @@ impl Tracker {
 
     /// Puts the known laws on trial over a record that no alarm began, as soon as it has two samples.
     pub(super) fn begin_trial(&mut self, setup: Setup) {
-        let Setup { problem, settings } = setup;
+        let settings = setup.settings;
         let due = self.library.trial_due.filter(|start| self.window.end() >= start + 2);
         if let Some(start) = due {
             self.library.trial_due = None;
             let given = [settings.noise_q, settings.noise_qd].map(|std| (std > 0.0).then_some(std * std));
             self.segment.start = start;
-            self.library.trials.begin(&self.library.known, problem, &self.window, start, given);
+            self.library.trials.begin(&self.library.known, &self.window, start, given);
             self.library.trials.set_left(None);
         }
     }

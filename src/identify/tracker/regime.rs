@@ -1,7 +1,8 @@
 //! Where the identification stands: every regime, every transition between them, and the event that guards it.
 //!
-//! A regime holds what only it has. [`Regime::after`] is the only place where one follows another; what the caller sees (`status`, `valid`,
-//! `drifting`, `law.number`, `identified_time`) is derived from the regime by the methods below and is read by nothing that estimates.
+//! A regime holds what only it has. [`Regime::after`] is the only place where one follows another; what the caller sees
+//! (`status`, `valid`, `drifting`, `law.number`, `identified_time`) is derived from the regime by the methods below and
+//! is read by nothing that estimates.
 
 use crate::identify::library::Mixture;
 use crate::identify::report::Status;
@@ -101,7 +102,8 @@ pub(super) enum Follower {
 /// What ends a regime, or changes its data: each is the guard of the transitions that it causes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Event {
-    /// The segment's law states e below the bound, stands its stability check, and has an inertia that a motion can have.
+    /// The segment's law states e below the bound, stands its stability check, and has an inertia that a motion can
+    /// have.
     LawValidated(Validated),
     /// A known law stands out from every other one, on trial or by the hypotheses of a switch.
     LawRecognised(Validated, Recognition),
@@ -125,7 +127,8 @@ pub(super) enum Event {
     SwitchFound(Option<PostAlarm>),
     /// The hypotheses of the last switch have no more to say on known laws.
     PostAlarmEnded,
-    /// The law in use does not explain its record any more, and no switch does: several laws share it, or another one explains it whole.
+    /// The law in use does not explain its record any more, and no switch does: several laws share it, or another one
+    /// explains it whole.
     LawRefuted,
     /// The state under the law in use has left the finite numbers.
     StateLost,

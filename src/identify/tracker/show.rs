@@ -8,8 +8,8 @@ use crate::identify::settings::Settings;
 use crate::identify::validation::TRUSTED;
 
 impl Tracker {
-    /// Writes every output. Of a record whose law cannot state an honest std, the coefficients of the weak form stand in place of its own:
-    /// they are not validated; nor is a constant law of which some std is not known.
+    /// Writes every output. Of a record whose law cannot state an honest std, the coefficients of the weak form stand
+    /// in place of its own: they are not validated; nor is a constant law of which some std is not known.
     pub fn show(&mut self, problem: &Problem, settings: &Settings, shown: &mut [Coefficient], output: &mut Output) {
         self.foretell(problem);
         shown.copy_from_slice(&self.published.coefficients);
@@ -76,8 +76,8 @@ impl Tracker {
         Some((factor - 1.0).max(least) * length)
     }
 
-    /// What the record since the segment's start leaves open: combinations of terms while the weak rows of a first law are gathered, then
-    /// single terms whose std is larger than anything plausible.
+    /// What the record since the segment's start leaves open: combinations of terms while the weak rows of a first law
+    /// are gathered, then single terms whose std is larger than anything plausible.
     pub fn unidentifiable(&self, problem: &Problem) -> Vec<String> {
         let name = |free: &usize| problem.free_terms[*free].name();
         let shown = self.segment.settled() && self.segment.stated_error() < TRUSTED;

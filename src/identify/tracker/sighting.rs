@@ -41,7 +41,8 @@ impl Library {
         (self.in_sight, self.trial_due) = (None, None);
     }
 
-    /// What a free coefficient's std owes to the doubt whether the law was recognised rightly; `spread` is how far a switch moves it.
+    /// What a free coefficient's std owes to the doubt whether the law was recognised rightly; `spread` is how far a
+    /// switch moves it.
     pub(super) fn recognition_std(
         &self,
         recognition: Option<Recognition>,

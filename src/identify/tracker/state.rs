@@ -3,12 +3,13 @@
 use super::published::Published;
 use super::regime::{Event, Regime};
 use super::sighting::Library;
+use crate::estimation::DifferenceNoise;
 use crate::evidence::Bank;
 use crate::identify::change::{EmpiricalNull, LawInUse, Prediction};
 use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
 use crate::identify::functional::WeakForm;
 use crate::identify::problem::Problem;
-use crate::identify::segment::{DifferenceNoise, MotionScales, Segment, WeakStart};
+use crate::identify::segment::{MotionScales, Segment, WeakStart};
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
 use serde::{Deserialize, Serialize};
@@ -22,10 +23,15 @@ pub(super) const YOUNG: u64 = 5000;
 /// A switch moves a coefficient's force by this fraction of the acceleration's RMS, as a std.
 pub(super) const SWITCH_SIZE: f64 = 0.3;
 
-/// Samples after which an unvalidated law is contested by the latest record alone, and the unit of how long that may take.
+/// Samples after which an unvalidated law is contested by the latest record alone, and the unit of how long that may
+/// take.
 pub(super) const FRESH_START: u64 = 12_000;
 
-/// Overdispersion of a record that is far from explained: the largest of a dozen coefficients of a law that lacks an effect is about 5.
+/// Std, in the coefficient's own unit, of one of which nothing is known.
+pub(super) const NOTHING_KNOWN: f64 = 1e9;
+
+/// Overdispersion of a record that is far from explained: the largest of a dozen coefficients of a law that lacks an
+/// effect is about 5.
 const FAR: f64 = 10.0;
 
 /// What is sought, and how: fixed at construction.
@@ -225,8 +231,8 @@ impl Tracker {
         self.history.explained && self.regime.recognition().is_none() && !self.segment.fit.explains
     }
 
-    /// Whether the segment's record seems to hold several laws: a law before explained its own down to the sensors' noise, this one does
-    /// not. A record that stays so for long and is not far from explained lacks an effect instead.
+    /// Whether the segment's record seems to hold several laws: a law before explained its own down to the sensors'
+    /// noise, this one does not. A record that stays so for long and is not far from explained lacks an effect instead.
     pub(super) fn is_mixed(&self) -> bool {
         let short = self.record_length() < FRESH_START;
         self.is_unexplained() && (short || self.segment.fit.overdispersion > FAR)
@@ -246,7 +252,7 @@ impl Tracker {
                 true => scales.acceleration(),
                 false => scales.restoring_acceleration(),
             };
-            self.belief.spread[index] = if slope > 0.0 { SWITCH_SIZE * acceleration / slope } else { 1e9 };
+            self.belief.spread[index] = if slope > 0.0 { SWITCH_SIZE * acceleration / slope } else { NOTHING_KNOWN };
         }
     }
 }

@@ -3,6 +3,7 @@
 use super::recognition::TRIAL_BUDGET;
 use super::state::{Setup, Tracker, YOUNG};
 use crate::evidence::Law;
+use crate::identify::change::SUSPENSE;
 use crate::identify::problem::Problem;
 use crate::identify::sample::Sample;
 use crate::identify::settings::Settings;
@@ -17,12 +18,9 @@ const OLDEST: f64 = 8.0;
 /// Hypotheses looked at in a step.
 const LOOKS: usize = 3;
 
-/// Samples of refinement in a step, while tracking and while the fit has yet to converge: what a law that does not explain its record
-/// still gains by more runs is no better law.
+/// Samples of refinement in a step, while tracking and while the fit has yet to converge: what a law that does not
+/// explain its record still gains by more runs is no better law.
 const BUDGET: [usize; 2] = [6, TRIAL_BUDGET];
-
-/// Samples for which a suspicion keeps the law in use from being renewed: what comes may belong to another law.
-const SUSPENSE: u64 = 1000;
 
 /// Once in so many samples it is asked which lengths of variation are too short for the motion.
 const REST_EVERY: u64 = 256;
@@ -65,7 +63,9 @@ impl Tracker {
         if end < 4 {
             return;
         }
-        self.difference_noise.add([4, 3, 2, 1].map(|back| self.window.sample(end - back)));
+        let last = [4, 3, 2, 1].map(|back| *self.window.sample(end - back));
+        let measured = [last.map(|sample| sample.q), last.map(|sample| sample.qd)];
+        self.difference_noise.add(last.map(|sample| sample.t), measured, last.map(|sample| sample.excitation));
         let known = self.published.noise_by_law || end < ROUGHLY;
         if let Some([q, qd]) = self.difference_noise.variance().filter(|_| !known) {
             let channels = problem.channels;
@@ -104,7 +104,8 @@ impl Tracker {
     fn suppose_switch_after(&mut self, number: u64) {
         let explains = self.explains();
         let monitor = &mut self.monitor;
-        // of a law that came back only its own terms are known from before: to seek the others too would make it look unlikely
+        // of a law that came back only its own terms are known from before: to seek the others too would make it look
+        // unlikely
         let own = &monitor.law.active;
         let open = if self.regime.recognition().is_some() { own } else { &monitor.every_term };
         let law = Law { information: &monitor.law.run.information, open, own, explains };
@@ -156,7 +157,8 @@ impl Tracker {
         self.take_into_use(setup.problem, trusted, !waits, mixed);
     }
 
-    /// What the run that has just closed says is published; without a law to trust the std of the last one are none of this one's.
+    /// What the run that has just closed says is published; without a law to trust the std of the last one are none of
+    /// this one's.
     fn make_known(&mut self, setup: Setup, trusted: bool) {
         if trusted {
             self.set_spread(setup.problem);
@@ -166,22 +168,24 @@ impl Tracker {
         }
     }
 
-    /// Switches are weighed against the segment's new estimate where it may be `renewed`, and is worth it; else the next run begins.
+    /// Switches are weighed against the segment's new estimate where it may be `renewed`, and is worth it; else the
+    /// next run begins.
     fn take_into_use(&mut self, problem: &Problem, trusted: bool, renewed: bool, mixed: bool) {
         let stands = self.segment.stands();
         let law = &self.monitor.law;
         let proven = self.regime.is_valid() || self.segment.fit.explains && stands;
-        // a law that has stood its stability check is not left for one that has not: what happened to it may be a switch
+        // a law that has stood its stability check is not left for one that has not: what happened to it may be a
+        // switch
         let later = law.running && law.proven && !proven;
         let worth_monitoring = trusted && stands || law.running && self.segment.is_calm() && !mixed;
         match renewed && !later && worth_monitoring {
             true => self.monitor_new_law(problem, proven),
-            false => self.segment.begin_run(problem, &self.window),
+            false => self.segment.begin_run(&self.window),
         }
     }
 
-    /// From now on switches are weighed against the segment's new estimate. Hypotheses are linear about the old one: they are carried over
-    /// only between laws as near to each other as those that have stood their stability check.
+    /// From now on switches are weighed against the segment's new estimate. Hypotheses are linear about the old one:
+    /// they are carried over only between laws as near to each other as those that have stood their stability check.
     fn monitor_new_law(&mut self, problem: &Problem, proven: bool) {
         let was_running = self.monitor.law.running;
         self.monitor.suspected_at = None;
@@ -190,7 +194,7 @@ impl Tracker {
             false => self.end_post_alarm(),
         }
         let Tracker { monitor, segment, window, .. } = self;
-        monitor.law.adopt(problem, segment, window);
+        monitor.law.adopt(segment, window);
         if !was_running {
             monitor.prediction.restart(monitor.law.run.filter.state, window.sample(window.ready() - 1).t);
         }

@@ -30,7 +30,7 @@ impl Tracker {
             }
         } else if suspect.evidence > 0.5 * threshold {
             self.suspect();
-        } else {
+        } else if self.regime.suspected_since().is_some() {
             self.enter(Event::SuspicionCleared);
         }
     }
@@ -57,13 +57,14 @@ impl Tracker {
         }
     }
 
-    /// Whether another law, known by now, explains all of the record, and did so when the law in use had not been left yet.
+    /// Whether another law, known by now, explains all of the record, and did so when the law in use had not been left
+    /// yet.
     fn is_superseded(&self, instant: u64) -> bool {
         self.segment.is_validated() && self.history.contradicted_since.is_some_and(|since| since < instant)
     }
 
-    /// The law in use never was the record's: the one that is comes into use with its next run. What spoke against the one before says
-    /// nothing of a switch.
+    /// The law in use never was the record's: the one that is comes into use with its next run. What spoke against the
+    /// one before says nothing of a switch.
     fn supersede(&mut self) {
         self.monitor.stop();
         self.monitor.bank.clear();
@@ -97,7 +98,7 @@ impl Tracker {
         }
         self.believe_change(problem, &suspect);
         self.begin_new_law(problem, start);
-        self.begin_trials_after_switch(problem, start);
+        self.begin_trials_after_switch(start);
         self.begin_weak_rows(start);
         self.weak_row_drift.restart(start);
         let post_alarm = self.post_alarm(instant);
@@ -120,11 +121,11 @@ impl Tracker {
         }
     }
 
-    fn begin_trials_after_switch(&mut self, problem: &Problem, start: u64) {
+    fn begin_trials_after_switch(&mut self, start: u64) {
         let sensor = self.monitor.law.noise.sensor.map(Some);
         let left = self.regime.law().and_then(|law| self.library.known.position(law.number));
         let library = &mut self.library;
-        library.trials.begin(&library.known, problem, &self.window, start, sensor);
+        library.trials.begin(&library.known, &self.window, start, sensor);
         library.trials.set_left(left);
     }
 

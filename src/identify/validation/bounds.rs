@@ -2,14 +2,15 @@
 
 use crate::limits::SETTLED_ERROR;
 
-/// A law is validated when it states e below this: half of the bound, since what is stated is an expectation. With the whole of it the law
-/// of the study's own test was validated 61 ms before its e was below.
+/// A law is validated when it states e below this: half of the bound, since what is stated is an expectation. With the
+/// whole of it the law of the study's own test was validated 61 ms before its e was below.
 pub const VALIDATED: f64 = 0.5 * SETTLED_ERROR;
 
 /// A law that stands moves by less than the bound while its record grows.
 pub(super) const STOOD: f64 = SETTLED_ERROR;
 
-/// A law that states e below this is good enough to weigh switches against: coefficients within 20 % of their size together.
+/// A law that states e below this is good enough to weigh switches against: coefficients within 20 % of their size
+/// together.
 pub const TRUSTED: f64 = 0.2 * 0.2;
 
 /// e of eq. (8) between two laws, relative to the first.

@@ -1,15 +1,17 @@
-//! Estimates of one law in a growing record: what the longer record says lies within the std of what the shorter one said.
+//! Estimates of one law in a growing record: what the longer record says lies within the std of what the shorter one
+//! said.
 //!
-//! For an efficient estimate Cov(θ_new − θ_old) = Cov(θ_old) − Cov(θ_new) (Hausman, *Econometrica* 46 (1978), 1251). A record that comes to
-//! hold another law too may still be explained whole, by a third one, which goes from one to the other a little at a time: the estimate is
-//! compared with those of records down to a third as long.
+//! For an efficient estimate Cov(θ_new − θ_old) = Cov(θ_old) − Cov(θ_new) (Hausman, *Econometrica* 46 (1978), 1251). A
+//! record that comes to hold another law too may still be explained whole, by a third one, which goes from one to the
+//! other a little at a time: the estimate is compared with those of records down to a third as long.
 
 use serde::{Deserialize, Serialize};
 
 /// Stds by which no coefficient of the same law moves.
 const FAR: f64 = 3.0;
 
-/// Least variance of a difference, in terms of that of the shorter record's estimate: what the two share is known roughly.
+/// Least variance of a difference, in terms of that of the shorter record's estimate: what the two share is known
+/// roughly.
 const LEAST: f64 = 0.1;
 
 /// Estimates are kept whose records differ in length by this factor …

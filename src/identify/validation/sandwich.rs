@@ -1,8 +1,9 @@
 //! Whether innovations are as independent as the filter says.
 //!
 //! Under the right law the scores of separate blocks of a record are independent, each with its block's information as
-//! covariance. Error that the law does not model lasts: the blocks' scores are then larger, and so is the covariance of the
-//! coefficients, by the same factor (the sandwich estimate of White, Econometrica 50, 1982, here as one factor for all).
+//! covariance. Error that the law does not model lasts: the blocks' scores are then larger, and so is the covariance of
+//! the coefficients, by the same factor (the sandwich estimate of White, Econometrica 50, 1982, here as one factor for
+//! all).
 
 use crate::estimation::Information;
 use serde::{Deserialize, Serialize};

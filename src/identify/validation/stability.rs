@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 /// A law that explains its record is confirmed when the record has grown by this factor …
 const GROWTH: f64 = 1.1;
 
-/// … one that does not, by this: it may have all its error in the sensors, and another maximum of the likelihood is the better one. With a
-/// tenth for all, a wrong law of a periodic motion (e = 0.41) was validated; with a quarter for all, 11 of 62 switches of van der Pol records
-/// at σ = 0.1 came before any law.
+/// … one that does not, by this: it may have all its error in the sensors, and another maximum of the likelihood is the
+/// better one. With a tenth for all, a wrong law of a periodic motion (e = 0.41) was validated; with a quarter for all,
+/// 11 of 62 switches of van der Pol records at σ = 0.1 came before any law.
 const LONGER_GROWTH: f64 = 1.25;
 
 /// A law that has stood for less than the longer growth must be this sure with all terms, as e of eq. (8).
@@ -56,8 +56,8 @@ impl Stability {
         (self.stood, self.length) = (false, 0);
     }
 
-    /// Whether the law would hold with other terms too: with all of them it is sure enough, it has stood long, or it explains its record
-    /// with the terms of the law before.
+    /// Whether the law would hold with other terms too: with all of them it is sure enough, it has stood long, or it
+    /// explains its record with the terms of the law before.
     pub fn stands(&self, evidence: &Evidence) -> bool {
         let grown = self.length as f64 / self.stood_from as f64;
         let allowed = if grown < LONGER_GROWTH { SURE } else { TRUSTED };

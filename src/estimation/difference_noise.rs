@@ -1,10 +1,10 @@
 //! Sensor noise from the differences of neighbouring samples, while no law is known.
 //!
-//! A smooth motion leaves third differences small; under a rough excitation, held from sample to sample, they follow from it:
-//! Δ³q̇ ≈ (F₂ − 2F₁ + F₀) dt/m and Δ³q ≈ (F₂ − F₀) dt²/2m. What a regression on these leaves is noise, of 20 times the sensor's variance. A
-//! difference far off holds an outlier and is left out, and so are its neighbours: the outlier is in them too, a third as large.
+//! A smooth motion leaves third differences small; under a rough excitation, held from sample to sample, they follow
+//! from it: Δ³q̇ ≈ (F₂ − 2F₁ + F₀) dt/m and Δ³q ≈ (F₂ − F₀) dt²/2m. What a regression on these leaves is noise, of 20
+//! times the sensor's variance. A difference far off holds an outlier and is left out, and so are its neighbours: the
+//! outlier is in them too, a third as large.
 
-use crate::identify::sample::Sample;
 use serde::{Deserialize, Serialize};
 
 /// Variance of a third difference of white noise of variance 1.
@@ -95,17 +95,17 @@ pub struct DifferenceNoise {
 }
 
 impl DifferenceNoise {
-    /// Takes the last four samples.
-    pub fn add(&mut self, samples: [&Sample; 4]) {
-        let [a, b, c, d] = samples;
-        let intervals = [b.t - a.t, c.t - b.t, d.t - c.t];
+    /// Takes the last four samples: their times, s, their values by channel, and the excitation.
+    pub fn add(&mut self, t: [f64; 4], measured: [[f64; 4]; 2], excitation: [f64; 4]) {
+        let intervals = [t[1] - t[0], t[2] - t[1], t[3] - t[2]];
         if intervals.iter().any(|interval| (interval / intervals[0] - 1.0).abs() > ALIKE) {
             return;
         }
-        let third = |value: fn(&Sample) -> f64| value(d) - 3.0 * value(c) + 3.0 * value(b) - value(a);
+        let third = |[a, b, c, d]: [f64; 4]| d - 3.0 * c + 3.0 * b - a;
+        let [a, b, c, _] = excitation;
         let [q, qd] = &mut self.moments;
-        q.add(third(|sample| sample.q), c.excitation - a.excitation);
-        qd.add(third(|sample| sample.qd), c.excitation - 2.0 * b.excitation + a.excitation);
+        q.add(third(measured[0]), c - a);
+        qd.add(third(measured[1]), c - 2.0 * b + a);
     }
 
     /// Variance of the sensors' noise by channel, (m)² and (m/s)²; none from too few samples.
@@ -122,8 +122,8 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
 
-    /// A slow motion with noise of std 0.01, one sample in 200 off by this, the first of them soon, under an excitation that pushes q̇ from
-    /// sample to sample.
+    /// A slow motion with noise of std 0.01, one sample in 200 off by this, the first of them soon, under an excitation
+    /// that pushes q̇ from sample to sample.
     fn found(push: f64, outlier: f64) -> f64 {
         let mut generator = ChaCha8Rng::seed_from_u64(1);
         let mut white = || generator.sample::<f64, _>(StandardNormal);
@@ -133,10 +133,13 @@ mod tests {
             let excitation = push * white();
             let off = if k % 200 == 37 { outlier } else { 0.0 };
             let noise = 0.01 * white() + off;
-            samples.push(Sample { t, q: t.sin() + noise, qd: qd + t.cos() + noise, excitation });
+            samples.push([t, t.sin() + noise, qd + t.cos() + noise, excitation]);
             qd += 0.5 * excitation;
         }
-        samples.windows(4).for_each(|four| roughness.add([&four[0], &four[1], &four[2], &four[3]]));
+        for four in samples.as_slice().windows(4) {
+            let [t, q, qd, excitation] = [0, 1, 2, 3].map(|column| [0, 1, 2, 3].map(|row: usize| four[row][column]));
+            roughness.add(t, [q, qd], excitation);
+        }
         roughness.variance().map_or(f64::NAN, |[_, qd]| qd.sqrt())
     }
 

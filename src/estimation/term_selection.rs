@@ -1,18 +1,19 @@
 //! Which of the "maybe" terms a law has.
 //!
 //! At the maximum of the likelihood, dropping a term of coefficient θ_j with variance v_j costs θ_j²/v_j in twice the
-//! log-likelihood. The cheapest term goes while that is below its price, 2 ln N for N scalar measurements; the rest is solved
-//! anew. After a switch the old structure is the likelier one: a term that the old law had is cheaper by [`LOYALTY`], one that it
-//! had not dearer. Where the information is too near to singular for that, the search starts from the terms of the law as it is, and
-//! adds before it drops.
+//! log-likelihood. The cheapest term goes while that is below its price, 2 ln N for N scalar measurements; the rest is
+//! solved anew. After a switch the old structure is the likelier one: a term that the old law had is cheaper by
+//! [`LOYALTY`], one that it had not dearer. Where the information is too near to singular for that, the search starts
+//! from the terms of the law as it is, and adds before it drops.
 
-use crate::estimation::{Information, Solution};
+use super::information::{Information, Solution};
 use serde::{Deserialize, Serialize};
 
 /// What the old law's structure counts for, in twice nats.
 const LOYALTY: f64 = 20.0;
 
-/// Smallest share of its own that a term must have beside the others, for the information to be trusted with all of them.
+/// Smallest share of its own that a term must have beside the others, for the information to be trusted with all of
+/// them.
 const CLEAR: f64 = 1e-9;
 
 /// The terms of the law as it was, once there was one.
@@ -74,8 +75,8 @@ impl TermSelection {
         }
     }
 
-    /// Eliminates terms. `information` is taken about `coefficients`; `active` says which terms remain, `solution` is theirs,
-    /// and `coefficients` become its values, 0 for what was dropped.
+    /// Eliminates terms. `information` is taken about `coefficients`; `active` says which terms remain, `solution` is
+    /// theirs, and `coefficients` become its values, 0 for what was dropped.
     pub fn select(
         &mut self,
         information: &Information,
@@ -143,7 +144,8 @@ impl TermSelection {
         }
     }
 
-    /// What a term that is not active would add to twice the log-likelihood; 0 where rounding hides what it has of its own.
+    /// What a term that is not active would add to twice the log-likelihood; 0 where rounding hides what it has of its
+    /// own.
     fn gain(&self, index: usize, active: &[bool], solution: &Solution) -> f64 {
         let n = active.len();
         let entry = |a: usize, b: usize| self.information.matrix[a.min(b) * n + a.max(b)];
