@@ -162,6 +162,24 @@ fn a_record_on_which_f_is_nearly_a_function_of_q_claims_nothing() {
 }
 
 #[test]
+fn a_drift_of_q_is_the_sensors_and_no_effect() {
+    for seed in SEEDS {
+        let bench = Bench::new(&format!("drift-{seed}"));
+        let straight = oscillator(&bench, seed, "");
+        let size = (straight.iter().map(|row| row[1] * row[1]).sum::<f64>() / straight.len() as f64).sqrt();
+        let drifted: Vec<[f64; 4]> =
+            straight.iter().map(|[t, q, qd, force]| [*t, q + 0.3 * size * (t / 20.0).powi(2), *qd, *force]).collect();
+        let found = diagnose(&bench, &drifted);
+        assert_eq!(found["verdict"], "adequate", "seed {seed}: {found:#}");
+        assert!(says(&found, "q drifts by"), "{:#}", found["answer"]);
+        assert!(!says(&diagnose(&bench, &straight), "q drifts"), "seed {seed}");
+        let rubs = oscillator(&bench, seed, "coulomb_friction = 0.8");
+        let found = diagnose(&bench, &rubs);
+        assert!(found["effect"] == "coulomb_friction" && !says(&found, "q drifts"), "{found:#}");
+    }
+}
+
+#[test]
 fn improve_shows_the_errors_on_a_recording_that_no_coefficient_has_seen() {
     for seed in SEEDS {
         let bench = Bench::new(&format!("validate-{seed}"));
