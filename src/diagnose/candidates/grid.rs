@@ -80,9 +80,11 @@ impl Variant {
         // powers of the excitation are whole numbers
         let continuous = if matches!(effect, Effect::ExcitationGainNonlinearity { .. }) { 0 } else { values.len() };
         for index in 0..continuous {
-            for power in [-2, -1, 1, 2] {
+            // the first says where the effect sets in, the others what it is like beyond
+            let powers: &[i32] = if index == 0 { &[-2, -1, 1, 2] } else { &[-1, 1] };
+            for power in powers {
                 let mut moved = values.clone();
-                moved[index] *= spacing.powi(power);
+                moved[index] *= spacing.powi(*power);
                 let term = effect.with_inner(&moved).map(Term::Effect);
                 all.extend(term.ok().map(|term| Variant { term, spacing }));
             }

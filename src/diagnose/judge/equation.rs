@@ -68,9 +68,9 @@ impl Equation {
         let tells = [0, 1, 2].map(|which| record.windows[which].length >= record.sample_time);
         let mut equation =
             Equation { terms: terms.to_vec(), target, timing, right, spread, functions, tells, takes_delay, left };
-        for index in 0..terms.len() {
+        for (index, term) in terms.iter().enumerate() {
             let begun = equation.place(index).and_then(|place| {
-                Some((place, beginning::begun(record, (terms[index], timing), &equation.left, place, &equation.right)?))
+                Some((place, beginning::begun(record, (*term, timing), &equation.left, place, &equation.right)?))
             });
             begun.into_iter().for_each(|(place, column)| equation.left[place] = column);
         }

@@ -4,7 +4,7 @@ use super::windows::{self, COUNT, Cells, Windows};
 use crate::diagnose::motion::{self, Impulse, Motion, Nodes, rounding, sensor_noise};
 use crate::identify::Recording;
 use crate::law::{Effect, Expression, Hold, Term, term_series};
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
 
 /// What a term is in every equation, by window length.
 pub(in crate::diagnose) type Column = [Vec<f64>; COUNT];
@@ -39,6 +39,8 @@ pub(in crate::diagnose) struct Record {
     pub(in crate::diagnose) expressions: Vec<Expression>,
     /// By hold and piece, the excitation's integral, once it was asked for.
     impulses: [OnceCell<Vec<OnceCell<Impulse>>>; 3],
+    /// Columns that were asked for and depend on the motion alone.
+    columns: RefCell<Vec<(Term, Column)>>,
 }
 
 impl Record {
@@ -70,10 +72,21 @@ impl Record {
         let cells: Vec<usize> = nodes.iter().map(|(.., nodes)| nodes.cells()).collect();
         let windows = [0, 1, 2].map(|which| Windows::new(which, &cells, cell, sample_time));
         let duration = cells.iter().sum::<usize>() as f64 * cell;
-        let impulses = Default::default();
+        let (impulses, columns) = Default::default();
         let is_output = false;
-        let record =
-            Record { motions, nodes, windows, period, sample_time, duration, forced, is_output, expressions, impulses };
+        let record = Record {
+            motions,
+            nodes,
+            windows,
+            period,
+            sample_time,
+            duration,
+            forced,
+            is_output,
+            expressions,
+            impulses,
+            columns,
+        };
         record.windows.iter().any(|windows| windows.rows() > 0).then_some(record)
     }
 
@@ -149,8 +162,22 @@ impl Record {
         match term {
             Term::Inertia if self.is_output => self.column(1, |(.., nodes)| nodes.integrals(&nodes.qd), -1.0),
             Term::Inertia => self.measured_inertia(timing.hold),
-            _ => self.column(0, |piece| piece.2.integrals(&self.series(term, piece, timing)), 1.0),
+            // whatever the timing and the inner parameters, it is the same every time
+            _ if !self.uses_excitation(term) && term.effect().is_none_or(|effect| effect.inner().is_empty()) => {
+                let known =
+                    self.columns.borrow().iter().find(|(own, _)| *own == term).map(|(_, column)| column.clone());
+                known.unwrap_or_else(|| {
+                    let column = self.integrated(term, timing);
+                    self.columns.borrow_mut().push((term, column.clone()));
+                    column
+                })
+            }
+            _ => self.integrated(term, timing),
         }
+    }
+
+    fn integrated(&self, term: Term, timing: Timing) -> Column {
+        self.column(0, |piece| piece.2.integrals(&self.series(term, piece, timing)), 1.0)
     }
 
     /// Number of pieces.

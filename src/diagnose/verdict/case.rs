@@ -119,7 +119,7 @@ impl Case {
     pub(in crate::diagnose) fn punctual(&self, terms: &[Term]) -> Equation {
         let delay = own_delay(terms);
         let at = |hold: Hold| Equation::new(&self.record, terms, self.target, Timing { hold, delay }, false);
-        let all = self.holds().into_iter().map(|hold| at(hold)).map(|equation| (self.error(&equation), equation));
+        let all = self.holds().into_iter().map(at).map(|equation| (self.error(&equation), equation));
         let best = all.min_by(|a, b| a.0.total_cmp(&b.0));
         best.map_or_else(|| at(Hold::Linear), |(_, equation)| equation)
     }
