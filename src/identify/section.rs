@@ -10,7 +10,8 @@ use serde::{Deserialize, Serialize};
 /// samples a period.
 pub const LONGEST_VARIATION: usize = 2048;
 
-/// Rows begin this fraction of a variation apart: nearer ones share nearly all that they say.
+/// Rows begin this fraction of a variation apart: rows within a quarter of one share what they say, more of them would
+/// tell nothing new.
 pub const OVERLAP: usize = 8;
 
 /// Room for one section.

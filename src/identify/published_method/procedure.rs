@@ -167,9 +167,10 @@ impl Publication {
             self.next += 1;
         }
         (output.prediction_q, output.prediction_qd) = (self.prediction.q, self.prediction.qd);
-        output.deviation = self.deviation.mean();
+        let deviation = self.deviation.mean();
+        output.deviation = deviation;
         let compared = self.recent.sample(self.next - 1).t;
-        if self.deviation.is_full(compared) && output.deviation > output.threshold {
+        if self.deviation.is_full(compared) && deviation > threshold(settings) {
             self.switch(problem, published, output);
         }
     }

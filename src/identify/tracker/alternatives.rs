@@ -95,8 +95,8 @@ impl Tracker {
         self.fitting = fitting;
     }
 
-    /// Whether the weak rows are to be asked: no other fit is under way, they are all of samples that are still there, and there are enough
-    /// of them, or an eighth more than at the last time.
+    /// Whether the weak rows are to be asked: no other fit is under way, they are all of samples that are still there,
+    /// and there are enough of them, or an eighth more than at the last time.
     fn is_guess_due(&self, setup: Setup) -> bool {
         let window = &self.window;
         let covered = self.now() - window.sample(window.oldest()).t;

@@ -30,8 +30,7 @@ pub(super) const FRESH_START: u64 = 12_000;
 /// Std, in the coefficient's own unit, of one of which nothing is known.
 pub(super) const NOTHING_KNOWN: f64 = 1e9;
 
-/// Overdispersion of a record that is far from explained: the largest of a dozen coefficients of a law that lacks an
-/// effect is about 5.
+/// Overdispersion of a record that is far from explained: twice that from which on a record counts as unexplained.
 const FAR: f64 = 10.0;
 
 /// What is sought, and how: fixed at construction.

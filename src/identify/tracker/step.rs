@@ -214,3 +214,64 @@ impl Tracker {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::tracker::regime::Regime;
+    use crate::law::{Given, Model};
+    use crate::simulate::{Builtin, Scenario, record};
+
+    const A: [f64; 4] = [1.0, 0.3, 4.0, 2.0];
+    const B: [f64; 4] = [1.2, 0.5, 5.5, 1.2];
+
+    /// Duffing under a sine, σ = 0.01, with these laws for 8 s each.
+    fn scenario(laws: &[[f64; 4]]) -> Scenario {
+        let mut scenario = Builtin::DuffingSine.scenario().with_noise(0.01).with_seed(1);
+        let first = scenario.stages[0].clone();
+        scenario.stages = vec![first; laws.len()];
+        for (index, (stage, law)) in scenario.stages.iter_mut().zip(laws).enumerate() {
+            (stage.start, stage.coefficients) = (8.0 * index as f64, law.to_vec());
+        }
+        scenario.duration = 8.0 * laws.len() as f64;
+        scenario
+    }
+
+    fn letter(regime: Regime) -> char {
+        match regime {
+            Regime::Acquiring => 'a',
+            Regime::Tracking { .. } => 't',
+            Regime::Recognised { .. } => 'r',
+            Regime::SwitchSuspected { .. } => 's',
+            Regime::ReIdentifying { .. } => 'i',
+            Regime::Drifting { .. } => 'd',
+        }
+    }
+
+    /// The regimes that a record goes through, each once for as long as it lasts.
+    fn walk(laws: &[[f64; 4]]) -> String {
+        let model = Model::of("Duffing", Builtin::DuffingSine.terms().into_iter().map(|term| (term, Given::Fit)));
+        let settings = Settings::default();
+        let problem = Problem::new(&model, &settings);
+        let mut tracker = Tracker::new(&problem, &settings);
+        let mut walked = Vec::new();
+        for reading in record(&scenario(laws)).unwrap() {
+            let sample = Sample { t: reading.t, q: reading.q, qd: reading.qd, excitation: reading.excitation };
+            tracker.step(&problem, &settings, sample);
+            walked.push(letter(tracker.regime));
+        }
+        walked.dedup();
+        walked.into_iter().collect()
+    }
+
+    #[test]
+    fn a_law_that_switches_and_returns_is_tracked_suspected_identified_anew_and_recognised() {
+        let walked = walk(&[A, B, A]);
+        assert!(walked.contains('s'), "{walked}");
+        let mut settled: Vec<char> = walked.chars().filter(|regime| *regime != 's').collect();
+        settled.dedup();
+        let settled: String = settled.into_iter().collect();
+        // at an alarm a known law may be recognised in the same step
+        assert!(["atitir", "atitr"].contains(&settled.as_str()), "{walked}");
+    }
+}
