@@ -10,6 +10,9 @@ use crate::law::Term;
 /// Ratio of residuals below which a drift is worth another look: a third of the energy.
 const WORTH: f64 = 0.816;
 
+/// Further looks at a drift, each of which takes most of what the one before has left.
+const LOOKS: usize = 4;
+
 /// T₀ that a record must be long at least: in fewer a cubic in time follows the motion itself.
 const LONG: f64 = 10.0;
 
@@ -38,15 +41,19 @@ pub(super) fn steadied(
         let standing = case.stand(terms)?;
         Some((case, standing))
     };
-    // the law's coefficients were those under the drift: a second look with its own
-    let (first, stands) = steady(&drifts)?;
-    let (more, _) = of(&first, &stands)?;
-    drifts.iter_mut().zip(more).for_each(|(sum, more)| sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more));
-    let (second, stands) = steady(&drifts)?;
+    let (mut steadied, mut stands) = steady(&drifts)?;
+    // the law's coefficients were those under the drift: another look with its own, as long as that helps
+    for _ in 0..LOOKS {
+        let Some((more, _)) = of(&steadied, &stands) else { break };
+        let mut sums = drifts.clone();
+        sums.iter_mut().zip(more).for_each(|(sum, more)| sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more));
+        let Some((case, next)) = steady(&sums).filter(|(_, next)| next.held.score(&stands.held) < -TIE) else { break };
+        (steadied, stands, drifts) = (case, next, sums);
+    }
     let may_be = |doubt: Option<Doubt>| matches!(doubt, None | Some(Doubt::Chance | Doubt::Trap));
     let best = effects.candidates.iter().filter(|candidate| may_be(candidate.doubt)).map(|candidate| candidate.score);
     let beats = stands.held.score(&standing.held) < best.fold(0.0, f64::min) - TIE * COUNT as f64;
-    (beats && is_large(&standing.held, &stands.held, &standing.floor)).then_some((second, drifts))
+    (beats && is_large(&standing.held, &stands.held, &standing.floor)).then_some((steadied, drifts))
 }
 
 fn of(case: &Case, standing: &Standing) -> Option<(Vec<Drift>, f64)> {
