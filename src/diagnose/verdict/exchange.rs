@@ -60,12 +60,12 @@ fn worth(case: &Case, old: Term, new: Term) -> f64 {
     }
 }
 
-/// The best law with two effects in the place of one or two: each of the best single effects is tried with the best beside it. None where
-/// the law has more, or no two are better: beyond chance than one; than two by their errors or, these being equal, with fewer inner
-/// parameters.
+/// The best law with two effects in the place of none, one or two: each of the best single effects is tried with the best beside it. None
+/// where the law has more, or no two are better: beyond chance, all of them counted, than fewer; than two by their errors or, these being
+/// equal, with fewer inner parameters.
 pub(super) fn paired(case: &Case, original: &[Term], terms: &[Term], standing: &Standing) -> Option<Exchange> {
     let own = added(original, terms);
-    if own.is_empty() || own.len() > 2 {
+    if own.len() > 2 {
         return None;
     }
     let rest: Vec<Term> = (0..terms.len()).filter(|place| !own.contains(place)).map(|place| terms[place]).collect();
@@ -73,9 +73,9 @@ pub(super) fn paired(case: &Case, original: &[Term], terms: &[Term], standing: &
     let pairs = others.into_iter().filter_map(|other| with_named(case, joined(&rest, other)));
     let best = pairs.min_by(|a, b| compare(a, b, standing))?;
     let score = best.standing.held.score(&standing.held);
-    let better = if own.len() == 1 {
+    let better = if own.len() < 2 {
         let gains = standing.blocks.gains(&case.record, &standing.held, &best.standing.held);
-        let chance = standing.blocks.p_values(&[gains]).map(|values| values[0]);
+        let chance = standing.blocks.p_values(&[gains]).map(|values| ALTERNATIVES as f64 * values[0]);
         doubt_of_gain(&standing.held, &best.standing.held, chance, &standing.floor).is_none()
     } else {
         let simpler = parameters(&best.terms) < parameters(terms);
