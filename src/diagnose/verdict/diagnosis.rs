@@ -176,6 +176,9 @@ fn weigh(case: &Case, standing: &Standing, entries: &mut [Entry]) {
     for (index, entry) in left.iter_mut().enumerate() {
         entry.p_value = values.as_ref().map(|values| values[index]);
         entry.doubt = entry.doubted(&standing.floor);
+        if entry.doubt.is_none() && !entry.is_worth_it(case, standing) {
+            entry.doubt = Some(Doubt::Chance);
+        }
     }
 }
 
@@ -244,6 +247,16 @@ impl Entry {
     /// What its gain leaves to doubt.
     fn doubted(&self, floor: &[f64; COUNT]) -> Option<Doubt> {
         doubt_of_gain(&self.contender.before, &self.contender.held, self.p_value, floor)
+    }
+
+    /// Whether a candidate that holds q̈, and was tried on half of the readings, is worth the word on all of them.
+    fn is_worth_it(&self, case: &Case, standing: &Standing) -> bool {
+        if !case.record.accelerates(self.contender.term) {
+            return true;
+        }
+        let law: Vec<Term> = standing.equation.terms.iter().copied().chain([self.contender.term]).collect();
+        let whole = case.stand(&law);
+        whole.is_some_and(|whole| whole.held.score(&standing.held) <= COUNT as f64 * WORTH.ln())
     }
 
     fn describe(&self, case: &Case, standing: &Standing) -> Candidate {
