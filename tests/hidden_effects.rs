@@ -75,12 +75,13 @@ fn two_hidden_effects_are_found() {
     assert_share(&visible(settings.collect()), 8, 0.8, Outcome::is_right);
 }
 
-/// Effects and numbers are drawn when the test runs, so that nothing can be made to fit them. One of twelve may be missed: some are, in the long run.
+/// Effects and numbers are drawn when the test runs, so that nothing can be made to fit them. Some 22 of 36 can be seen at all; where 96 % of
+/// those are found in the long run, chance takes more than a fifth of them once in 800 runs.
 #[test]
 fn effects_that_nobody_knows_before_are_found() {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_nanos() as u64;
     let ids = ids();
     let id = |draw: u64| ids[((now / 1000 + 7 * draw) % ids.len() as u64) as usize].clone();
-    let drawn = (0..12).map(|draw| Setting { seed: now, ..setting(Secret::Missing(vec![id(draw)]), 0.2, 0.005, draw) });
-    assert_share(&visible(drawn.collect()), 8, 0.85, |outcome| matches!(outcome.answer, Answer::Right | Answer::Tied));
+    let drawn = (0..36).map(|draw| Setting { seed: now, ..setting(Secret::Missing(vec![id(draw)]), 0.2, 0.005, draw) });
+    assert_share(&visible(drawn.collect()), 12, 0.8, |outcome| matches!(outcome.answer, Answer::Right | Answer::Tied));
 }
