@@ -20,7 +20,7 @@ pub const LEVEL: f64 = 0.01;
 const WORTH: f64 = 0.95;
 
 /// Ratio of errors in every window that needs no test: a third of the error's energy.
-const LARGE: f64 = 0.816;
+pub(super) const LARGE: f64 = 0.816;
 
 /// Ratio of errors in one window that disqualifies: 2 % worse.
 pub(super) const WORSE: f64 = 1.02;

@@ -1,19 +1,16 @@
 //! A displacement whose sensor drifts, seen before any effect is: no effect knows the time.
 
 use super::case::{Case, Standing};
-use super::diagnosis::{Doubt, diagnose, is_large};
+use super::diagnosis::{Doubt, LARGE, diagnose, is_large};
 use super::errors::{TIE, are_adequate};
 use crate::diagnose::judge::{COUNT, Drift, drift};
 use crate::identify::Recording;
 use crate::law::Term;
 
-/// Ratio of residuals below which a drift is worth another look: a third of the energy.
-const WORTH: f64 = 0.816;
-
 /// Further looks at a drift, each of which takes most of what the one before has left.
 const LOOKS: usize = 4;
 
-/// T₀ that a record must be long at least: in fewer a cubic in time follows the motion itself.
+/// T₀ that a record must be long at least: its waves of half the record and longer are then slower than the motion.
 const LONG: f64 = 10.0;
 
 /// The recordings without the drift that a law of these terms sees in them; none where nothing drifts so much, or an effect explains as much.
@@ -30,7 +27,7 @@ pub(super) fn steadied(
         return None;
     }
     let (mut drifts, ratio) = of(case, &standing)?;
-    if ratio > WORTH {
+    if ratio > LARGE {
         return None;
     }
     let effects = diagnose(case, terms)?;

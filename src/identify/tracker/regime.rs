@@ -296,6 +296,19 @@ impl Regime {
     }
 }
 
+/// One letter a regime: acquiring, tracking, recognised, suspected, re-identifying, drifting.
+#[cfg(test)]
+pub(super) fn letter(regime: Regime) -> char {
+    match regime {
+        Regime::Acquiring => 'a',
+        Regime::Tracking { .. } => 't',
+        Regime::Recognised { .. } => 'r',
+        Regime::SwitchSuspected { .. } => 's',
+        Regime::ReIdentifying { .. } => 'i',
+        Regime::Drifting { .. } => 'd',
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -343,18 +356,6 @@ mod tests {
             Event::DriftRests(true),
             Event::DriftLost,
         ]
-    }
-
-    /// One letter a regime: acquiring, tracking, recognised, suspected, re-identifying, drifting.
-    fn letter(regime: Regime) -> char {
-        match regime {
-            Regime::Acquiring => 'a',
-            Regime::Tracking { .. } => 't',
-            Regime::Recognised { .. } => 'r',
-            Regime::SwitchSuspected { .. } => 's',
-            Regime::ReIdentifying { .. } => 'i',
-            Regime::Drifting { .. } => 'd',
-        }
     }
 
     #[test]

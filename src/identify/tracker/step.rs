@@ -218,7 +218,7 @@ impl Tracker {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identify::tracker::regime::Regime;
+    use crate::identify::tracker::regime::letter;
     use crate::law::{Given, Model};
     use crate::simulate::{Builtin, Scenario, record};
 
@@ -235,17 +235,6 @@ mod tests {
         }
         scenario.duration = 8.0 * laws.len() as f64;
         scenario
-    }
-
-    fn letter(regime: Regime) -> char {
-        match regime {
-            Regime::Acquiring => 'a',
-            Regime::Tracking { .. } => 't',
-            Regime::Recognised { .. } => 'r',
-            Regime::SwitchSuspected { .. } => 's',
-            Regime::ReIdentifying { .. } => 'i',
-            Regime::Drifting { .. } => 'd',
-        }
     }
 
     /// The regimes that a record goes through, each once for as long as it lasts.
