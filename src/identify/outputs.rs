@@ -116,11 +116,7 @@ const SCALARS: [Scalar; 21] = [
     ("prediction.qd", OutputKind::Real(None), "qd that the present law predicts for the last sample"),
     ("noise_estimate.q", OutputKind::Real(None), "Estimated std of the sensor noise on q; 1e30 while not known"),
     ("noise_estimate.qd", OutputKind::Real(None), "Estimated std of the sensor noise on qd; 1e30 while not known"),
-    (
-        "identified_time",
-        OutputKind::Real(Some("s")),
-        "First time at which the identifier vouched for the present law; 1e30 before",
-    ),
+    ("identified_time", OutputKind::Real(Some("s")), "First time at which the present law was validated; 1e30 before"),
     (
         "missing.effect",
         OutputKind::Effect,
@@ -134,7 +130,7 @@ const SCALARS: [Scalar; 21] = [
     (
         "law.number",
         OutputKind::Count,
-        "Number of the law in use among those vouched for so far, the same whenever it returns; 0 while there is none",
+        "Number of the law in use among those validated so far, the same whenever it returns; 0 while there is none",
     ),
     ("drifting", OutputKind::Flag, "Whether the coefficients move: they are followed as they go"),
     (

@@ -31,7 +31,7 @@ struct StageReport {
     /// When the alarm had its name, no sensor's fault, s.
     named: Option<f64>,
     identified: Option<f64>,
-    /// The same whenever a law returns; null where no law was vouched for.
+    /// The same whenever a law returns; null where no law was validated.
     law_number: Option<u32>,
     recognised: bool,
     /// Whether the law was validated at the stage's end.
