@@ -12,7 +12,7 @@ mod piece;
 mod scale;
 mod verdict;
 
-pub use crate::estimation::Noise;
+pub use crate::estimation::{Noise, Observation};
 pub use candidates::same_effect;
 pub use compare::{
     Bounds, Comparison, Error, Estimate, Fail, Held, Judged, NOISE_RATIO, Options, Over, Side, Verdict, compare,
@@ -23,5 +23,5 @@ pub use motion::{Kinematics, Sensors};
 pub use piece::Piece;
 pub use verdict::{
     ADEQUATE, Addition, Candidate, Clock, Diagnosis, Doubt, Finding, Improvement, LEVEL, Law, Posed, StageDiagnosis,
-    Step, Switched, WindowError, diagnose_stages, improved_model,
+    Step, Switched, WORTH, WindowError, diagnose_stages, improved_model,
 };
