@@ -1,7 +1,7 @@
 //! `switchid fmu`: an FMU for a model out of the prebuilt binary.
 
 use super::error::CommandError;
-use super::output;
+use super::output::{self, Targets};
 use crate::data::{self, DataError};
 use crate::fmu::{Fmu, FmuError, identifier_knowing, plant_of_model};
 use clap::Args;
@@ -39,6 +39,9 @@ pub(super) struct Arguments {
     /// Where the prebuilt binaries lie; else beside this executable
     #[arg(long, value_name = "DIR")]
     binaries: Option<PathBuf>,
+    /// Overwrite files where they exist
+    #[arg(long)]
+    force: bool,
     /// Print one JSON document instead of text
     #[arg(long)]
     json: bool,
@@ -59,7 +62,7 @@ struct Report {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let inputs: Vec<PathBuf> = [&arguments.model].into_iter().chain(&arguments.known_laws).cloned().collect();
-    output::check_target("-o", &arguments.output, &inputs)?;
+    let target = Targets::new(inputs, arguments.force).claim("-o", &arguments.output)?;
     let model = data::open_model(&arguments.model)?;
     let name = name(&arguments.output);
     let refused = |source: FmuError| match (source, &arguments.known_laws) {
@@ -77,7 +80,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let (fmu, platforms) = with_binaries(fmu, arguments)?;
     let bytes = fmu.to_bytes().map_err(|source| refused(source.into()))?;
     let file = arguments.output.display().to_string();
-    std::fs::write(&arguments.output, bytes).map_err(|error| CommandError::write(&file, error))?;
+    target.write_bytes(&bytes)?;
     let report = Report { fmu: file, kind: kind(arguments), name, guid: fmu.guid().into(), platforms };
     if arguments.json { output::print_json(&report) } else { output::print(&text(&report)) }
 }
