@@ -146,6 +146,9 @@ fn text(arguments: &Arguments, found: &Addition, input: &Input) -> String {
     if error.after > error.before {
         text += "it makes the error worse: this record does not speak for it\n";
     }
+    if law.coefficients.last().zip(law.std.last()).is_some_and(|(value, std)| value.abs() < *std) {
+        text += "its coefficient is within its uncertainty: this record does not show it\n";
+    }
     for ((term, value), std) in law.terms.iter().zip(&law.coefficients).zip(&law.std) {
         let name = law.effect_name(*term);
         let _ = writeln!(text, "  {name:<28} {:>26}{}", number(*value, *std), input.unit(*term));

@@ -21,9 +21,9 @@ pub struct Stage {
     pub end: f64,
     /// Time of the alarm that opened it, s; `None` where the record or a gap began it.
     pub detected: Option<f64>,
-    /// First time at which the identifier vouched for its law, s.
+    /// First time at which its law was validated, s.
     pub identified: Option<f64>,
-    /// Number of its law among those vouched for, the same whenever a law returns; `None` where none was vouched for.
+    /// Number of its law among those validated, the same whenever a law returns; `None` where none was validated.
     pub law_number: Option<u32>,
     /// Whether the law was recognised as one seen before, not identified anew.
     pub recognised: bool,
@@ -49,7 +49,7 @@ impl Stage {
         known.filter(move |(coefficient, std)| told(coefficient.value, *std))
     }
 
-    /// The terms whose coefficients are not known as well as a law that is vouched for asks, and for how many more
+    /// The terms whose coefficients are not known as well as a validated law has to be, and for how many more
     /// seconds such motion would have to go on; those left out of which nothing can be said.
     pub fn lacking(&self) -> impl Iterator<Item = (Term, f64)> {
         let needed = self.coefficients.iter().filter_map(|coefficient| Some((coefficient.term, coefficient.needed?)));
@@ -76,7 +76,7 @@ pub struct Identification {
     pub noise_qd: Option<f64>,
     /// Estimated std of what the force has besides a law that gives it; `None` for a law of motion.
     pub noise_force: Option<f64>,
-    /// The laws that were vouched for, to be recognised in other recordings.
+    /// The laws that were validated, to be recognised in other recordings.
     pub known_laws: SavedLaws,
     /// The samples that were not used, and why.
     pub skipped: Vec<Skipped>,

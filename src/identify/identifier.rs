@@ -133,7 +133,7 @@ impl Identifier {
         }
     }
 
-    /// The laws that it knows, the present one among them where it is vouched for; none of the publication's method.
+    /// The laws that it knows, the present one among them where it is validated; none of the publication's method.
     pub fn known_laws(&self) -> SavedLaws {
         match &self.engine {
             Engine::Default(tracker) => tracker.known_laws(&self.problem),

@@ -100,18 +100,14 @@ const SCALARS: [Scalar; 17] = [
         "Time of the alarm that ended the last stage; 1e30 before the first alarm",
     ),
     ("status", OutputKind::Status, "What the identifier is doing"),
-    ("valid", OutputKind::Flag, "Whether the identifier vouches for the present law"),
+    ("valid", OutputKind::Flag, "Whether the present law is validated"),
     ("deviation", OutputKind::Real(None), "Mean deviation of prediction from observation over deviation.interval"),
     ("threshold", OutputKind::Real(None), "Deviation that is out of the ordinary"),
     ("prediction.q", OutputKind::Real(None), "q that the present law predicts for the last sample"),
     ("prediction.qd", OutputKind::Real(None), "qd that the present law predicts for the last sample"),
     ("noise_estimate.q", OutputKind::Real(None), "Estimated std of the sensor noise on q; 1e30 while not known"),
     ("noise_estimate.qd", OutputKind::Real(None), "Estimated std of the sensor noise on qd; 1e30 while not known"),
-    (
-        "identified_time",
-        OutputKind::Real(Some("s")),
-        "First time at which the identifier vouched for the present law; 1e30 before",
-    ),
+    ("identified_time", OutputKind::Real(Some("s")), "First time at which the present law was validated; 1e30 before"),
     (
         "missing.effect",
         OutputKind::Effect,
@@ -125,7 +121,7 @@ const SCALARS: [Scalar; 17] = [
     (
         "law.number",
         OutputKind::Count,
-        "Number of the law in use among those vouched for so far, the same whenever it returns; 0 while there is none",
+        "Number of the law in use among those validated so far, the same whenever it returns; 0 while there is none",
     ),
     ("drifting", OutputKind::Flag, "Whether the coefficients move: they are followed as they go"),
 ];

@@ -41,7 +41,7 @@ pub struct Coefficient {
     pub value: f64,
     /// Its std; `None` while the coefficient is not known.
     pub std: Option<f64>,
-    /// How many more seconds of such a record it needs until it is known as well as a law that is vouched for asks; 0
+    /// How many more seconds of such a record it needs until it is known as well as a validated law has to be; 0
     /// when it is, `None` while nothing can be said.
     pub needed: Option<f64>,
 }
@@ -57,9 +57,9 @@ pub struct Output {
     pub switch_time_std: Option<f64>,
     /// Time of the alarm that ended the last stage, s; `None` in the first one.
     pub detection_time: Option<f64>,
-    /// First time at which the present law was vouched for (stated covariance puts e below 0.05²), s.
+    /// First time at which the present law was validated (stated covariance puts e below 0.05²), s.
     pub identified_time: Option<f64>,
-    /// Number of the law in use among those that were vouched for, 1 for the first of all; `None` while there is none.
+    /// Number of the law in use among those that were validated, 1 for the first of all; `None` while there is none.
     pub law_number: Option<u32>,
     /// Whether that law was recognised as one seen before, not identified anew.
     pub recognised: bool,
@@ -67,7 +67,7 @@ pub struct Output {
     pub status: Status,
     /// Whether the present law is validated; every std is known then.
     pub valid: bool,
-    /// Whether the coefficients move: they are followed as they go, and vouched for as long as their stated e is below
+    /// Whether the coefficients move: they are followed as they go, and valid as long as their stated e is below
     /// 0.2².
     pub drifting: bool,
     /// Deviation of eq. (4) over T; 0 before the first law.

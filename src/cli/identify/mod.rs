@@ -72,7 +72,7 @@ pub(super) struct Arguments {
     /// Laws to recognise from the first sample on, as --save-laws wrote them
     #[arg(long, value_name = "FILE")]
     known_laws: Option<PathBuf>,
-    /// Write the laws that were vouched for into this file (TOML), to be recognised in other recordings
+    /// Write the laws that were validated into this file (TOML), to be recognised in other recordings
     #[arg(long, value_name = "FILE")]
     save_laws: Option<PathBuf>,
     #[command(flatten)]
@@ -202,7 +202,7 @@ fn inputs(arguments: &Arguments) -> Result<Vec<PathBuf>, CommandError> {
 fn unsaved(arguments: &Arguments, found: &Identification) -> Option<String> {
     let path = arguments.save_laws.as_ref().filter(|_| found.known_laws.laws.is_empty())?;
     Some(format!(
-        "{}: no law was saved, since none was vouched for: this record is too short or too noisy for the model, or the model's form \
+        "{}: no law was saved, since none was validated: this record is too short or too noisy for the model, or the model's form \
          does not explain it (`switchid compare` tells)",
         path.display()
     ))

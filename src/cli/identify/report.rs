@@ -28,7 +28,7 @@ struct StageReport {
     end: f64,
     detected: Option<f64>,
     identified: Option<f64>,
-    /// The same whenever a law returns; null where no law was vouched for.
+    /// The same whenever a law returns; null where no law was validated.
     law_number: Option<u32>,
     recognised: bool,
     /// Whether the law was validated at the stage's end.
