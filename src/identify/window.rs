@@ -1,5 +1,6 @@
 //! The last samples, in a ring whose memory is fixed at construction.
 
+use super::packed;
 use super::sample::Sample;
 use super::settings::Channels;
 use crate::estimation::{Filter, Noise, Observation, initial_state};
@@ -21,6 +22,7 @@ const MEMORY: f64 = 4000.0;
 /// Accepted samples by number; the first of all is number 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Window {
+    #[serde(with = "packed")]
     ring: Vec<Sample>,
     count: u64,
     channels: Channels,
