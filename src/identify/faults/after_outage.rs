@@ -3,7 +3,7 @@
 
 use super::hypothesis::{Expected, Hypothesis, Kind, Value};
 use crate::estimation::{Channel, Filter};
-use crate::law::{Drive, State};
+use crate::law::Drive;
 use serde::{Deserialize, Serialize};
 
 /// An offset not found within this time after the outage is none that it brought, s.
@@ -49,8 +49,7 @@ impl AfterOutage {
             Some(_) => law.noise.sensor[channel],
             None => law.size[channel].powi(2),
         };
-        let state = State { q: q.unwrap_or(0.0), qd: qd.unwrap_or(0.0) };
-        let filter = Filter { state, covariance: [spread(0), 0.0, spread(1)] };
+        let filter = Filter::begin([q.unwrap_or(0.0), qd.unwrap_or(0.0)], [spread(0), spread(1)]);
         for hypothesis in &mut self.hypotheses {
             hypothesis.begin(&filter, law, 0.0, 0.0);
             hypothesis.return_with_offset();
