@@ -94,7 +94,7 @@ impl Clock {
     /// Whether the record has had no sample for longer than is usual, at a stamp that was skipped.
     pub fn is_stale(&self, stamp: f64) -> bool {
         let step = self.last.map_or(0.0, |last| stamp + self.shift - last);
-        self.known >= KNOWN && !(step.abs() <= STALE * self.pace) && stamp.is_finite()
+        self.known >= KNOWN && (step.is_nan() || step.abs() > STALE * self.pace) && stamp.is_finite()
     }
 }
 
