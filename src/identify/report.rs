@@ -32,6 +32,48 @@ impl Status {
     }
 }
 
+/// What a channel's sensor does; numbered as in the FMU.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SensorState {
+    /// It works.
+    #[default]
+    Ok = 1,
+    /// Its readings are far from what can have been.
+    Outlier = 2,
+    /// It repeats its value where it varied before.
+    Stuck = 3,
+    /// It is off by a constant.
+    Offset = 4,
+    /// It says nothing.
+    Missing = 5,
+    /// It comes later than the others.
+    Late = 6,
+}
+
+impl SensorState {
+    /// Every state, in the order of the FMU's enumeration.
+    pub const ALL: [SensorState; 6] = [
+        SensorState::Ok,
+        SensorState::Outlier,
+        SensorState::Stuck,
+        SensorState::Offset,
+        SensorState::Missing,
+        SensorState::Late,
+    ];
+
+    /// The name used in reports and in the FMU.
+    pub fn id(self) -> &'static str {
+        match self {
+            SensorState::Ok => "ok",
+            SensorState::Outlier => "outlier",
+            SensorState::Stuck => "stuck",
+            SensorState::Offset => "offset",
+            SensorState::Missing => "missing",
+            SensorState::Late => "late",
+        }
+    }
+}
+
 /// A published coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Coefficient {
@@ -65,8 +107,12 @@ pub struct Output {
     pub recognised: bool,
     /// What the identifier is doing.
     pub status: Status,
-    /// Whether the present law is validated; every std is known then.
+    /// Whether the present law is validated, every std known and honest, and the last samples were used.
     pub valid: bool,
+    /// What the sensors of q, q̇ and F do.
+    pub sensors: [SensorState; 3],
+    /// Time at which the last switch was named one, s; `None` in the first stage.
+    pub named_time: Option<f64>,
     /// Whether the coefficients move: they are followed as they go, and valid as long as their stated e is below
     /// 0.2².
     pub drifting: bool,

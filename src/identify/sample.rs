@@ -3,6 +3,9 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+/// Samples further apart than so many usual distances have a gap between them: four lost ones in a row are still bridged.
+pub const GAP: f64 = 4.5;
+
 /// One measurement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
@@ -30,6 +33,16 @@ pub enum Skipped {
     /// Time did not advance.
     #[error("the sample at t = {t} s does not come after the one at {previous} s: skipped")]
     NotLater {
+        /// Time of the sample, s.
+        t: f64,
+        /// Time of the last accepted one, s.
+        previous: f64,
+    },
+    /// Time is far ahead, alone so far.
+    #[error(
+        "the sample at t = {t} s comes long after the one at {previous} s: skipped, believed once the next one agrees"
+    )]
+    Ahead {
         /// Time of the sample, s.
         t: f64,
         /// Time of the last accepted one, s.

@@ -1,27 +1,31 @@
 //! The last samples, in a ring whose memory is fixed at construction.
 
+use super::reading::Reading;
 use super::sample::Sample;
 use super::settings::Channels;
 use crate::estimation::{Filter, Noise, Observation, initial_state};
 use crate::law::{BandLimited, Drive, Hold, REACH, look_ahead};
 use serde::{Deserialize, Serialize};
 
-/// An interval this many times as long as the usual one lacks samples …
+/// An interval this many times as long as the usual one lacks samples, half way between none and one …
 const GAP: f64 = 1.5;
 
 /// … unless more than so many in a row are.
 const PATIENCE: u32 = 3;
 
-/// Share of a sample in the usual interval.
+/// An interval this many times as long as the usual one is an outage.
+const OUTAGE: f64 = 50.0;
+
+/// Share of a sample in the usual interval: it follows another rate of sampling within 20.
 const ADAPTION: f64 = 0.05;
 
-/// Samples that count for how rough the excitation is.
+/// Samples that count for how rough the excitation is: its mean square is then known to 2 %.
 const MEMORY: f64 = 4000.0;
 
 /// Accepted samples by number; the first of all is number 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Window {
-    ring: Vec<Sample>,
+    ring: Vec<Reading>,
     count: u64,
     channels: Channels,
     hold: Hold,
@@ -74,7 +78,7 @@ impl Pace {
 impl Window {
     /// Room for `capacity` samples.
     pub fn new(capacity: usize, channels: Channels, hold: Hold) -> Window {
-        let ring = vec![Sample::default(); capacity];
+        let ring = vec![Reading::default(); capacity];
         Window { ring, count: 0, channels, hold, band_limited: BandLimited::new(), pace: Pace::default() }
     }
 
@@ -84,14 +88,20 @@ impl Window {
     }
 
     /// Adds a sample; the oldest goes when there is no room.
-    pub fn push(&mut self, sample: Sample) {
+    pub fn push(&mut self, reading: impl Into<Reading>) {
+        let reading = reading.into();
         if self.count > 0 {
             let before = *self.sample(self.count - 1);
-            self.pace.take(&before, &sample);
+            self.pace.take(&before, &reading.sample);
         }
         let slot = self.slot(self.count);
-        self.ring[slot] = sample;
+        self.ring[slot] = reading;
         self.count += 1;
+    }
+
+    /// Time that is usual between two samples, s; 0 before there are two.
+    pub fn pace(&self) -> f64 {
+        self.pace.dt
     }
 
     /// Number of the oldest sample that is still there.
@@ -112,7 +122,20 @@ impl Window {
     /// The sample of that number, which must be in the window.
     #[inline]
     pub fn sample(&self, number: u64) -> &Sample {
-        &self.ring[self.slot(number)]
+        &self.ring[self.slot(number)].sample
+    }
+
+    /// Whether samples are missing for long before the sample of that number.
+    pub fn ends_outage(&self, number: u64) -> bool {
+        number > self.oldest() && self.sample(number).t - self.sample(number - 1).t > OUTAGE * self.pace.dt
+    }
+
+    /// Changes the last `count` readings.
+    pub fn amend(&mut self, count: u64, change: impl Fn(&mut Reading)) {
+        for number in self.end().saturating_sub(count).max(self.oldest())..self.end() {
+            let slot = self.slot(number);
+            change(&mut self.ring[slot]);
+        }
     }
 
     /// Sample `number` and the excitation since the one before it; both must be in the window.
@@ -125,9 +148,11 @@ impl Window {
             Hold::Linear => Drive::Line(before.excitation, after.excitation),
             Hold::BandLimited => self.interpolate(number - 1),
         };
-        let measured = [self.channels.q.then_some(after.q), self.channels.qd.then_some(after.qd)];
+        let Reading { faulty: [q_faulty, qd_faulty], unseen, .. } = self.ring[self.slot(number)];
+        let counts = [self.channels.q && !q_faulty, self.channels.qd && !qd_faulty];
+        let measured = [counts[0].then_some(after.q), counts[1].then_some(after.qd)];
         let dt = after.t - before.t;
-        let unseen = self.pace.unseen(dt, after.excitation - before.excitation);
+        let unseen = unseen + self.pace.unseen(dt, after.excitation - before.excitation);
         Observation { dt, drive, measured, unseen }
     }
 

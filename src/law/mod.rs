@@ -53,6 +53,7 @@ pub use model_error::ModelError;
 pub use motion::{Motion, State};
 pub(crate) use quadrature::GAUSS;
 pub use series::{Trajectory, term_series};
+pub(crate) use term::raised;
 pub use term::{Monomial, Term, TermError};
 pub use text::equation;
 pub use unit::{Channel, Quantity, Unit};

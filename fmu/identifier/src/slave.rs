@@ -3,7 +3,7 @@
 use crate::parameters::{Parameters, position};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use switchid::identify::{Identifier, OutputValue, Outputs, Sample, SavedLaws, SavedLawsError, Skipped};
+use switchid::identify::{Identifier, OutputValue, Outputs, Sample, SavedLaws, SavedLawsError, SensorState, Skipped};
 use switchid::law::{Model, ModelError, Term};
 use switchid_fmu_slave::{Category, Description, Log, Slave, SlaveError, Value, Values};
 use thiserror::Error;
@@ -93,11 +93,13 @@ impl Slave for IdentifierSlave {
         let Some(running) = self.running.as_mut() else { return Ok(()) };
         let [q, qd, excitation] = self.inputs.map(|reference| values.real(reference));
         let before = running.identifier.output().switch_count;
+        let sensors = running.identifier.output().sensors;
         match running.identifier.step(Sample { t: time, q, qd, excitation }) {
             Ok(()) => running.publish(&self.output_references, values),
             Err(skipped) => running.say_skipped(skipped, log),
         }
         running.say_switch(before, log);
+        running.say_sensors(time, sensors, log);
         Ok(())
     }
 }
@@ -119,7 +121,23 @@ impl Running {
                 log.say(Category::Warning, &text);
             }
             Skipped::NotFinite { channel, .. } => log.warn_rarely(channel, || skipped.to_string()),
-            Skipped::NotLater { .. } => log.warn_rarely("time", || skipped.to_string()),
+            Skipped::NotLater { .. } | Skipped::Ahead { .. } => log.warn_rarely("time", || skipped.to_string()),
+        }
+    }
+
+    /// A sensor's fault is said once when it begins and once when it ends.
+    fn say_sensors(&self, time: f64, before: [SensorState; 3], log: &Log) {
+        let now = self.identifier.output().sensors;
+        for (channel, (before, now)) in ["q", "qd", "F"].into_iter().zip(before.into_iter().zip(now)) {
+            if before != now {
+                let text = match now {
+                    SensorState::Ok => format!("sensor of {channel}: {} until t = {time} s, ok again", before.id()),
+                    fault => {
+                        format!("sensor of {channel}: {} from t = {time} s on, its readings do not count", fault.id())
+                    }
+                };
+                log.say(Category::Warning, &text);
+            }
         }
     }
 
@@ -141,6 +159,7 @@ fn to_fmi(value: OutputValue) -> Value {
         OutputValue::Count(count) => Value::Integer(i32::try_from(count).unwrap_or(i32::MAX)),
         OutputValue::Flag(flag) => Value::Boolean(flag),
         OutputValue::Status(status) => Value::Integer(status as i32),
+        OutputValue::Sensor(sensor) => Value::Integer(sensor as i32),
         OutputValue::Effect(effect) => Value::Integer(i32::from(effect)),
     }
 }

@@ -27,6 +27,10 @@ pub(super) fn text(run: &Run) -> String {
             stage.end
         );
     }
+    for fault in &run.found.sensors {
+        let end = fault.end.map_or_else(|| "the end".into(), |end| format!("{end:.3} s"));
+        let _ = writeln!(text, "sensor of {}: {} from {:.3} s to {end}", fault.channel, fault.kind.id(), fault.start);
+    }
     for (index, (stage, limit)) in stages(run).enumerate() {
         let law = law(stage, limit, run.settings.channels.excitation, &run.opened.units);
         let drifting = if stage.drifting { " (drifting; its last coefficients)" } else { "" };
