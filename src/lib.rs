@@ -79,6 +79,10 @@
     feature = "cli",
     doc = "| [`data`] | recordings, models and scenarios from files | [`data::open_recording`] |"
 )]
+#![cfg_attr(
+    feature = "cli",
+    doc = "| [`report`] | figures, described once, as SVG, PNG or HTML | [`report::Figure`] |"
+)]
 #![cfg_attr(feature = "cli", doc = "| [`cli`] | the command line | [`cli::run`] |")]
 #![cfg_attr(
     feature = "fmu",
@@ -100,6 +104,8 @@ pub mod fmu;
 pub mod identify;
 pub mod law;
 pub mod limits;
+#[cfg(feature = "cli")]
+pub mod report;
 pub mod simulate;
 pub mod weak;
 

@@ -173,10 +173,10 @@ fn a_sensor_s_outliers_are_no_switch() {
     }
 }
 
-/// A law may be vouched for a while before its fit has come to the likelihood's maximum: the estimate of 8 s, a hundred times what is
+/// A law may be validated a while before its fit has come to the likelihood's maximum: the estimate of 8 s, a hundred times what is
 /// possible in 24 s, was then kept to the end.
 #[test]
-fn a_law_that_was_vouched_for_early_gets_as_exact_as_any() {
+fn a_law_that_was_validated_early_gets_as_exact_as_any() {
     for seed in [3167, 3170] {
         let scenario = Builtin::VanDerPolNoise.random(seed).with_noise(0.05);
         let recorded = Recorded::of(&scenario).unwrap();

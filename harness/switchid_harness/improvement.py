@@ -81,7 +81,7 @@ def _plants(scenario: HiddenEffect, switchid: CommandLine) -> dict[str, Slave]:
     """Both models as plant FMUs, driven like the plant in the fresh record, without sensor noise."""
     plants = {}
     for name in MODELS:
-        switchid.json("fmu", "--plant", "--model", f"{name}.toml", "-o", f"{name}.fmu")
+        switchid.json("fmu", "--plant", "--model", f"{name}.toml", "-o", f"{name}.fmu", "--force")
         fmu = Fmu(switchid.directory / f"{name}.fmu", switchid.directory / name)
         plants[name] = Slave(fmu, name, scenario.excitation(fresh=True))
     return plants

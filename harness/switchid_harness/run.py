@@ -149,11 +149,11 @@ def stage_figures(track: Track, time: np.ndarray, error: np.ndarray, start: floa
 
 
 def identified(track: Track, time: np.ndarray, since: float | None, end: float) -> float | None:
-    """First time from `since` to `end` at which the identifier vouches for its law."""
+    """First time from `since` to `end` at which the identifier has validated its law."""
     if since is None:
         return None
-    vouched = time[(time >= since) & (time <= end) & (track.outputs["valid"] > 0)]
-    return float(vouched[0]) if vouched.size else None
+    validated = time[(time >= since) & (time <= end) & (track.outputs["valid"] > 0)]
+    return float(validated[0]) if validated.size else None
 
 
 def number(value: float) -> float | None:

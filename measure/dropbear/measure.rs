@@ -31,7 +31,7 @@ pub struct Beam {
     pub frequency: Vec<f64>,
 }
 
-/// What the identifier vouched for after a sample.
+/// What the identifier had validated after a sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mode {
     /// c, 1/s.
@@ -57,7 +57,7 @@ impl Mode {
 /// The figures of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Figures {
-    /// Share of the time from [`MOVES_FROM`] on for which a law was vouched for.
+    /// Share of the time from [`MOVES_FROM`] on for which a law was valid.
     pub identified: f64,
     /// The same until [`STILL_UNTIL`].
     pub identified_still: f64,
@@ -88,7 +88,7 @@ pub fn read(path: &Path) -> Result<Beam, Failure> {
     Ok(beam)
 }
 
-/// Runs the default identifier over the strain; after every sample the mode that it vouches for.
+/// Runs the default identifier over the strain; after every sample the mode of its valid law.
 pub fn identify(beam: &Beam) -> Result<Vec<Option<Mode>>, Failure> {
     let terms = [Term::Inertia, Term::power(0, 1), Term::power(1, 0), Term::power(0, 0)];
     let model = Model::of("beam with a roller", terms.into_iter().map(|term| (term, Given::Fit)));
@@ -123,7 +123,7 @@ pub fn figures(beam: &Beam, modes: &[Option<Mode>]) -> Figures {
     }
 }
 
-/// Over all windows from [`MOVES_FROM`] on at whose start a law was vouched for, against one variation with ∫ φ dt = 0, which the offset
+/// Over all windows from [`MOVES_FROM`] on at whose start a law was valid, against one variation with ∫ φ dt = 0, which the offset
 /// of the strain does not enter.
 fn residual(beam: &Beam, modes: &[Option<Mode>]) -> f64 {
     let length = beam.t[WINDOW - 1] - beam.t[0];

@@ -19,19 +19,19 @@ pub struct Stage {
     pub detection: Option<f64>,
     /// From the switch until e stays below 0.05² to the stage's end, s.
     pub tracking: Option<f64>,
-    /// From the switch until its law is vouched for, s.
-    pub vouched: Option<f64>,
+    /// From the switch until its law is validated, s.
+    pub validated: Option<f64>,
     /// e of eq. (8) at its last sample.
     pub error: f64,
-    /// Largest e while its law is vouched for.
+    /// Largest e while its law is validated.
     pub worst: f64,
-    /// Share of its samples at which its law is vouched for and e is above 0.05².
+    /// Share of its samples at which its law is validated and e is above 0.05².
     pub wrong: f64,
-    /// Share of its samples at which a law is vouched for without an alarm since the switch, and e is above 0.05².
+    /// Share of its samples at which a law is validated without an alarm since the switch, and e is above 0.05².
     pub stale: f64,
-    /// (θ − θ*) ÷ std of the coefficients last vouched for; none where the law never was.
+    /// (θ − θ*) ÷ std of the coefficients last validated; none where the law never was.
     pub normalised: Vec<f64>,
-    /// The same of whatever has a std at the stage's end, vouched for or not, its switch detected or not.
+    /// The same of whatever has a std at the stage's end, validated or not, its switch detected or not.
     pub stated: Vec<f64>,
     /// Share of the coefficients that have a std then.
     pub told: f64,
@@ -102,7 +102,7 @@ impl<'a> Watch<'a> {
         let nothing = Stage {
             detection: None,
             tracking: None,
-            vouched: None,
+            validated: None,
             error: BEYOND,
             worst: 0.0,
             wrong: 0.0,
@@ -132,7 +132,7 @@ impl<'a> Watch<'a> {
         self.stage.error = error(identifier.coefficients(), self.terms, self.truth);
         self.stage.tracking = (self.stage.error < RIGHT).then(|| self.stage.tracking.unwrap_or(since));
         match (identifier.output().valid, self.is_known()) {
-            (true, true) => self.vouched(identifier, since),
+            (true, true) => self.validated(identifier, since),
             (true, false) => self.stage.stale += f64::from(u8::from(self.stage.error >= RIGHT)),
             (false, _) => {}
         }
@@ -144,8 +144,8 @@ impl<'a> Watch<'a> {
         self.first || self.stage.detection.is_some()
     }
 
-    fn vouched(&mut self, identifier: &Identifier, since: f64) {
-        self.stage.vouched = self.stage.vouched.or(Some(since));
+    fn validated(&mut self, identifier: &Identifier, since: f64) {
+        self.stage.validated = self.stage.validated.or(Some(since));
         self.stage.worst = self.stage.worst.max(self.stage.error);
         self.stage.wrong += f64::from(u8::from(self.stage.error >= RIGHT));
         self.stage.normalised = normalised(identifier.coefficients(), self.terms, self.truth);
@@ -210,8 +210,8 @@ mod tests {
         let other = scenario.stages[1].clone();
         let wrong = Scenario { stages: vec![Stage { start: 0.0, ..other.clone() }, other], ..scenario };
         let run = follow(&mut blind, &wrong, &readings[..9000]).unwrap();
-        let vouched = (9000.0 - 1000.0 * run.stages[0].vouched.unwrap()) / 9000.0;
-        assert!((run.stages[0].wrong - vouched).abs() < 1e-3 && run.stages[0].worst >= RIGHT, "{run:?}");
+        let validated = (9000.0 - 1000.0 * run.stages[0].validated.unwrap()) / 9000.0;
+        assert!((run.stages[0].wrong - validated).abs() < 1e-3 && run.stages[0].worst >= RIGHT, "{run:?}");
         assert!(run.stages[0].normalised.iter().any(|z| z.abs() > 10.0));
     }
 

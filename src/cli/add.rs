@@ -3,11 +3,11 @@
 use super::diagnose::WindowReport;
 use super::error::CommandError;
 use super::input::{Input, ModelArguments};
-use super::output::{self, Pairs, Written};
+use super::output::{self, Pairs, Targets};
 use super::progress::Waiting;
 use super::words::{number, percent};
 use crate::diagnose::{Addition, Law, Posed, improved_model, same_effect};
-use crate::law::{Catalogue, Model, Term};
+use crate::law::{Catalogue, Expression, Term};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;
@@ -60,15 +60,18 @@ struct Report {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     // with --force the new model may take the old one's place, never a recording's
-    output::check_target("-o", &arguments.output, &output::files_of(&arguments.data)?)?;
-    let written = Written::check(&arguments.output, arguments.force)?;
+    let mut targets = Targets::new(output::files_of(&arguments.data)?, arguments.force);
+    let target = targets.claim("-o", &arguments.output)?;
+    output::one_document("-o", &target, arguments.json)?;
     let input = Input::open(&arguments.data, &arguments.model)?;
     let term = effect(&arguments.effect, &input)?;
     let found = Waiting::on("fitting", || find(&input, term));
     let effect = arguments.effect.clone();
     let found = found.ok_or_else(|| CommandError::NotDetermined { data: input.named(), effect })?;
-    written.write(&improved_model(&input.model, &found.after).to_toml())?;
-    if arguments.json {
+    target.write(&improved_model(&input.model, &found.after).to_toml())?;
+    if target.is_stdout() {
+        Ok(())
+    } else if arguments.json {
         output::print_json(&report(arguments, &found))
     } else {
         output::print(&text(arguments, &found, &input))
@@ -85,7 +88,7 @@ fn find(input: &Input, term: Term) -> Option<Addition> {
 
 /// The term of that name, which the model must not have yet.
 fn effect(name: &str, input: &Input) -> Result<Term, CommandError> {
-    let entry = input.model.named(name).map_err(|_| unknown(name, &input.model))?;
+    let entry = input.model.named(name).map_err(|_| unknown(name, &input.model.expressions))?;
     match input.model.terms.iter().find(|own| same_effect(own.term, entry.term)) {
         Some(own) => {
             let (effect, model, key) = (name.into(), input.file.clone(), own.key.clone());
@@ -95,8 +98,9 @@ fn effect(name: &str, input: &Input) -> Result<Term, CommandError> {
     }
 }
 
-fn unknown(name: &str, model: &Model) -> CommandError {
-    let own = model.expressions.iter().map(|expression| expression.name().to_string());
+/// Why there is no such effect; `expressions` are the model's own.
+pub(super) fn unknown(name: &str, expressions: &[Expression]) -> CommandError {
+    let own = expressions.iter().map(|expression| expression.name().to_string());
     let known: Vec<String> = Catalogue::ENTRIES.iter().map(|entry| entry.id.to_string()).chain(own).collect();
     let alike = known.iter().map(|other| (strsim::jaro_winkler(name, other), other));
     let mut alike: Vec<(f64, &String)> = alike.filter(|(likeness, _)| *likeness > ALIKE).collect();
@@ -141,6 +145,9 @@ fn text(arguments: &Arguments, found: &Addition, input: &Input) -> String {
     );
     if error.after > error.before {
         text += "it makes the error worse: this record does not speak for it\n";
+    }
+    if law.coefficients.last().zip(law.std.last()).is_some_and(|(value, std)| value.abs() < *std) {
+        text += "its coefficient is within its uncertainty: this record does not show it\n";
     }
     for ((term, value), std) in law.terms.iter().zip(&law.coefficients).zip(&law.std) {
         let name = law.effect_name(*term);

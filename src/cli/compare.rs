@@ -2,10 +2,13 @@
 
 use super::compare_report::Report;
 use super::error::CommandError;
+use super::figures;
 use super::input::{Input, InputArguments};
-use super::output;
+use super::output::{self, Targets};
+use super::pictures::PictureArguments;
 use super::words::percent;
 use crate::diagnose::{Comparison, Estimate, NOISE_RATIO, Options, Side, Verdict, compare};
+use crate::identify::Recording;
 use crate::law::{Hold, Model, equation};
 use clap::Args;
 use std::fmt::Write;
@@ -31,6 +34,11 @@ pub(super) struct Arguments {
     /// Length of the windows of open-loop prediction
     #[arg(long, value_name = "S", allow_negative_numbers = true, default_value_t = Options::default().horizon)]
     horizon: f64,
+    #[command(flatten)]
+    picture: PictureArguments,
+    /// Overwrite files where they exist
+    #[arg(long)]
+    force: bool,
     /// Print one JSON document instead of text
     #[arg(long)]
     json: bool,
@@ -38,15 +46,29 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let options = options(arguments)?;
+    let mut targets = Targets::new(arguments.input.files()?, arguments.force);
+    let picture = arguments.picture.open(&mut targets)?;
     let input = Input::open(&arguments.input.data, &arguments.input.model)?;
+    fits(options.window, &input)?;
     let recordings = input.judged();
     let found = compare(&input.model, &recordings, &Options { units: input.units, ..options });
+    picture.map_or(Ok(()), |picture| picture.draw(&figures::comparison(&found)))?;
     let holds: Vec<Hold> = recordings.iter().map(|(_, hold)| *hold).collect();
     if arguments.json {
         output::print_json(&Report::of(&found, &holds))
     } else {
         output::print(&text(&found, &input.model, &input.file))
     }
+}
+
+/// Whether every record has room for two windows of more than a few samples.
+fn fits(window: Option<f64>, input: &Input) -> Result<(), CommandError> {
+    let Some(window) = window else { return Ok(()) };
+    let recordings = input.recordings();
+    let span = |recording: &&Recording| recording.t()[recording.count() - 1] - recording.t()[0];
+    let most = recordings.iter().map(|recording| 0.5 * span(recording)).fold(f64::INFINITY, f64::min);
+    let least = recordings.iter().map(|recording| 4.0 * recording.sample_time()).fold(0.0, f64::max);
+    if (least..=most).contains(&window) { Ok(()) } else { Err(CommandError::Window { window, least, most }) }
 }
 
 fn options(arguments: &Arguments) -> Result<Options, CommandError> {
@@ -58,7 +80,8 @@ fn options(arguments: &Arguments) -> Result<Options, CommandError> {
     Ok(Options { window, horizon: positive("horizon", arguments.horizon)?, ..Options::default() })
 }
 
-fn text(found: &Comparison, model: &Model, file: &str) -> String {
+/// What the command prints.
+pub(super) fn text(found: &Comparison, model: &Model, file: &str) -> String {
     let mut text = how_wrong(found) + "\nwhere: " + &place(found) + "\n";
     text += &next(found, file);
     text += "\n\n";

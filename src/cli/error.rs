@@ -84,6 +84,19 @@ pub(super) enum CommandError {
         /// What is allowed.
         range: &'static str,
     },
+    /// A window that no part of a record fills.
+    #[error(
+        "--window {window} s does not fit this record: it must lie between {least:.4e} s (four samples) and {most:.4e} s (half of \
+         the record); leave it out to have one chosen"
+    )]
+    Window {
+        /// What was asked for, s.
+        window: f64,
+        /// Four samples, s.
+        least: f64,
+        /// Half the shortest record, s.
+        most: f64,
+    },
     /// No law can be fitted.
     #[error(
         "{data}: no law of the form of {model} can be determined: the record is too short or hardly moves, or terms are \
@@ -146,10 +159,34 @@ pub(super) enum CommandError {
         example: &'static str,
     },
     /// A file that would be overwritten.
-    #[error("{file}: exists already: name another file with -o, or add --force to overwrite it")]
+    #[error("{file}: exists already: name another file with {option}, or add --force to overwrite it")]
     Exists {
+        /// The option.
+        option: &'static str,
         /// The file.
         file: String,
+    },
+    /// Two options that name one file.
+    #[error("{option} {file} is the file of {other} too: name another file")]
+    Twice {
+        /// The option.
+        option: &'static str,
+        /// Its file.
+        file: String,
+        /// The other option.
+        other: &'static str,
+    },
+    /// A picture whose format its file's extension does not tell.
+    #[error("--picture {file}: the extension says the format: write OUT.svg, OUT.png or OUT.html")]
+    PictureKind {
+        /// The file.
+        file: String,
+    },
+    /// Two documents on one standard output.
+    #[error("{option} - writes to standard output, where --json prints its document: name a file")]
+    TwoDocuments {
+        /// The option.
+        option: &'static str,
     },
     /// A file that the command reads would be overwritten.
     #[error("{option} {file} would overwrite {input}, which this command reads: name another file")]

@@ -1,7 +1,7 @@
 //! `switchid fmu`: an FMU for a model out of the prebuilt binary.
 
 use super::error::CommandError;
-use super::output;
+use super::output::{self, Targets};
 use crate::data::{self, DataError};
 use crate::fmu::{Fmu, FmuError, Platform, identifier_knowing, plant_of_model};
 use clap::Args;
@@ -40,6 +40,9 @@ pub(super) struct Arguments {
     /// Where the prebuilt binaries lie; else beside this executable
     #[arg(long, value_name = "DIR")]
     binaries: Option<PathBuf>,
+    /// Overwrite files where they exist
+    #[arg(long)]
+    force: bool,
     /// Print one JSON document instead of text
     #[arg(long)]
     json: bool,
@@ -56,7 +59,7 @@ struct Report {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let inputs: Vec<PathBuf> = [&arguments.model].into_iter().chain(&arguments.known_laws).cloned().collect();
-    output::check_target("-o", &arguments.output, &inputs)?;
+    let target = Targets::new(inputs, arguments.force).claim("-o", &arguments.output)?;
     let model = data::open_model(&arguments.model)?;
     let name = name(&arguments.output);
     let refused = |source: FmuError| match (source, &arguments.known_laws) {
@@ -74,7 +77,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let (fmu, platforms) = with_binaries(fmu, arguments)?;
     let bytes = fmu.to_bytes().map_err(|source| refused(source.into()))?;
     let file = arguments.output.display().to_string();
-    std::fs::write(&arguments.output, bytes).map_err(|error| CommandError::write(&file, error))?;
+    target.write_bytes(&bytes)?;
     let report = Report { fmu: file, kind: kind(arguments), name, guid: fmu.guid().into(), platforms };
     if arguments.json { output::print_json(&report) } else { output::print(&text(&report)) }
 }
@@ -116,11 +119,13 @@ fn with_binaries(mut fmu: Fmu, arguments: &Arguments) -> Result<(Fmu, Vec<&'stat
     Ok((fmu, platforms))
 }
 
-/// The binary in the platform's own folder; in the folder itself lie those of this machine.
+/// The binary in the platform's own folder; in the folder itself lie those of this machine, and those whose ending names the
+/// platform.
 fn binary(folder: &Path, platform: Platform, kind: &str) -> Option<PathBuf> {
     let file = platform.file(&format!("switchid-fmu-{kind}"));
     let own = folder.join(platform.name).join(&file);
-    let beside = Some(folder.join(file)).filter(|_| Platform::of_this_machine() == Some(platform));
+    let named = |_: &PathBuf| platform.extension != "so" || Platform::of_this_machine() == Some(platform);
+    let beside = Some(folder.join(file)).filter(named);
     [Some(own), beside].into_iter().flatten().find(|path| path.is_file())
 }
 

@@ -2,9 +2,10 @@
 
 use super::diagnose::{self, CandidateReport, TimingReport, WindowReport};
 use super::error::CommandError;
+use super::figures;
 use super::input::{Input, InputArguments};
-use super::output::{self, Pairs, Written};
-use super::picture::Picture;
+use super::output::{self, Pairs, Targets};
+use super::pictures::PictureArguments;
 use super::progress::Waiting;
 use super::words::{number, percent};
 use crate::diagnose::{Clock, Improvement, Law, Posed, Step, WindowError, improved_model};
@@ -31,9 +32,8 @@ pub(super) struct Arguments {
     /// Where to write the new model
     #[arg(short, long, value_name = "MODEL2")]
     output: PathBuf,
-    /// Draw the error after each step into this file (SVG)
-    #[arg(long, value_name = "OUT.svg")]
-    picture: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PictureArguments,
     /// Recordings that no coefficient has seen, on which every step's law is judged as it is
     #[arg(long, value_name = "DATA2", num_args = 1..)]
     validate: Vec<String>,
@@ -95,29 +95,27 @@ impl Found {
     }
 }
 
-/// With --force the new model may take the old one's place, never a recording's; the picture takes neither's.
-fn check_targets(arguments: &Arguments) -> Result<(), CommandError> {
-    let mut inputs = output::files_of(&arguments.input.data)?;
-    output::check_target("-o", &arguments.output, &inputs)?;
-    inputs.push(arguments.input.model.model.clone());
-    arguments.picture.as_deref().map_or(Ok(()), |path| output::check_target("--picture", path, &inputs))
-}
-
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    check_targets(arguments)?;
-    let written = Written::check(&arguments.output, arguments.force)?;
-    let picture = arguments.picture.as_deref().map(|path| Picture::open(path, arguments.force)).transpose()?;
+    // with --force the new model may take the old one's place, never a recording's; the picture takes neither's
+    let read = [&arguments.input.data[..], &arguments.validate].concat();
+    let mut targets = Targets::new(output::files_of(&read)?, arguments.force);
+    let target = targets.claim("-o", &arguments.output)?;
+    output::one_document("-o", &target, arguments.json)?;
+    targets.protect(&arguments.input.model.model);
+    let picture = arguments.picture.open(&mut targets)?;
     let input = Input::open(&arguments.input.data, &arguments.input.model)?;
     let others = match arguments.validate.is_empty() {
         true => None,
         false => Some(Input::open(&arguments.validate, &arguments.input.model)?),
     };
     let found = Waiting::on("improving", || find(&input, others.as_ref())).ok_or_else(|| input.undetermined())?;
-    written.write(&improved_model(&input.model, &found.law).to_toml())?;
+    target.write(&improved_model(&input.model, &found.law).to_toml())?;
     if let Some(picture) = picture {
-        picture.staircase(&stairs(&found), found.floor()[0])?;
+        picture.draw(&figures::staircase(&stairs(&found), found.floor()))?;
     }
-    if arguments.json {
+    if target.is_stdout() {
+        Ok(())
+    } else if arguments.json {
         output::print_json(&report(arguments, &found, &input))
     } else {
         output::print(&text(arguments, &found, &input))

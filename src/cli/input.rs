@@ -1,6 +1,8 @@
 //! What commands on recordings and a model have in common: opening them, and what the excitation did between samples.
 
+use super::columns::ColumnArguments;
 use super::error::CommandError;
+use super::looked;
 use super::output;
 use crate::data::{self, Opened};
 use crate::diagnose::Posed;
@@ -22,6 +24,8 @@ pub(super) struct ModelArguments {
     /// What the excitation did between samples; else the model says, or the best one is kept
     #[arg(long, value_parser = PossibleValuesParser::new(Hold::ALL.map(Hold::id)))]
     pub(super) hold: Option<String>,
+    #[command(flatten)]
+    pub(super) columns: ColumnArguments,
 }
 
 /// The recordings, and the model that is held against them.
@@ -32,6 +36,15 @@ pub(super) struct InputArguments {
     pub(super) data: Vec<String>,
     #[command(flatten)]
     pub(super) model: ModelArguments,
+}
+
+impl InputArguments {
+    /// The files that are read.
+    pub(super) fn files(&self) -> Result<Vec<PathBuf>, CommandError> {
+        let mut files = output::files_of(&self.data)?;
+        files.push(self.model.model.clone());
+        Ok(files)
+    }
 }
 
 /// A model with the recordings it is held against.
@@ -53,9 +66,11 @@ impl Input {
     /// # Errors
     /// The first file that is at fault.
     pub(super) fn open(data: &[String], arguments: &ModelArguments) -> Result<Input, CommandError> {
-        let model = data::open_model(&arguments.model)?;
+        let mut model = data::open_model(&arguments.model)?;
+        arguments.columns.apply(&mut model)?;
         let open = |data: &String| data::open_recording(data, &model);
         let opened: Vec<Opened> = data.iter().map(open).collect::<Result<_, _>>()?;
+        opened.iter().for_each(looked::say);
         let units = opened.iter().map(|opened| opened.units).reduce(Units::common).unwrap_or_default();
         let recordings: Vec<Recording> = opened.into_iter().map(|opened| opened.recording).collect();
         let file = arguments.model.display().to_string();

@@ -1,7 +1,7 @@
 //! `switchid simulate`: a record with its truth beside it.
 
 use super::error::CommandError;
-use super::output::{self, Pairs, Table};
+use super::output::{self, Pairs, Table, Targets};
 use crate::data;
 use crate::simulate::{Builtin, Excitation, Hidden, Scenario, Stage, record};
 use clap::Args;
@@ -62,15 +62,18 @@ A scenario file:
 pub(super) struct Arguments {
     /// A scenario file (TOML), or the name of a built-in scenario
     scenario: String,
-    /// Where to write the record; its truth goes beside it with the ending .truth.json
+    /// Where to write the record; its truth goes beside it with the ending .truth.json; - is standard output, without the truth
     #[arg(short, long, value_name = "DATA")]
     output: PathBuf,
     /// Draw a built-in scenario's stages from this seed; seeds white excitation and sensor noise too
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Std of the sensor noise on q and qd, in place of the scenario's
     #[arg(long, value_name = "STD", allow_negative_numbers = true)]
     noise: Option<f64>,
+    /// Overwrite files where they exist
+    #[arg(long)]
+    force: bool,
     /// Print one JSON document instead of text
     #[arg(long)]
     json: bool,
@@ -107,16 +110,25 @@ struct Report {
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let truth_path = arguments.output.with_extension("truth.json");
-    check_targets(arguments, &truth_path)?;
+    let mut targets = Targets::new(inputs(arguments), arguments.force);
+    let target = targets.claim("-o", &arguments.output)?;
+    let truth_target = match target.is_stdout() {
+        true if arguments.json => return Err(CommandError::TwoDocuments { option: "-o" }),
+        true => None,
+        false => Some(targets.claim("-o", &truth_path)?),
+    };
     let scenario = scenario(arguments)?;
     let readings =
         record(&scenario).map_err(|source| CommandError::Simulate { scenario: arguments.scenario.clone(), source })?;
-    let mut table = Table::create(&arguments.output, &["t", "q", "qd", "F"])?;
+    let mut table = Table::create(&target, &["t", "q", "qd", "F"])?;
     for reading in &readings {
         table.push(&[reading.t, reading.q, reading.qd, reading.excitation])?;
     }
     table.finish()?;
-    output::write_json(&truth_path, &truth(&scenario))?;
+    match truth_target {
+        Some(truth_target) => truth_target.write_json(&truth(&scenario))?,
+        None => return Ok(()),
+    }
     let report = Report {
         data: arguments.output.display().to_string(),
         truth: truth_path.display().to_string(),
@@ -127,13 +139,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     if arguments.json { output::print_json(&report) } else { output::print(&text(&report)) }
 }
 
-/// What is written must not be the scenario.
-fn check_targets(arguments: &Arguments, truth: &Path) -> Result<(), CommandError> {
-    let inputs = match Builtin::from_id(&arguments.scenario) {
+/// The scenario, where it is a file.
+fn inputs(arguments: &Arguments) -> Vec<PathBuf> {
+    match Builtin::from_id(&arguments.scenario) {
         Ok(_) => Vec::new(),
         Err(_) => vec![PathBuf::from(&arguments.scenario)],
-    };
-    [arguments.output.as_path(), truth].iter().try_for_each(|path| output::check_target("-o", path, &inputs))
+    }
 }
 
 fn text(report: &Report) -> String {

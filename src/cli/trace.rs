@@ -1,10 +1,9 @@
 //! The trace of a run: every output of the identifier after every sample, under the names that the FMU gives them.
 
 use super::error::CommandError;
-use super::output::Table;
+use super::output::{Table, Target};
 use crate::identify::{Identifier, Outputs};
 use crate::law::{Model, Term};
-use std::path::Path;
 
 /// A CSV file that begins with `t`. Flags are 0 and 1, a status its number in the FMU, what is not known 1e30.
 pub(super) struct Trace {
@@ -16,11 +15,11 @@ pub(super) struct Trace {
 
 impl Trace {
     /// Creates the file with its header.
-    pub(super) fn create(path: &Path, model: &Model) -> Result<Trace, CommandError> {
+    pub(super) fn create(target: &Target, model: &Model) -> Result<Trace, CommandError> {
         let terms: Vec<Term> = model.terms.iter().map(|entry| entry.term).collect();
         let outputs = Outputs::describe(&terms).into_iter().map(|output| output.name);
         let header: Vec<String> = std::iter::once("t".to_string()).chain(outputs).collect();
-        Ok(Trace { table: Table::create(path, &header)?, terms, row: Vec::with_capacity(header.len()), failed: None })
+        Ok(Trace { table: Table::create(target, &header)?, terms, row: Vec::with_capacity(header.len()), failed: None })
     }
 
     /// Writes the outputs after the sample at t. The first failure ends the writing and is kept for [`Trace::finish`].

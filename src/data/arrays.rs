@@ -1,7 +1,7 @@
 //! Recordings whose columns are stored one after the other: the variables of a MAT file, the columns of Parquet.
 
 use super::DataError;
-use super::header::{Column, Layout, TimeBase};
+use super::header::{Column, Headings, Layout, TimeBase};
 use super::rows::{Rows, Signals, Source};
 use crate::law::Model;
 
@@ -31,20 +31,25 @@ struct Stored<'a> {
 
 /// The signals that the model names.
 pub(super) fn read(source: &Source, arrays: &impl Arrays, model: &Model) -> Result<(Layout, Signals), DataError> {
-    let layout = Layout::find(source.kind, &source.file, &arrays.names(), model)?;
+    let names = arrays.names();
+    let layout = Layout::find(&Headings::of(source.kind, &source.file, &names), model)?;
     let load = |column| load(source, arrays, column);
     let measured = [&layout.q, &layout.qd, &layout.excitation].into_iter().flatten();
     let mut stored = measured.map(load).collect::<Result<Vec<_>, _>>()?;
     let count = stored.first().map_or(0, |first| first.values.len());
     let t = match layout.time_base {
         TimeBase::Stamps => load(&layout.t)?,
+        TimeBase::Grid(step) => {
+            Stored { column: &layout.t, values: (0..count).map(|index| index as f64 * step).collect() }
+        }
         base => Stored { column: &layout.t, values: grid(source, load(&layout.t)?, base, count)? },
     };
     stored.push(t);
     check_lengths(source, &stored)?;
-    let mut rows = Rows::new(source, &layout);
+    let mut rows = Rows::new(source, &layout, count);
     for index in 0..count {
-        rows.push(index as u64 + 1, |column| cell(source, &stored, column, index))?;
+        let t = cell(source, &stored, &layout.t, index);
+        rows.push(index as u64 + 1, t, |column| cell(source, &stored, column, index));
     }
     let signals = rows.finish()?;
     Ok((layout, signals))

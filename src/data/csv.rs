@@ -1,69 +1,148 @@
-//! Reading a recording from CSV text.
+//! Reading a recording from text: CSV and its relatives.
 
 use super::DataError;
-use super::header::{Column, Layout};
+use super::cells::Separator;
+use super::dialect::{Dialect, is_comment, lines};
+use super::guess;
+use super::header::{Column, Headings, Layout, TimeBase};
+use super::instant::{DAY, Instant};
+use super::kind::FileKind;
+use super::number::number;
+use super::preamble;
 use super::rows::{Rows, Signals, Source};
 use crate::law::Model;
-use ::csv::{ErrorKind, ReaderBuilder, StringRecord, Trim};
 
-/// The signals that the model names.
-pub(super) fn read(source: &Source, text: &str, model: &Model) -> Result<(Layout, Signals), DataError> {
-    let start = text.trim_start();
-    if start.is_empty() {
+/// Rows from which columns without names are told apart.
+const LOOKED_AT: usize = 4000;
+
+/// The signals that the model names, or that the file seems to hold; how the file was taken, where that is not plain.
+pub(super) fn read(source: &Source, text: &str, model: &Model) -> Result<(Layout, Signals, Vec<String>), DataError> {
+    if text.trim().is_empty() {
         return Err(DataError::Empty { file: source.file.clone() });
     }
-    let offset = text[..text.len() - start.len()].matches('\n').count() as u64;
-    let mut reader = ReaderBuilder::new().trim(Trim::All).delimiter(delimiter(start)).from_reader(start.as_bytes());
-    let headers = reader.headers().map_err(|error| table(source, error, offset))?;
-    let headers: Vec<String> = headers.iter().map(String::from).collect();
-    let layout = Layout::find(source.kind, &source.file, &headers, model)?;
-    let mut rows = Rows::new(source, &layout);
-    let mut record = StringRecord::new();
-    while reader.read_record(&mut record).map_err(|error| table(source, error, offset))? {
-        let line = record.position().map_or(0, |position| position.line()) + offset;
-        rows.push(line, |column| cell(source, &record, column, line))?;
+    let dialect = Dialect::of(text).filter(|dialect| dialect.headers.len() > 1);
+    let dialect = dialect.ok_or_else(|| DataError::NoTable { file: source.file.clone() })?;
+    let source = &source.as_kind(source.kind.under(dialect.header.unwrap_or(0)));
+    let mut headings = Headings::of(source.kind, &source.file, &dialect.headers);
+    headings.dated = dialect.sample.iter().map(|cell| Instant::parse(cell).is_some()).collect();
+    headings.rate = preamble::rate(text, &dialect);
+    if dialect.header.is_none() {
+        headings.by_content = guess::by_content(&columns(text, &dialect));
     }
-    let signals = rows.finish()?;
-    Ok((layout, signals))
+    let layout = Layout::find(&headings, model)?;
+    let signals = Reader::new(source, &layout, &dialect, text).read(text)?;
+    Ok((layout, signals, dialect.describe()))
 }
 
-fn table(source: &Source, error: ::csv::Error, offset: u64) -> DataError {
-    let file = source.file.clone();
-    let line = error.position().map_or(1, |position| position.line()) + offset;
-    match error.kind() {
-        ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            DataError::Ragged { file, line, found: *len, expected: *expected_len }
+/// Reads lines into rows.
+struct Reader<'a> {
+    source: &'a Source<'a>,
+    layout: &'a Layout,
+    dialect: &'a Dialect,
+    rows: Rows<'a>,
+    clock: Option<Clock>,
+}
+
+/// Seconds since the first instant of a column; a clock without dates goes on after midnight.
+struct Clock {
+    origin: Instant,
+    last: f64,
+    midnights: f64,
+}
+
+impl Clock {
+    fn seconds(&mut self, instant: Instant) -> f64 {
+        let mut t = instant.since(self.origin) + self.midnights;
+        if instant.day.is_none() && t < self.last - 0.5 * DAY {
+            self.midnights += DAY;
+            t += DAY;
         }
-        _ => DataError::Table { file, line, reason: error.to_string() },
+        self.last = t;
+        t
     }
 }
 
-fn cell(source: &Source, record: &StringRecord, column: &Column, line: u64) -> Result<f64, DataError> {
-    let text = record.get(column.index).unwrap_or_default();
-    let (file, header) = (source.file.clone(), column.header.clone());
-    if text.is_empty() {
-        return Err(DataError::EmptyCell { file, line, column: header });
+impl<'a> Reader<'a> {
+    fn new(source: &'a Source<'a>, layout: &'a Layout, dialect: &'a Dialect, text: &str) -> Reader<'a> {
+        let usual = dialect.sample.iter().map(|cell| cell.len() + 1).sum::<usize>().max(4);
+        let rows = Rows::new(source, layout, text.len() / usual);
+        let first = (layout.time_base == TimeBase::Stamps).then(|| dialect.sample.get(layout.t.index)).flatten();
+        let origin = first.filter(|cell| number(cell, dialect.decimal).is_none()).and_then(|cell| Instant::parse(cell));
+        let clock = origin.map(|origin| Clock { origin, last: 0.0, midnights: 0.0 });
+        Reader { source, layout, dialect, rows, clock }
     }
-    match text.parse::<f64>() {
-        Ok(number) if number.is_finite() => Ok(number * column.factor),
-        _ => Err(DataError::Cell { file, line, column: header, text: text.into() }),
+
+    fn read(mut self, text: &str) -> Result<Signals, DataError> {
+        let mut cells = Vec::new();
+        let expected = self.dialect.headers.len();
+        let body = lines(text).filter(|line| line.number >= self.dialect.first && !is_comment(line.text));
+        for (index, line) in body.enumerate() {
+            self.dialect.separator.split(line.text, &mut cells);
+            while cells.len() > expected && cells.last() == Some(&"") {
+                cells.pop();
+            }
+            if cells.len() != expected {
+                let (file, found) = (self.source.file.clone(), cells.len());
+                let both = self.dialect.separator == Separator::Mark(',') && found == 2 * expected;
+                let error = DataError::Ragged { file, line: line.number, found, expected, both };
+                self.rows.refuse(line.number, error);
+                continue;
+            }
+            let t = self.time(&cells, index, line.number);
+            let (source, dialect) = (self.source, self.dialect);
+            self.rows.push(line.number, t, |column| cell(source, dialect, &cells, column, line.number));
+        }
+        self.rows.finish()
+    }
+
+    fn time(&mut self, cells: &[&str], index: usize, line: u64) -> Result<f64, DataError> {
+        let column = &self.layout.t;
+        if let TimeBase::Grid(step) = self.layout.time_base {
+            return Ok(index as f64 * step);
+        }
+        let Some(clock) = &mut self.clock else { return cell(self.source, self.dialect, cells, column, line) };
+        let text = cells.get(column.index).copied().unwrap_or_default();
+        let (file, header) = (self.source.file.clone(), column.header.clone());
+        let instant =
+            Instant::parse(text).ok_or(DataError::NoInstant { file, line, column: header, text: text.into() });
+        instant.map(|instant| clock.seconds(instant))
     }
 }
 
-/// The comma, unless the header has none and has semicolons or tabs instead.
-fn delimiter(text: &str) -> u8 {
-    let header = text.trim_start().lines().next().unwrap_or_default();
-    [b',', b';', b'\t'].into_iter().find(|mark| header.as_bytes().contains(mark)).unwrap_or(b',')
+fn cell(source: &Source, dialect: &Dialect, cells: &[&str], column: &Column, line: u64) -> Result<f64, DataError> {
+    let text = cells.get(column.index).copied().unwrap_or_default();
+    match number(text, dialect.decimal) {
+        Some(number) if number.is_finite() => Ok(number * column.factor),
+        _ if text.is_empty() => {
+            Err(DataError::EmptyCell { file: source.file.clone(), line, column: column.header.clone() })
+        }
+        _ => {
+            let (file, column) = (source.file.clone(), column.header.clone());
+            Err(DataError::Cell { file, line, column, text: text.into() })
+        }
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// The first numbers of every column; NaN where there is none.
+fn columns(text: &str, dialect: &Dialect) -> Vec<Vec<f64>> {
+    let mut columns = vec![Vec::new(); dialect.headers.len()];
+    let mut cells = Vec::new();
+    let body = lines(text).filter(|line| line.number >= dialect.first && !is_comment(line.text));
+    for line in body.take(LOOKED_AT) {
+        dialect.separator.split(line.text, &mut cells);
+        for (column, cell) in columns.iter_mut().zip(&cells) {
+            column.push(number(cell, dialect.decimal).unwrap_or(f64::NAN));
+        }
+    }
+    columns
+}
 
-    #[test]
-    fn the_header_tells_the_delimiter() {
-        assert_eq!(delimiter("t,q;r\n1;2"), b',');
-        assert_eq!(delimiter("t;q\n1,0;2,0"), b';');
-        assert_eq!(delimiter("t\tq"), b'\t');
+impl FileKind {
+    /// The same kind with its header in that line.
+    fn under(self, line: u64) -> FileKind {
+        match self {
+            FileKind::Csv { .. } => FileKind::Csv { header: line },
+            other => other,
+        }
     }
 }

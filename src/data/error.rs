@@ -24,9 +24,75 @@ pub enum DataError {
         /// The file.
         file: String,
     },
+    /// Text without a table.
+    #[error(
+        "{file}: cannot be read as a table: no line has two numbers or more with a comma, semicolon, tab, blank or | between them; \
+         it needs a header such as t,q,qd,F and one line per sample"
+    )]
+    NoTable {
+        /// The file.
+        file: String,
+    },
+    /// A kind of file that others convert.
+    #[error("{file}: cannot be read: it is {what}; {how}")]
+    Convert {
+        /// The file.
+        file: String,
+        /// What it is.
+        what: &'static str,
+        /// How it becomes readable.
+        how: &'static str,
+    },
+    /// Faults of several kinds.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Several(Vec<DataError>),
+    /// A fault that comes again and again.
+    #[error("{first} ({others} more {row}s like it, the last one {row} {last})")]
+    Repeated {
+        /// Its first occurrence.
+        first: Box<DataError>,
+        /// How many more there are.
+        others: u64,
+        /// What a row is called.
+        row: &'static str,
+        /// The last one.
+        last: u64,
+    },
+    /// Time stamps too coarse to tell samples apart.
+    #[error(
+        "{file}: {} \"{column}\" repeats the time before in {repeated} of {count} {}s: its digits are too few for this rate. Export more of \
+         them, or name the rate in its place: --columns t=1000Hz",
+        kind.column(), kind.row()
+    )]
+    CoarseTime {
+        /// The file.
+        file: String,
+        /// What kind of file it is.
+        kind: FileKind,
+        /// The column.
+        column: String,
+        /// How many rows repeat the time before.
+        repeated: u64,
+        /// How many rows there are.
+        count: u64,
+    },
+    /// A cell that is neither date nor clock time, below others that are.
+    #[error(
+        "{file}: line {line}: column \"{column}\": \"{text}\" is no date or clock time such as 2024-05-01 12:00:00.25: correct it or delete the line"
+    )]
+    NoInstant {
+        /// The file.
+        file: String,
+        /// The line.
+        line: u64,
+        /// The header.
+        column: String,
+        /// The cell.
+        text: String,
+    },
     /// It is of no known kind.
     #[error(
-        "{file}: cannot be read: this is neither CSV text (UTF-8) nor a MAT file of version 5 or 7.3 nor Parquet; export it as one of these (in MATLAB: save with -v7)"
+        "{file}: cannot be read: this is neither CSV text (UTF-8) nor a MAT file of version 5 or 7.3 nor Parquet; export it as one of these, or as a spreadsheet (in MATLAB: save with -v7)"
     )]
     Foreign {
         /// The file.
@@ -126,7 +192,7 @@ pub enum DataError {
     },
     /// A column that must be there is not.
     #[error(
-        "{file}: {}there is no {1} \"{column}\" for {channel}; the {1}s are {columns}. Name the right one in the model: [columns] {channel} = \"...\"{2}",
+        "{file}: {}there is no {1} \"{column}\" for {channel}; the {1}s are {columns}. Name the right one: --columns {channel}=NAME, or in the model: [columns] {channel} = \"...\"{2}",
         kind.heading(), kind.column(), time_hint(*kind, channel)
     )]
     MissingColumn {
@@ -143,7 +209,7 @@ pub enum DataError {
     },
     /// Neither displacement nor velocity.
     #[error(
-        "{file}: {}there is no {1} \"q\" or \"qd\", and one of them is needed; the {1}s are {columns}. Name the right one in the model: [columns] q = \"...\"",
+        "{file}: {}there is no {1} \"q\" or \"qd\", and one of them is needed; the {1}s are {columns}. Name the right one: --columns q=NAME (or its position, from 1), or in the model: [columns] q = \"...\"",
         kind.heading(), kind.column()
     )]
     NoMotion {
@@ -199,6 +265,22 @@ pub enum DataError {
         channel: &'static str,
         /// The units that it may have.
         known: String,
+    },
+    /// An acceleration in place of a motion or a force.
+    #[error(
+        "{file}: {}{} \"{column}\" is an acceleration, but {channel} is none: name the column of a displacement or velocity; where only \
+         accelerations were measured, integrate them once with their mean taken out, and name the result qd",
+        kind.heading(), kind.column()
+    )]
+    Acceleration {
+        /// The file.
+        file: String,
+        /// What kind of file it is.
+        kind: FileKind,
+        /// The header.
+        column: String,
+        /// The quantity.
+        channel: &'static str,
     },
     /// A unit of another quantity.
     #[error(
@@ -257,16 +339,21 @@ pub enum DataError {
         velocity_quantity: &'static str,
     },
     /// A line that is no row of the table.
-    #[error("{file}: line {line}: {found} cells under {expected} columns: complete the line or delete it")]
+    #[error(
+        "{file}: line {line}: {found} cells under {expected} columns: {}",
+        if *both { "where the comma is also the decimal mark, export with semicolons or decimal points" } else { "complete the line or delete it" }
+    )]
     Ragged {
         /// The file.
         file: String,
         /// The line.
         line: u64,
         /// How many cells it has.
-        found: u64,
+        found: usize,
         /// How many columns there are.
-        expected: u64,
+        expected: usize,
+        /// Whether commas seem to separate cells and decimals alike.
+        both: bool,
     },
     /// A cell without a value.
     #[error("{file}: line {line}: column \"{column}\" is empty: fill in the value or delete the line")]
@@ -340,16 +427,6 @@ pub enum DataError {
         /// The value.
         value: f64,
     },
-    /// The table cannot be read.
-    #[error("{file}: line {line}: {reason}")]
-    Table {
-        /// The file.
-        file: String,
-        /// The line.
-        line: u64,
-        /// What the reader says.
-        reason: String,
-    },
     /// The signals are no recording.
     #[error(transparent)]
     Recording(#[from] RecordingError),
@@ -392,9 +469,27 @@ pub enum DataError {
     },
 }
 
-/// MAT files may say the distance of the samples in place of their times.
+impl DataError {
+    /// Whether it is the same fault of the same column in another row.
+    pub(super) fn is_like(&self, other: &DataError) -> bool {
+        fn column(error: &DataError) -> Option<&str> {
+            match error {
+                DataError::Cell { column, .. } | DataError::EmptyCell { column, .. } => Some(column),
+                DataError::NotFinite { column, .. } | DataError::NoInstant { column, .. } => Some(column),
+                _ => None,
+            }
+        }
+        std::mem::discriminant(self) == std::mem::discriminant(other) && column(self) == column(other)
+    }
+}
+
+/// A rate may stand in place of times.
 fn time_hint(kind: FileKind, channel: &str) -> &'static str {
-    if kind.is_mat() && channel == "t" { "; or save a scalar dt or Ts (s) or fs (Hz) with the signals" } else { "" }
+    match channel {
+        "t" if kind.is_mat() => "; or save a scalar dt or Ts (s) or fs (Hz) with the signals",
+        "t" => "; or a rate in its place: --columns t=1000Hz",
+        _ => "",
+    }
 }
 
 fn span_hint(span: Option<(f64, f64)>) -> String {

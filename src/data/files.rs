@@ -11,12 +11,6 @@ pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, DataError> {
     std::fs::read(path).map_err(|source| DataError::Read { file: path.display().to_string(), source })
 }
 
-/// The text of a file's content, without a byte order mark.
-pub(super) fn text(file: &str, bytes: Vec<u8>) -> Result<String, DataError> {
-    let text = String::from_utf8(bytes).map_err(|_| DataError::Foreign { file: file.into() })?;
-    Ok(text.strip_prefix('\u{feff}').map(String::from).unwrap_or(text))
-}
-
 fn read(path: &Path) -> Result<String, DataError> {
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|source| DataError::Read { file, source })?;

@@ -1,8 +1,10 @@
 //! Which column holds which quantity, and in which unit.
 
 use super::DataError;
+use super::guess;
 use super::kind::FileKind;
-use crate::law::{Channel, ColumnUnits, Model, Unit, Units};
+use super::preamble;
+use crate::law::{Channel, ColumnUnits, Columns, Model, Unit, Units};
 
 /// A column that is read.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,11 +14,13 @@ pub(super) struct Column {
     pub(super) header: String,
     /// SI units per unit of the column.
     pub(super) factor: f64,
-    unit: Option<Unit>,
+    pub(super) unit: Option<Unit>,
+    /// What told which quantity it holds, where nobody named it.
+    pub(super) guessed: Option<&'static str>,
 }
 
 /// What the column of time holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum TimeBase {
     /// The time of every sample.
     Stamps,
@@ -24,6 +28,31 @@ pub(super) enum TimeBase {
     Step,
     /// One number: samples per second.
     Rate,
+    /// Nothing: samples are this far apart, s.
+    Grid(f64),
+}
+
+/// Position of a column that the file does not have.
+const NOWHERE: usize = usize::MAX;
+
+/// What a file says of its columns.
+pub(super) struct Headings<'a> {
+    kind: FileKind,
+    file: &'a str,
+    headers: &'a [String],
+    /// Which columns hold dates or clock times; those beyond its end do not.
+    pub(super) dated: Vec<bool>,
+    /// The distance of two samples that the file names above its table, s.
+    pub(super) rate: Option<f64>,
+    /// Columns without names, as their numbers tell them apart.
+    pub(super) by_content: Option<Columns>,
+}
+
+impl<'a> Headings<'a> {
+    /// Headers alone.
+    pub(super) fn of(kind: FileKind, file: &'a str, headers: &'a [String]) -> Headings<'a> {
+        Headings { kind, file, headers, dated: Vec::new(), rate: None, by_content: None }
+    }
 }
 
 /// Names under which a MAT file may hold a time base in place of times.
@@ -53,20 +82,31 @@ enum Written<'a> {
 }
 
 impl Layout {
-    /// Finds the columns in the headers of a file.
-    pub(super) fn find(kind: FileKind, file: &str, headers: &[String], model: &Model) -> Result<Layout, DataError> {
-        let finder = Finder { kind, file, headers, units: &model.units };
-        let columns = &model.columns;
-        let optional = |channel, name: &Option<String>| match name {
+    /// Finds the columns in the headings of a file: those that are named, those of the default names, and where these do not do,
+    /// those that names, units or numbers tell.
+    pub(super) fn find(headings: &Headings, model: &Model) -> Result<Layout, DataError> {
+        let finder = Finder { headings, units: &model.units };
+        let (file, kind) = (headings.file, headings.kind);
+        let (columns, told) = match (&headings.by_content, model.columns == Columns::default()) {
+            (Some(columns), true) => (columns, Some("by their numbers")),
+            _ => (&model.columns, None),
+        };
+        let optional = |channel: Channel, name: &Option<String>| match name {
             Some(name) => finder.required(channel, name).map(Some),
             None => finder.column(channel, channel.name()),
         };
         let q = optional(Channel::Displacement, &columns.q)?;
         let qd = optional(Channel::Velocity, &columns.qd)?;
         let excitation = optional(Channel::Excitation, &columns.excitation)?;
-        let (t, time_base) = finder.time(&columns.t)?;
+        let found = [q, qd, excitation].map(|column| column.map(|column| Column { guessed: told, ..column }));
+        let [q, qd, excitation] = match found {
+            [None, None, _] if model.columns == Columns::default() => finder.guess(found)?,
+            found => found,
+        };
+        let taken: Vec<usize> = [&q, &qd, &excitation].into_iter().flatten().map(|column| column.index).collect();
+        let (t, time_base) = finder.time(&columns.t, &taken)?;
         if q.is_none() && qd.is_none() {
-            return Err(DataError::NoMotion { file: file.into(), kind, columns: quoted(headers) });
+            return Err(DataError::NoMotion { file: file.into(), kind, columns: quoted(headings.headers) });
         }
         let layout = Layout { kind, time_base, t, q, qd, excitation };
         layout.check_apart(file)?;
@@ -81,6 +121,14 @@ impl Layout {
             column.describe(self.kind, channel, base)
         };
         self.columns().map(line).collect()
+    }
+
+    /// `q = "Weg [mm]"` for every column that nobody named.
+    pub(super) fn guesses(&self) -> Vec<String> {
+        let guess = |(channel, column): (Channel, &Column)| {
+            column.guessed.map(|how| format!("{} = \"{}\" ({how})", channel.name(), column.header))
+        };
+        self.columns().filter_map(guess).collect()
     }
 
     /// What the columns say of the units of coefficients. In free motion these are relative to the inertia, unless the model
@@ -108,7 +156,7 @@ impl Layout {
     }
 
     /// The columns that are read.
-    fn columns(&self) -> impl Iterator<Item = (Channel, &Column)> {
+    pub(super) fn columns(&self) -> impl Iterator<Item = (Channel, &Column)> {
         let columns = [Some(&self.t), self.q.as_ref(), self.qd.as_ref(), self.excitation.as_ref()];
         Channel::ALL.into_iter().zip(columns).filter_map(|(channel, column)| Some((channel, column?)))
     }
@@ -137,58 +185,122 @@ impl Column {
             TimeBase::Stamps => "",
             TimeBase::Step => " (distance of two samples)",
             TimeBase::Rate => " (samples per second)",
+            TimeBase::Grid(step) => return format!("t = {} in steps of {step} s", self.header),
         };
-        format!("{} = {} \"{}\"{meaning} in {unit}", channel.name(), kind.column(), self.header)
+        let guessed = self.guessed.map_or_else(String::new, |how| format!(", guessed {how}"));
+        format!("{} = {} \"{}\"{meaning} in {unit}{guessed}", channel.name(), kind.column(), self.header)
     }
 }
 
 struct Finder<'a> {
-    kind: FileKind,
-    file: &'a str,
-    headers: &'a [String],
+    headings: &'a Headings<'a>,
     units: &'a ColumnUnits,
 }
 
 impl Finder<'_> {
-    /// The column of time, or a MAT file's distance of two samples.
-    fn time(&self, name: &Option<String>) -> Result<(Column, TimeBase), DataError> {
+    /// The column of time, a MAT file's distance of two samples, or a rate that is named in place of times.
+    fn time(&self, name: &Option<String>, taken: &[usize]) -> Result<(Column, TimeBase), DataError> {
         let wanted = name.as_deref().unwrap_or(Channel::Time.name());
         if let Some(column) = self.column(Channel::Time, wanted)? {
             return Ok((column, TimeBase::Stamps));
         }
-        if self.kind.is_mat() && name.is_none() {
-            for (name, base) in TIME_BASES {
-                let plain = Finder { units: &ColumnUnits::default(), ..*self };
-                if let Some(column) = plain.column(Channel::Time, name)? {
-                    return Ok((column, base));
-                }
+        if let Some(step) = name.as_deref().and_then(grid) {
+            return Ok((nowhere(step, None), TimeBase::Grid(step)));
+        }
+        if name.is_none() {
+            if let Some(found) = self.time_base()? {
+                return Ok(found);
+            }
+            let free: Vec<usize> = (0..self.headings.headers.len()).filter(|index| !taken.contains(index)).collect();
+            if let Some(column) = self.likely(Channel::Time, &free)? {
+                return Ok((column, TimeBase::Stamps));
+            }
+            if let Some(step) = self.headings.rate {
+                return Ok((nowhere(step, Some("by the lines above the table")), TimeBase::Grid(step)));
             }
         }
         self.required(Channel::Time, wanted).map(|column| (column, TimeBase::Stamps))
     }
 
+    /// A variable of a MAT file that stands for times.
+    fn time_base(&self) -> Result<Option<(Column, TimeBase)>, DataError> {
+        if !self.headings.kind.is_mat() {
+            return Ok(None);
+        }
+        for (name, base) in TIME_BASES {
+            let plain = Finder { units: &ColumnUnits::default(), ..*self };
+            if let Some(column) = plain.column(Channel::Time, name)? {
+                return Ok(Some((column, base)));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The columns of q, q̇ and F that their names or units tell, beside those found.
+    fn guess(&self, found: [Option<Column>; 3]) -> Result<[Option<Column>; 3], DataError> {
+        let taken: Vec<usize> = found.iter().flatten().map(|column| column.index).collect();
+        let mut free: Vec<usize> = (0..self.headings.headers.len()).filter(|index| !taken.contains(index)).collect();
+        let mut guessed = found;
+        let channels = [Channel::Displacement, Channel::Velocity, Channel::Excitation];
+        for (slot, channel) in guessed.iter_mut().zip(channels).filter(|(slot, _)| slot.is_none()) {
+            *slot = self.likely(channel, &free)?;
+            free.retain(|index| slot.as_ref().is_none_or(|column| column.index != *index));
+        }
+        Ok(guessed)
+    }
+
+    /// The only column among these whose name is one of the quantity's, else the only one in a unit of it alone.
+    fn likely(&self, channel: Channel, free: &[usize]) -> Result<Option<Column>, DataError> {
+        let headers = self.headings.headers;
+        let is_dated = |index: usize| self.headings.dated.get(index).copied().unwrap_or(false);
+        let fits = |index: &&usize| match heading(&headers[**index]).unit {
+            Written::Known(_, unit) => channel.accepts(unit.quantity),
+            Written::Nothing => is_dated(**index) == (channel == Channel::Time) || channel == Channel::Time,
+            Written::Unknown(_) => false,
+        };
+        let named = |index: &&usize| fits(index) && guess::is_named(channel, heading(&headers[**index]).name);
+        let in_unit = |index: &&usize| match heading(&headers[**index]).unit {
+            Written::Known(_, unit) => {
+                Channel::ALL.into_iter().filter(|other| other.accepts(unit.quantity)).eq([channel])
+            }
+            _ => channel == Channel::Time && is_dated(**index),
+        };
+        let only = |fits: &dyn Fn(&&usize) -> bool| {
+            let mut fitting = free.iter().filter(fits);
+            fitting.next().copied().filter(|_| fitting.next().is_none())
+        };
+        let told =
+            only(&named).map(|index| (index, "by its name")).or(only(&in_unit).map(|index| (index, "by its unit")));
+        let Some((index, how)) = told else { return Ok(None) };
+        self.read(channel, index).map(|column| Some(Column { guessed: Some(how), ..column }))
+    }
+
     fn required(&self, channel: Channel, name: &str) -> Result<Column, DataError> {
         self.column(channel, name)?.ok_or_else(|| DataError::MissingColumn {
-            file: self.file.into(),
-            kind: self.kind,
+            file: self.headings.file.into(),
+            kind: self.headings.kind,
             column: name.into(),
             channel: channel.name(),
-            columns: quoted(self.headers),
+            columns: quoted(self.headings.headers),
         })
     }
 
-    /// The column whose header is `name`, or else `name` with a unit.
+    /// The column whose header is `name`, or else `name` with a unit, or else the one at that position, from 1.
     fn column(&self, channel: Channel, name: &str) -> Result<Option<Column>, DataError> {
         let exact: Vec<usize> = self.positions(|header| header == name);
         let found = if exact.is_empty() { self.positions(|header| heading(header).name == name) } else { exact };
+        let position = name.parse::<usize>().ok().filter(|_| found.is_empty());
+        if let Some(index) = position.filter(|position| (1..=self.headings.headers.len()).contains(position)) {
+            return self.read(channel, index - 1).map(Some);
+        }
         match found[..] {
             [] => Ok(None),
             [index] => self.read(channel, index).map(Some),
             _ => {
-                let fitting: Vec<String> = found.iter().map(|index| self.headers[*index].clone()).collect();
+                let fitting: Vec<String> = found.iter().map(|index| self.headings.headers[*index].clone()).collect();
                 Err(DataError::Ambiguous {
-                    file: self.file.into(),
-                    kind: self.kind,
+                    file: self.headings.file.into(),
+                    kind: self.headings.kind,
                     column: name.into(),
                     columns: quoted(&fitting),
                 })
@@ -197,23 +309,28 @@ impl Finder<'_> {
     }
 
     fn positions(&self, fits: impl Fn(&str) -> bool) -> Vec<usize> {
-        (0..self.headers.len()).filter(|index| fits(&self.headers[*index])).collect()
+        let headers = self.headings.headers;
+        (0..headers.len()).filter(|index| fits(&headers[*index])).collect()
     }
 
     fn read(&self, channel: Channel, index: usize) -> Result<Column, DataError> {
-        let header = self.headers[index].clone();
-        let (file, kind, column) = (self.file.to_string(), self.kind, header.clone());
+        let header = self.headings.headers[index].clone();
+        let (file, kind, column) = (self.headings.file.to_string(), self.headings.kind, header.clone());
         let declared = self.units.unit(channel);
-        match heading(&self.headers[index]).unit {
+        if channel == Channel::Time && self.headings.dated.get(index) == Some(&true) {
+            return Ok(Column { index, header, factor: 1.0, unit: None, guessed: None });
+        }
+        match heading(&self.headings.headers[index]).unit {
             Written::Nothing => {
-                Ok(Column { index, header, factor: declared.map_or(1.0, |unit| unit.factor), unit: declared })
+                let factor = declared.map_or(1.0, |unit| unit.factor);
+                Ok(Column { index, header, factor, unit: declared, guessed: None })
             }
             Written::Known(_, unit) if declared.is_some_and(|declared| declared.is_not(unit)) => {
                 let declared = self.units.written(channel).unwrap_or_default().into();
                 Err(DataError::UnitContradicts { file, column, unit: unit.name, channel: channel.name(), declared })
             }
             Written::Known(_, unit) if channel.accepts(unit.quantity) => {
-                Ok(Column { index, header, factor: unit.factor, unit: Some(unit) })
+                Ok(Column { index, header, factor: unit.factor, unit: Some(unit), guessed: None })
             }
             Written::Known(text, unit) => Err(DataError::WrongUnit {
                 file,
@@ -224,6 +341,9 @@ impl Finder<'_> {
                 channel: channel.name(),
                 expected: channel.meaning(),
             }),
+            Written::Unknown(text) if is_acceleration(text) => {
+                Err(DataError::Acceleration { file, kind, column, channel: channel.name() })
+            }
             Written::Unknown(text) => Err(DataError::UnknownUnit {
                 file,
                 kind,
@@ -234,6 +354,26 @@ impl Finder<'_> {
             }),
         }
     }
+}
+
+/// A column that the file does not have, for times that follow from a rate.
+fn nowhere(step: f64, guessed: Option<&'static str>) -> Column {
+    let rate = (1e9 / step).round() / 1e9;
+    Column { index: NOWHERE, header: format!("{rate} Hz"), factor: 1.0, unit: None, guessed }
+}
+
+/// Whether a unit is one of acceleration.
+fn is_acceleration(unit: &str) -> bool {
+    let rate = |end: &str| unit.trim().strip_suffix(end).and_then(Unit::parse);
+    unit.trim() == "g" || ["/s^2", "/s²", "/s2", "/s/s"].into_iter().any(|end| rate(end).is_some())
+}
+
+/// The distance of two samples that `1000 Hz` or `2 ms` names, s.
+fn grid(text: &str) -> Option<f64> {
+    let end = text.trim().find(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E'))?;
+    let (value, unit) = text.trim().split_at(end);
+    let value: f64 = value.trim().parse().ok().filter(|value: &f64| *value > 0.0 && value.is_finite())?;
+    preamble::hertz(unit).map(|hertz| 1.0 / (value * hertz)).or_else(|| Some(value * preamble::seconds(unit)?))
 }
 
 /// `q [mm]`, `q (mm)` or `q_mm`. What stands in brackets is meant as a unit; an ending after `_` only if it is one.

@@ -3,8 +3,13 @@
 /// A kind of file, and how messages speak of its parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
-    /// Text with a header line.
-    Csv,
+    /// Text with its header in that line; 0 where it has none.
+    Csv {
+        /// The line, from 1.
+        header: u64,
+    },
+    /// A spreadsheet: xlsx, xls, ods.
+    Spreadsheet,
     /// MATLAB, versions 5 to 7.2.
     Mat5,
     /// MATLAB 7.3, or any HDF5.
@@ -26,14 +31,16 @@ impl FileKind {
             (true, ..) => FileKind::Parquet,
             (_, true, _) => FileKind::Hdf5,
             (_, _, true) => FileKind::Mat5,
-            _ => FileKind::Csv,
+            _ if is_spreadsheet(bytes) => FileKind::Spreadsheet,
+            _ => FileKind::Csv { header: 1 },
         }
     }
 
     /// Its name.
     pub(super) fn name(self) -> &'static str {
         match self {
-            FileKind::Csv => "CSV",
+            FileKind::Csv { .. } => "CSV",
+            FileKind::Spreadsheet => "spreadsheet",
             FileKind::Mat5 => "MAT (version 5)",
             FileKind::Hdf5 => "MAT 7.3 (HDF5)",
             FileKind::Parquet => "Parquet",
@@ -41,8 +48,12 @@ impl FileKind {
     }
 
     /// Where its columns are named, for a message.
-    pub(super) fn heading(self) -> &'static str {
-        if self == FileKind::Csv { "line 1: " } else { "" }
+    pub(super) fn heading(self) -> String {
+        match self {
+            FileKind::Csv { header: 0 } => "there is no header, columns are named by their position: ".into(),
+            FileKind::Csv { header } => format!("line {header}: "),
+            _ => String::new(),
+        }
     }
 
     /// What holds one quantity.
@@ -53,8 +64,8 @@ impl FileKind {
     /// What holds one instant.
     pub(super) fn row(self) -> &'static str {
         match self {
-            FileKind::Csv => "line",
-            FileKind::Parquet => "row",
+            FileKind::Csv { .. } => "line",
+            FileKind::Parquet | FileKind::Spreadsheet => "row",
             FileKind::Mat5 | FileKind::Hdf5 => "sample",
         }
     }
@@ -65,19 +76,62 @@ impl FileKind {
     }
 }
 
+/// Whether these are the first bytes of a compressed workbook of Office or OpenDocument, or of Excel's older format.
+fn is_spreadsheet(bytes: &[u8]) -> bool {
+    let has = |name: &[u8]| bytes.windows(name.len()).any(|window| window == name);
+    let zipped = bytes.starts_with(b"PK\x03\x04") && (has(b"xl/workbook") || has(b"opendocument.spreadsheet"));
+    zipped || bytes.starts_with(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")
+}
+
+/// Files of measurements that are not read: what they are, and how they become one that is.
+pub(super) fn foreign(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
+    let at = |offset: usize, mark: &[u8]| bytes.get(offset..).is_some_and(|rest| rest.starts_with(mark));
+    let known: [(bool, &str, &str); 7] = [
+        (
+            at(0, b"MDF     ") || at(0, b"UnFinMF "),
+            "an MDF file (ASAM)",
+            "export its channels as CSV or Parquet: in Python, asammdf's MDF(file).to_dataframe(raster=0.001).to_parquet(\"x.parquet\")",
+        ),
+        (
+            at(0, b"TDSm"),
+            "a TDMS file (National Instruments)",
+            "export it: in Python, nptdms' TdmsFile.read(file).as_dataframe(time_index=True).to_csv(\"x.csv\")",
+        ),
+        (
+            at(0, b"\x93NUMPY"),
+            "a NumPy array",
+            "save it as text: numpy.savetxt(\"x.csv\", a, delimiter=\",\", header=\"t,q,qd,F\")",
+        ),
+        (
+            at(0, b"ARROW1") || at(0, b"FEA1"),
+            "an Arrow or Feather file",
+            "write it as Parquet: pandas.read_feather(file).to_parquet(\"x.parquet\")",
+        ),
+        (at(0, b"\x1f\x8b"), "compressed (gzip)", "unpack it with gunzip"),
+        (at(0, b"RIFF"), "a WAV file", "write its samples as CSV with a column of times"),
+        (
+            at(0, b"SQLite format 3"),
+            "a database (SQLite)",
+            "export the table as CSV: sqlite3 -csv -header FILE \"select * from TABLE\"",
+        ),
+    ];
+    known.into_iter().find(|(is, ..)| *is).map(|(_, what, how)| (what, how))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_first_bytes_tell_the_kind() {
+        let text = FileKind::Csv { header: 1 };
         let at = |offset: usize, text: &[u8]| [vec![b' '; offset], text.to_vec()].concat();
-        assert_eq!(FileKind::of(b"t,q,qd,F\n"), FileKind::Csv);
-        assert_eq!(FileKind::of(b""), FileKind::Csv);
+        assert_eq!(FileKind::of(b"t,q,qd,F\n"), text);
+        assert_eq!(FileKind::of(b""), text);
         assert_eq!(FileKind::of(b"PAR1\x15"), FileKind::Parquet);
         assert_eq!(FileKind::of(&at(512, HDF5)), FileKind::Hdf5);
         assert_eq!(FileKind::of(HDF5), FileKind::Hdf5);
-        assert_eq!(FileKind::of(&at(100, HDF5)), FileKind::Csv);
+        assert_eq!(FileKind::of(&at(100, HDF5)), text);
         assert_eq!(FileKind::of(&at(124, b"\x00\x01IM")), FileKind::Mat5);
         assert_eq!(FileKind::of(&at(124, b"\x01\x00MI")), FileKind::Mat5);
         assert_eq!(FileKind::of(b"MATLAB 5.0 MAT-f"), FileKind::Mat5);

@@ -3,9 +3,9 @@
 use super::header::{Column, Layout};
 use super::kind::FileKind;
 use super::rows::{Signals, Source};
-use super::{DataError, csv, files, stored};
+use super::{DataError, csv, encoding, kind, spreadsheet, stored};
 use crate::identify::{Recording, RecordingError};
-use crate::law::{Given, Model, Term, Units};
+use crate::law::{Channel, Given, Model, Term, Unit, Units};
 
 /// A recording, and how its file was understood.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,18 +14,35 @@ pub struct Opened {
     pub recording: Recording,
     /// Which column was taken for which quantity in which unit, one line each: `q = column "position_mm" in mm`.
     pub columns: Vec<String>,
+    /// In one line, what was guessed of the file's form and columns; none where nothing had to be.
+    pub guessed: Option<String>,
+    /// The columns that were taken.
+    pub taken: Vec<Taken>,
     /// What is known of the units of coefficients.
     pub units: Units,
 }
 
+/// A column that was taken for a quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Taken {
+    /// The quantity.
+    pub channel: Channel,
+    /// The column's header, or the rate that stands in place of times.
+    pub column: String,
+    /// Its unit, where header or model names one.
+    pub unit: Option<Unit>,
+    /// What told that it is this quantity, where nobody named it.
+    pub guessed: Option<&'static str>,
+}
+
 /// Opens `DATA` or `DATA@t0:t1` and takes from it the columns that the model names. The content tells what kind of file it
-/// is: CSV, MAT (5, 7.3) or Parquet.
+/// is: text, a spreadsheet, MAT (5, 7.3) or Parquet.
 ///
 /// # Errors
 /// [`DataError`] names file, line and column (or variable and sample), and what would mend it.
 pub fn open_recording(data: &str, model: &Model) -> Result<Opened, DataError> {
     let (source, bytes) = Source::open(data)?;
-    let (layout, signals) = read(&source, bytes, model)?;
+    let (layout, signals, form) = read(&source, bytes, model)?;
     let unmet = model.terms.iter().find(|entry| model.uses_excitation(entry.term) && layout.excitation.is_none());
     if let Some(entry) = unmet {
         let (file, kind) = (source.file, source.kind);
@@ -36,13 +53,43 @@ pub fn open_recording(data: &str, model: &Model) -> Result<Opened, DataError> {
     let recording = Recording::new(data, t, of(&layout.q, q), of(&layout.qd, qd), of(&layout.excitation, excitation))
         .map_err(|error| locate(error, &source, &layout))?;
     let held = model.position(Term::Inertia).is_some_and(|place| matches!(model.terms[place].given, Given::Known(_)));
-    Ok(Opened { recording, columns: layout.describe(), units: layout.units(held) })
+    let guessed = guessed(data, form, layout.guesses());
+    Ok(Opened { recording, columns: layout.describe(), guessed, taken: taken(&layout), units: layout.units(held) })
 }
 
-fn read(source: &Source, bytes: Vec<u8>, model: &Model) -> Result<(Layout, Signals), DataError> {
+/// One line of what was guessed.
+fn guessed(data: &str, form: Vec<String>, columns: Vec<String>) -> Option<String> {
+    let columns = match columns.is_empty() {
+        true => None,
+        false => Some(format!("{}; else name them with --columns", columns.join(", "))),
+    };
+    let said: Vec<String> = form.into_iter().chain(columns).collect();
+    (!said.is_empty()).then(|| format!("{data}: read with {}", said.join(", ")))
+}
+
+fn taken(layout: &Layout) -> Vec<Taken> {
+    let taken = |(channel, column): (Channel, &Column)| Taken {
+        channel,
+        column: column.header.clone(),
+        unit: column.unit,
+        guessed: column.guessed,
+    };
+    layout.columns().map(taken).collect()
+}
+
+/// The columns, the signals, and how the file was taken where that is not plain.
+fn read(source: &Source, bytes: Vec<u8>, model: &Model) -> Result<(Layout, Signals, Vec<String>), DataError> {
+    let file = || source.file.clone();
     match source.kind {
-        FileKind::Csv => csv::read(source, &files::text(&source.file, bytes)?, model),
-        _ => stored::read(source, bytes, model),
+        FileKind::Csv { .. } => {
+            if let Some((what, how)) = kind::foreign(&bytes) {
+                return Err(DataError::Convert { file: file(), what, how });
+            }
+            let text = encoding::decode(&bytes).ok_or_else(|| DataError::Foreign { file: file() })?;
+            csv::read(source, &text, model)
+        }
+        FileKind::Spreadsheet => csv::read(source, &spreadsheet::text(source, bytes)?, model),
+        _ => stored::read(source, bytes, model).map(|(layout, signals)| (layout, signals, Vec::new())),
     }
 }
 

@@ -15,12 +15,16 @@ pub struct Section {
 }
 
 impl Section {
-    /// Reads `DATA`, `DATA@t0:t1`, `DATA@t0:` or `DATA@:t1`. An `@` without a colon behind it belongs to the file's name.
+    /// Reads `DATA`, `DATA@t0:t1`, `DATA@t0:` or `DATA@:t1`. An `@` without a colon behind it, or in the name of a file that is
+    /// there, belongs to the name.
     ///
     /// # Errors
     /// [`DataError::Section`] where a time is no number or t1 does not come after t0.
     pub fn parse(text: &str) -> Result<Section, DataError> {
         let whole = Section { path: text.into(), start: f64::NEG_INFINITY, end: f64::INFINITY };
+        if whole.path.exists() {
+            return Ok(whole);
+        }
         let Some((path, section)) = text.rsplit_once('@').filter(|(_, section)| section.contains(':')) else {
             return Ok(whole);
         };

@@ -16,7 +16,7 @@ pub(super) fn read(source: &Source, bytes: Vec<u8>, model: &Model) -> Result<(La
         FileKind::Mat5 => arrays::read(source, &mat5::open(source, &bytes)?, model),
         FileKind::Hdf5 => arrays::read(source, &hdf5::open(source, bytes)?, model),
         FileKind::Parquet => arrays::read(source, &parquet::open(source, bytes)?, model),
-        FileKind::Csv => Err(DataError::Foreign { file: source.file.clone() }),
+        FileKind::Csv { .. } | FileKind::Spreadsheet => Err(DataError::Foreign { file: source.file.clone() }),
     }
 }
 

@@ -9,18 +9,21 @@ mod fit;
 mod judge;
 mod motion;
 mod piece;
+mod remarks;
 mod scale;
 mod verdict;
 
 pub use crate::estimation::Noise;
 pub use candidates::same_effect;
 pub use compare::{
-    Bounds, Comparison, Error, Estimate, Fail, Held, Judged, NOISE_RATIO, Options, Over, Side, Verdict, compare,
+    Bounds, Comparison, Error, Estimate, Fail, Held, Judged, Left, NOISE_RATIO, Options, Over, Place, Side, Verdict,
+    compare,
 };
 pub use fit::{Evidence, Fit, Form, best_as_given, fit, is_evident, refit};
 pub use judge::{Target, Timing};
 pub use motion::{Kinematics, Sensors};
 pub use piece::Piece;
+pub use remarks::{Remark, remarks};
 pub use verdict::{
     ADEQUATE, Addition, Candidate, Clock, Diagnosis, Doubt, Finding, Improvement, LEVEL, Law, Posed, StageDiagnosis,
     Step, Switched, WindowError, diagnose_stages, improved_model,

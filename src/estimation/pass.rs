@@ -16,6 +16,12 @@ const MAX_PARTS: usize = 8;
 /// Largest rate per part, squared radians: below it a step of order 4 errs by less than 1e-7 of the motion.
 const MAX_RATE: f64 = 0.0025;
 
+/// A motion that turns by more than this in an outage, rad, cannot be followed over it: the excitation is not known.
+const LOST: f64 = 4.0;
+
+/// How many times its own square the variance of what an outage leaves unknown is.
+const UNKNOWN: f64 = 10.0;
+
 /// A sample and the excitation since the one before it.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation {
@@ -143,6 +149,8 @@ pub struct Pass {
     pub parts: usize,
     rival_filters: [Filter; 2],
     fastest: f64,
+    /// `fastest` ÷ the square of the interval: how fast the motion turns, rad²/s².
+    quickest: f64,
     /// Keeps outliers out, where wanted.
     guard: Option<InnovationGate>,
     compiled: Compiled,
@@ -175,6 +183,7 @@ impl Pass {
             parts: 1,
             rival_filters: [filter; 2],
             fastest: 0.0,
+            quickest: 0.0,
             guard: None,
             compiled: Compiled::default(),
             seeking: false,
@@ -198,7 +207,7 @@ impl Pass {
         self.information.clear();
         self.sensitivity.fill([0.0; 2]);
         self.parts = parts_for(self.fastest);
-        self.fastest = 0.0;
+        (self.fastest, self.quickest) = (0.0, 0.0);
         self.seeking = false;
     }
 
@@ -217,6 +226,9 @@ impl Pass {
             self.seeking = true;
         }
         self.compiled.follow(motion);
+        if observation.unseen > 0.0 && self.quickest * observation.dt * observation.dt > LOST * LOST {
+            return self.resume(noise, observation);
+        }
         let unseen = match observation.unseen > 0.0 {
             true => observation.unseen / motion.mass(self.filter.state.q).powi(2),
             false => 0.0,
@@ -266,6 +278,30 @@ impl Pass {
             });
         }
         self.parts = self.parts.max(parts_for(self.fastest));
+        self.quickest = self.quickest.max(self.fastest / (observation.dt * observation.dt));
+    }
+
+    /// After an outage in which the motion has turned too far to be followed its state is what is measured next, and
+    /// nothing that was known of it before says anything of it.
+    fn resume(&mut self, noise: &Noise, observation: &Observation) -> [Option<Innovation>; 2] {
+        let Filter { state, .. } = self.filter;
+        let [q, qd] = observation.measured;
+        let [q_noise, qd_noise] = noise.sensor;
+        let unknown = |value: f64, noise: f64| UNKNOWN * (value * value + noise);
+        let covariance = [
+            if q.is_some() { q_noise } else { unknown(state.q, q_noise) },
+            0.0,
+            if qd.is_some() { qd_noise } else { unknown(state.qd, qd_noise) },
+        ];
+        self.filter = Filter { state: State { q: q.unwrap_or(state.q), qd: qd.unwrap_or(state.qd) }, covariance };
+        self.rival_filters = [self.filter; 2];
+        self.sensitivity.fill([0.0; 2]);
+        self.map.transition = [[0.0; 2]; 2];
+        self.map.push = [0.0; 2];
+        self.map.input.fill([0.0; 2]);
+        self.rows.iter_mut().for_each(|row| row.fill([0.0; WIDTH]));
+        self.set_aside = [None; 2];
+        [None; 2]
     }
 
     #[inline]

@@ -3,7 +3,7 @@
 use super::description::describe;
 use super::{FmuError, ports};
 use crate::identify::{
-    Identifier, Method, OutputDescription, OutputKind, Outputs, Parameter, SavedLaws, Settings, Status,
+    Identifier, Method, OutputDescription, OutputKind, Outputs, Parameter, SavedLaws, SensorState, Settings, Status,
 };
 use crate::law::{Catalogue, Hold, Model, NamedLaw, Term};
 use switchid_fmu_package::variables::{at_least, choice, input, output, real, variable};
@@ -131,6 +131,7 @@ fn to_variable(of: &OutputDescription) -> Variable {
         OutputKind::Count => Kind::Integer { start: 0, min: Some(0), max: None },
         OutputKind::Flag => Kind::Boolean { start: false },
         OutputKind::Status => Kind::Enumeration { of: "Status".into(), start: 1 },
+        OutputKind::Sensor => Kind::Enumeration { of: "Sensor".into(), start: 1 },
         OutputKind::Effect => Kind::Enumeration { of: "Effect".into(), start: 1 },
     };
     let output = output(variable(&of.name, kind, &of.description), initial_dependencies(&of.name));
@@ -208,6 +209,17 @@ fn enumerations(terms: &[Term]) -> Vec<Enumeration> {
         };
         item(status.id(), text)
     });
+    let sensors = SensorState::ALL.map(|state| {
+        let text = match state {
+            SensorState::Ok => "It works",
+            SensorState::Outlier => "Its readings are far from what can have been",
+            SensorState::Stuck => "It repeats its value where it varied before",
+            SensorState::Offset => "It is off by a constant, which is taken off",
+            SensorState::Missing => "It says nothing",
+            SensorState::Late => "It comes later than the others",
+        };
+        item(state.id(), text)
+    });
     let none = std::iter::once(item("none", "Nothing stands out"));
     let effects = none.chain(Catalogue::ENTRIES.iter().map(|entry| item(entry.id, entry.equation)));
     vec![
@@ -215,6 +227,7 @@ fn enumerations(terms: &[Term]) -> Vec<Enumeration> {
         Enumeration { name: "Method".into(), items: methods.into() },
         Enumeration { name: "Hold".into(), items: holds.into() },
         Enumeration { name: "Status".into(), items: statuses.into() },
+        Enumeration { name: "Sensor".into(), items: sensors.into() },
         Enumeration { name: "Effect".into(), items: effects.collect() },
         Enumeration { name: "Stream".into(), items: stream.into() },
     ]

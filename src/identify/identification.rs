@@ -4,7 +4,7 @@ use super::check::BuildError;
 use super::identifier::Identifier;
 use super::library::SavedLaws;
 use super::recording::Recording;
-use super::report::Coefficient;
+use super::report::{Coefficient, SensorState};
 use super::sample::Skipped;
 use super::settings::{Method, Settings};
 use crate::law::{Hold, Model, Term, equation};
@@ -21,9 +21,11 @@ pub struct Stage {
     pub end: f64,
     /// Time of the alarm that opened it, s; `None` where the record or a gap began it.
     pub detected: Option<f64>,
-    /// First time at which the identifier vouched for its law, s.
+    /// Time at which that alarm had its name, no sensor's fault, s.
+    pub named: Option<f64>,
+    /// First time at which its law was validated, s.
     pub identified: Option<f64>,
-    /// Number of its law among those vouched for, the same whenever a law returns; `None` where none was vouched for.
+    /// Number of its law among those validated, the same whenever a law returns; `None` where none was validated.
     pub law_number: Option<u32>,
     /// Whether the law was recognised as one seen before, not identified anew.
     pub recognised: bool,
@@ -49,7 +51,7 @@ impl Stage {
         known.filter(move |(coefficient, std)| told(coefficient.value, *std))
     }
 
-    /// The terms whose coefficients are not known as well as a law that is vouched for asks, and for how many more
+    /// The terms whose coefficients are not known as well as a validated law has to be, and for how many more
     /// seconds such motion would have to go on; those left out of which nothing can be said.
     pub fn lacking(&self) -> impl Iterator<Item = (Term, f64)> {
         let needed = self.coefficients.iter().filter_map(|coefficient| Some((coefficient.term, coefficient.needed?)));
@@ -65,6 +67,22 @@ impl Stage {
     }
 }
 
+/// A time over which a sensor failed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SensorFault {
+    /// The channel: `q`, `qd` or `F`.
+    pub channel: &'static str,
+    /// What it did.
+    pub kind: SensorState,
+    /// When that was first said, s.
+    pub start: f64,
+    /// When it was over, s; `None` where the record ends before.
+    pub end: Option<f64>,
+}
+
+/// The channels in the order of [`super::Output::sensors`].
+const CHANNELS: [&str; 3] = ["q", "qd", "F"];
+
 /// What was found in a recording.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identification {
@@ -76,8 +94,10 @@ pub struct Identification {
     pub noise_qd: Option<f64>,
     /// Estimated std of what the force has besides a law that gives it; `None` for a law of motion.
     pub noise_force: Option<f64>,
-    /// The laws that were vouched for, to be recognised in other recordings.
+    /// The laws that were validated, to be recognised in other recordings.
     pub known_laws: SavedLaws,
+    /// The sensors' faults, in the order of their start.
+    pub sensors: Vec<SensorFault>,
     /// The samples that were not used, and why.
     pub skipped: Vec<Skipped>,
 }
@@ -163,6 +183,7 @@ pub fn identify_knowing(
         noise_qd: None,
         noise_force: None,
         known_laws: known.clone(),
+        sensors: Vec::new(),
         skipped: Vec::new(),
     };
     for piece in recording.pieces() {
@@ -184,7 +205,9 @@ fn follow(
     for index in piece {
         let sample = recording.sample(index);
         let switches = identifier.output().switch_count;
+        let sensors = identifier.output().sensors;
         found.skipped.extend(identifier.step(sample).err());
+        note_faults(&mut found.sensors, sensors, identifier.output().sensors, sample.t);
         if identifier.output().switch_count != switches {
             let next = begin(&identifier, identifier.output().switch_time);
             present.end = next.start;
@@ -204,12 +227,27 @@ fn follow(
     found.noise_qd = identifier.output().noise_qd.or(found.noise_qd);
 }
 
+/// Faults that have ended at a sample, and those that have begun.
+fn note_faults(faults: &mut Vec<SensorFault>, before: [SensorState; 3], now: [SensorState; 3], t: f64) {
+    for (channel, (before, now)) in CHANNELS.into_iter().zip(before.into_iter().zip(now)) {
+        if before == now {
+            continue;
+        }
+        let open = faults.iter_mut().rev().find(|fault| fault.channel == channel && fault.end.is_none());
+        open.into_iter().for_each(|fault| fault.end = Some(t));
+        if now != SensorState::Ok {
+            faults.push(SensorFault { channel, kind: now, start: t, end: None });
+        }
+    }
+}
+
 fn begin(identifier: &Identifier, start: f64) -> Stage {
     Stage {
         start,
         start_std: identifier.output().switch_time_std,
         end: start,
         detected: identifier.output().detection_time,
+        named: identifier.output().named_time,
         identified: None,
         law_number: None,
         recognised: false,

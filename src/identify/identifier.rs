@@ -1,11 +1,12 @@
 //! The identifier: which procedure is at work, what a sample is checked for, what the caller sees.
 
 use super::check::{BuildError, check};
+use super::faults::Clock;
 use super::force_law::ForceTracker;
 use super::library::{SavedLaws, SavedLawsError};
 use super::problem::Problem;
 use super::published_method::Publication;
-use super::report::{Coefficient, Output, Status};
+use super::report::{Coefficient, Output, SensorState, Status};
 use super::sample::{Sample, Skipped};
 use super::settings::{Method, Settings};
 use super::tracker::Tracker;
@@ -39,7 +40,7 @@ pub struct Identifier {
     potential: Vec<Term>,
     coefficients: Vec<Coefficient>,
     output: Output,
-    last: Option<f64>,
+    clock: Clock,
 }
 
 impl Identifier {
@@ -65,6 +66,8 @@ impl Identifier {
             identified_time: None,
             law_number: None,
             recognised: false,
+            named_time: None,
+            sensors: [SensorState::Ok; 3],
             status: Status::Acquiring,
             valid: false,
             drifting: false,
@@ -79,7 +82,7 @@ impl Identifier {
             noise_force: None,
             missing: None,
         };
-        Ok(Identifier { settings, problem, engine, potential, coefficients, output, last: None })
+        Ok(Identifier { settings, problem, engine, potential, coefficients, output, clock: Clock::default() })
     }
 
     /// Takes one sample.
@@ -87,9 +90,11 @@ impl Identifier {
     /// # Errors
     /// [`Skipped`] says why the sample was not used; the identifier goes on unchanged.
     pub fn step(&mut self, sample: Sample) -> Result<(), Skipped> {
-        self.accept(&sample)?;
-        self.last = Some(sample.t);
-        let sample = self.measured(sample);
+        let sample = match self.accept(&sample) {
+            Ok(t) => self.measured(Sample { t, ..sample }),
+            Err(skipped) => return Err(self.skip(&sample, skipped)),
+        };
+        self.clock.advance(sample.t);
         let Identifier { settings, problem, engine, coefficients, output, .. } = self;
         match engine {
             Engine::Default(tracker) => {
@@ -114,7 +119,21 @@ impl Identifier {
         }
     }
 
-    fn accept(&self, sample: &Sample) -> Result<(), Skipped> {
+    /// What is published does not hold for the present once samples are missing.
+    fn skip(&mut self, sample: &Sample, skipped: Skipped) -> Skipped {
+        let lost = self.clock.is_stale(sample.t);
+        if lost {
+            self.output.valid = false;
+            if let Skipped::NotFinite { channel, .. } = skipped {
+                let index = ["q", "qd", "F"].iter().position(|name| *name == channel);
+                index.into_iter().for_each(|index| self.output.sensors[index] = SensorState::Missing);
+            }
+        }
+        skipped
+    }
+
+    /// The sample's time in the record.
+    fn accept(&mut self, sample: &Sample) -> Result<f64, Skipped> {
         let channels = self.settings.channels;
         let values = [
             ("t", true, sample.t),
@@ -125,15 +144,10 @@ impl Identifier {
         if let Some((channel, ..)) = values.into_iter().find(|(_, used, value)| *used && !value.is_finite()) {
             return Err(Skipped::NotFinite { t: sample.t, channel });
         }
-        let t = sample.t;
-        match self.last {
-            Some(previous) if t <= previous => Err(Skipped::NotLater { t, previous }),
-            Some(previous) if t - previous < 0.5 * self.settings.sample_time => Err(Skipped::TooSoon { t }),
-            _ => Ok(()),
-        }
+        self.clock.time(sample.t, self.settings.sample_time)
     }
 
-    /// The laws that it knows, the present one among them where it is vouched for; none of the publication's method.
+    /// The laws that it knows, the present one among them where it is validated; none of the publication's method.
     pub fn known_laws(&self) -> SavedLaws {
         match &self.engine {
             Engine::Default(tracker) => tracker.known_laws(&self.problem),

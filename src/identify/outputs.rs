@@ -1,7 +1,7 @@
 //! What an identifier publishes, by name: outputs of the FMU, columns of the command line's trace.
 
 use super::identifier::Identifier;
-use super::report::Status;
+use super::report::{SensorState, Status};
 use crate::law::Term;
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +19,8 @@ pub enum OutputKind {
     Flag,
     /// A [`Status`].
     Status,
+    /// A [`SensorState`].
+    Sensor,
     /// An effect of the catalogue, 2 the first; 1 for none.
     Effect,
 }
@@ -45,6 +47,8 @@ pub enum OutputValue {
     Flag(bool),
     /// Of [`OutputKind::Status`].
     Status(Status),
+    /// Of [`OutputKind::Sensor`].
+    Sensor(SensorState),
     /// Of [`OutputKind::Effect`].
     Effect(u8),
 }
@@ -57,6 +61,7 @@ impl OutputValue {
             OutputValue::Count(count) => f64::from(count),
             OutputValue::Flag(flag) => f64::from(u8::from(flag)),
             OutputValue::Status(status) => f64::from(status as u8),
+            OutputValue::Sensor(sensor) => f64::from(sensor as u8),
             OutputValue::Effect(effect) => f64::from(effect),
         }
     }
@@ -86,7 +91,7 @@ const OF_FORCE: [Scalar; 3] = [
     ),
 ];
 
-const SCALARS: [Scalar; 17] = [
+const SCALARS: [Scalar; 21] = [
     ("switch.count", OutputKind::Count, "Switches detected so far"),
     ("switch.time", OutputKind::Real(Some("s")), "Estimated instant at which the present stage began"),
     (
@@ -100,18 +105,18 @@ const SCALARS: [Scalar; 17] = [
         "Time of the alarm that ended the last stage; 1e30 before the first alarm",
     ),
     ("status", OutputKind::Status, "What the identifier is doing"),
-    ("valid", OutputKind::Flag, "Whether the identifier vouches for the present law"),
+    (
+        "valid",
+        OutputKind::Flag,
+        "Whether the present law is validated, every std known, and the last samples were used",
+    ),
     ("deviation", OutputKind::Real(None), "Mean deviation of prediction from observation over deviation.interval"),
     ("threshold", OutputKind::Real(None), "Deviation that is out of the ordinary"),
     ("prediction.q", OutputKind::Real(None), "q that the present law predicts for the last sample"),
     ("prediction.qd", OutputKind::Real(None), "qd that the present law predicts for the last sample"),
     ("noise_estimate.q", OutputKind::Real(None), "Estimated std of the sensor noise on q; 1e30 while not known"),
     ("noise_estimate.qd", OutputKind::Real(None), "Estimated std of the sensor noise on qd; 1e30 while not known"),
-    (
-        "identified_time",
-        OutputKind::Real(Some("s")),
-        "First time at which the identifier vouched for the present law; 1e30 before",
-    ),
+    ("identified_time", OutputKind::Real(Some("s")), "First time at which the present law was validated; 1e30 before"),
     (
         "missing.effect",
         OutputKind::Effect,
@@ -125,9 +130,17 @@ const SCALARS: [Scalar; 17] = [
     (
         "law.number",
         OutputKind::Count,
-        "Number of the law in use among those vouched for so far, the same whenever it returns; 0 while there is none",
+        "Number of the law in use among those validated so far, the same whenever it returns; 0 while there is none",
     ),
     ("drifting", OutputKind::Flag, "Whether the coefficients move: they are followed as they go"),
+    (
+        "switch.named_time",
+        OutputKind::Real(Some("s")),
+        "Time at which the alarm that ended the last stage had its name, no sensor's fault; 1e30 before the first one",
+    ),
+    ("sensor.q", OutputKind::Sensor, "What the sensor of q does"),
+    ("sensor.qd", OutputKind::Sensor, "What the sensor of qd does"),
+    ("sensor.F", OutputKind::Sensor, "What the sensor of F does"),
 ];
 
 impl Outputs {
@@ -226,6 +239,10 @@ fn scalars(identifier: &Identifier) -> [OutputValue; SCALARS.len()] {
         OutputValue::Real(output.missing.map_or(0.0, |missing| missing.evidence)),
         OutputValue::Count(output.law_number.unwrap_or(0)),
         OutputValue::Flag(output.drifting),
+        or_unknown(output.named_time),
+        OutputValue::Sensor(output.sensors[0]),
+        OutputValue::Sensor(output.sensors[1]),
+        OutputValue::Sensor(output.sensors[2]),
     ]
 }
 

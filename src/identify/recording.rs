@@ -165,6 +165,11 @@ impl Recording {
         &self.t
     }
 
+    /// The readings of `q`, `qd` or `F`, where they are measured.
+    pub fn signal(&self, channel: &str) -> Option<&[f64]> {
+        self.signals().find(|(name, _)| *name == channel).map(|(_, values)| values)
+    }
+
     /// How many samples it has; at least [`Recording::MINIMUM`].
     pub fn count(&self) -> usize {
         self.t.len()

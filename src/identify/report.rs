@@ -32,6 +32,48 @@ impl Status {
     }
 }
 
+/// What a channel's sensor does; numbered as in the FMU.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SensorState {
+    /// It works.
+    #[default]
+    Ok = 1,
+    /// Its readings are far from what can have been.
+    Outlier = 2,
+    /// It repeats its value where it varied before.
+    Stuck = 3,
+    /// It is off by a constant.
+    Offset = 4,
+    /// It says nothing.
+    Missing = 5,
+    /// It comes later than the others.
+    Late = 6,
+}
+
+impl SensorState {
+    /// Every state, in the order of the FMU's enumeration.
+    pub const ALL: [SensorState; 6] = [
+        SensorState::Ok,
+        SensorState::Outlier,
+        SensorState::Stuck,
+        SensorState::Offset,
+        SensorState::Missing,
+        SensorState::Late,
+    ];
+
+    /// The name used in reports and in the FMU.
+    pub fn id(self) -> &'static str {
+        match self {
+            SensorState::Ok => "ok",
+            SensorState::Outlier => "outlier",
+            SensorState::Stuck => "stuck",
+            SensorState::Offset => "offset",
+            SensorState::Missing => "missing",
+            SensorState::Late => "late",
+        }
+    }
+}
+
 /// A published coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Coefficient {
@@ -41,7 +83,7 @@ pub struct Coefficient {
     pub value: f64,
     /// Its std; `None` while the coefficient is not known.
     pub std: Option<f64>,
-    /// How many more seconds of such a record it needs until it is known as well as a law that is vouched for asks; 0
+    /// How many more seconds of such a record it needs until it is known as well as a validated law has to be; 0
     /// when it is, `None` while nothing can be said.
     pub needed: Option<f64>,
 }
@@ -57,17 +99,21 @@ pub struct Output {
     pub switch_time_std: Option<f64>,
     /// Time of the alarm that ended the last stage, s; `None` in the first one.
     pub detection_time: Option<f64>,
-    /// First time at which the present law was vouched for (stated covariance puts e below 0.05²), s.
+    /// First time at which the present law was validated (stated covariance puts e below 0.05²), s.
     pub identified_time: Option<f64>,
-    /// Number of the law in use among those that were vouched for, 1 for the first of all; `None` while there is none.
+    /// Number of the law in use among those that were validated, 1 for the first of all; `None` while there is none.
     pub law_number: Option<u32>,
     /// Whether that law was recognised as one seen before, not identified anew.
     pub recognised: bool,
     /// What the identifier is doing.
     pub status: Status,
-    /// Whether the present law is validated; every std is known then.
+    /// Whether the present law is validated, every std known and honest, and the last samples were used.
     pub valid: bool,
-    /// Whether the coefficients move: they are followed as they go, and vouched for as long as their stated e is below
+    /// What the sensors of q, q̇ and F do.
+    pub sensors: [SensorState; 3],
+    /// Time at which the last switch was named one, s; `None` in the first stage.
+    pub named_time: Option<f64>,
+    /// Whether the coefficients move: they are followed as they go, and valid as long as their stated e is below
     /// 0.2².
     pub drifting: bool,
     /// Deviation of eq. (4) over T; 0 before the first law.

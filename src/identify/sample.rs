@@ -35,6 +35,16 @@ pub enum Skipped {
         /// Time of the last accepted one, s.
         previous: f64,
     },
+    /// Time is far ahead, alone so far.
+    #[error(
+        "the sample at t = {t} s comes long after the one at {previous} s: skipped, believed once the next one agrees"
+    )]
+    Ahead {
+        /// Time of the sample, s.
+        t: f64,
+        /// Time of the last accepted one, s.
+        previous: f64,
+    },
     /// The stream is faster than `sample_time`; thinned.
     #[error("the sample at t = {t} s comes sooner than sample_time after the last one: thinned")]
     TooSoon {

@@ -1,6 +1,7 @@
 //! The last samples, in a ring whose memory is fixed at construction.
 
 use super::packed;
+use super::reading::Reading;
 use super::sample::Sample;
 use super::settings::Channels;
 use crate::estimation::{Filter, Noise, Observation, initial_state};
@@ -13,6 +14,9 @@ const GAP: f64 = 1.5;
 /// … unless more than so many in a row are.
 const PATIENCE: u32 = 3;
 
+/// An interval this many times as long as the usual one is an outage.
+const OUTAGE: f64 = 50.0;
+
 /// Share of a sample in the usual interval.
 const ADAPTION: f64 = 0.05;
 
@@ -22,8 +26,8 @@ const MEMORY: f64 = 4000.0;
 /// Accepted samples by number; the first of all is number 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Window {
-    #[serde(with = "packed")]
-    ring: Vec<Sample>,
+    #[serde(with = "packed::readings")]
+    ring: Vec<Reading>,
     count: u64,
     channels: Channels,
     hold: Hold,
@@ -76,7 +80,7 @@ impl Pace {
 impl Window {
     /// Room for `capacity` samples.
     pub fn new(capacity: usize, channels: Channels, hold: Hold) -> Window {
-        let ring = vec![Sample::default(); capacity];
+        let ring = vec![Reading::default(); capacity];
         Window { ring, count: 0, channels, hold, band_limited: BandLimited::new(), pace: Pace::default() }
     }
 
@@ -86,14 +90,20 @@ impl Window {
     }
 
     /// Adds a sample; the oldest goes when there is no room.
-    pub fn push(&mut self, sample: Sample) {
+    pub fn push(&mut self, reading: impl Into<Reading>) {
+        let reading = reading.into();
         if self.count > 0 {
             let before = *self.sample(self.count - 1);
-            self.pace.take(&before, &sample);
+            self.pace.take(&before, &reading.sample);
         }
         let slot = self.slot(self.count);
-        self.ring[slot] = sample;
+        self.ring[slot] = reading;
         self.count += 1;
+    }
+
+    /// Time that is usual between two samples, s; 0 before there are two.
+    pub fn pace(&self) -> f64 {
+        self.pace.dt
     }
 
     /// Number of the oldest sample that is still there.
@@ -114,7 +124,20 @@ impl Window {
     /// The sample of that number, which must be in the window.
     #[inline]
     pub fn sample(&self, number: u64) -> &Sample {
-        &self.ring[self.slot(number)]
+        &self.ring[self.slot(number)].sample
+    }
+
+    /// Whether samples are missing for long before the sample of that number.
+    pub fn ends_outage(&self, number: u64) -> bool {
+        number > self.oldest() && self.sample(number).t - self.sample(number - 1).t > OUTAGE * self.pace.dt
+    }
+
+    /// Changes the last `count` readings.
+    pub fn amend(&mut self, count: u64, change: impl Fn(&mut Reading)) {
+        for number in self.end().saturating_sub(count).max(self.oldest())..self.end() {
+            let slot = self.slot(number);
+            change(&mut self.ring[slot]);
+        }
     }
 
     /// Sample `number` and the excitation since the one before it; both must be in the window.
@@ -127,9 +150,11 @@ impl Window {
             Hold::Linear => Drive::Line(before.excitation, after.excitation),
             Hold::BandLimited => self.interpolate(number - 1),
         };
-        let measured = [self.channels.q.then_some(after.q), self.channels.qd.then_some(after.qd)];
+        let Reading { faulty: [q_faulty, qd_faulty], unseen, .. } = self.ring[self.slot(number)];
+        let counts = [self.channels.q && !q_faulty, self.channels.qd && !qd_faulty];
+        let measured = [counts[0].then_some(after.q), counts[1].then_some(after.qd)];
         let dt = after.t - before.t;
-        let unseen = self.pace.unseen(dt, after.excitation - before.excitation);
+        let unseen = unseen + self.pace.unseen(dt, after.excitation - before.excitation);
         Observation { dt, drive, measured, unseen }
     }
 

@@ -77,13 +77,13 @@ fn files_with_nothing_in_them_are_refused() {
 #[test]
 fn missing_columns_are_named_with_those_there_are() {
     let bench = Bench::new("columns");
-    bench.write("untimed.csv", &plain("time,q,qd,F", 50));
+    bench.write("untimed.csv", &plain("tick,q,qd,F", 50));
     bench.identify_refuses(
         "untimed.csv",
-        &["untimed.csv: line 1", "\"t\"", "\"time\", \"q\", \"qd\", \"F\"", "[columns] t"],
+        &["untimed.csv: line 1", "\"t\"", "\"tick\", \"q\", \"qd\", \"F\"", "--columns t=", "[columns] t"],
     );
-    bench.write("still.csv", &plain("t,x,v,F", 50));
-    bench.identify_refuses("still.csv", &["no column \"q\" or \"qd\"", "\"x\"", "[columns] q"]);
+    bench.write("still.csv", &plain("t,a,b,F", 50));
+    bench.identify_refuses("still.csv", &["no column \"q\" or \"qd\"", "\"a\"", "--columns q=", "[columns] q"]);
     bench.write("model.toml", &format!("[columns]\nq = \"position\"\n{MODEL}"));
     bench.write("unnamed.csv", &plain("t,q,qd,F", 50));
     bench.identify_refuses("unnamed.csv", &["unnamed.csv: line 1", "\"position\"", "the columns are \"t\""]);
@@ -181,6 +181,47 @@ fn bad_usage_is_refused() {
 }
 
 #[test]
+fn what_no_record_can_give_is_refused() {
+    let bench = Bench::new("cannot");
+    bench.write("data.csv", &plain("t,q,qd,F", 500));
+    for window in ["6", "0.001"] {
+        bench.refused(
+            &["compare", "data.csv", "--model", "model.toml", "--window", window],
+            &[&format!("--window {window}"), "four samples", "half of the record"],
+        );
+    }
+    bench.refused(&["simulate", "duffing-sine", "--seed", "-1", "-o", "x.csv"], &["--seed", "-1"]);
+    bench.write("shaken.csv", &plain("t,a [m/s^2],qd,F", 500));
+    bench.refused(
+        &["check", "shaken.csv", "--columns", "q=a"],
+        &["line 1", "\"a [m/s^2]\" is an acceleration", "integrate"],
+    );
+    bench.write("twice.toml", &format!("{MODEL}q = 2.0\n"));
+    bench.refused(&["identify", "data.csv", "--model", "twice.toml"], &["twice.toml", "line 6", "duplicate"]);
+}
+
+#[test]
+fn single_huge_readings_are_named_and_survived() {
+    let bench = Bench::new("huge");
+    for huge in ["1e6", "1e308", "-1e308"] {
+        bench.write(
+            "huge.csv",
+            &csv("t,q,qd,F", 2000, |line, cells| {
+                if line == 700 {
+                    cells[1] = huge.into();
+                }
+            }),
+        );
+        for command in ["identify", "compare", "diagnose", "limits"] {
+            let output = bench.run(&[command, "huge.csv", "--model", "model.toml"]);
+            let said = String::from_utf8(output.stderr).unwrap();
+            assert!(matches!(output.status.code(), Some(0 | 2)), "{command} {huge}: {said}");
+            assert!(said.contains("far off their neighbours") && said.contains("6.98 s"), "{command} {huge}: {said}");
+        }
+    }
+}
+
+#[test]
 fn what_a_command_reads_is_not_overwritten() {
     let bench = Bench::new("inputs");
     let data = plain("t,q,qd,F", 500);
@@ -189,14 +230,15 @@ fn what_a_command_reads_is_not_overwritten() {
     let plant = "terms = [\"qdd\"]\nduration = 1.0\n[[stage]]\nstart = 0.0\ncoefficients = [1.0]\n";
     bench.write("plant.toml", plant);
     let identify = ["identify", "data.csv@0:4", "--model", "model.toml", "--known-laws", "laws.toml"];
-    let improve = ["improve", "data.csv", "--model", "model.toml", "-o", "better.toml", "--force", "--picture"];
+    bench.write("model.svg", MODEL);
+    let improve = ["improve", "data.csv", "--model", "model.svg", "-o", "better.toml", "--force", "--picture"];
     let cases: [(&[&str], &[&str], &str); 7] = [
         (&identify, &["--save-laws", "./data.csv"], "--save-laws ./data.csv would overwrite data.csv"),
         (&identify, &["--trace", "model.toml"], "--trace model.toml would overwrite model.toml"),
         (&identify, &["--save-laws", "laws.toml"], "--save-laws laws.toml would overwrite laws.toml"),
         (&["simulate", "plant.toml"], &["-o", "plant.toml"], "-o plant.toml would overwrite plant.toml"),
         (&["fmu", "--model", "model.toml"], &["-o", "model.toml"], "-o model.toml would overwrite model.toml"),
-        (&improve, &["model.toml"], "--picture model.toml would overwrite model.toml"),
+        (&improve, &["model.svg"], "--picture model.svg would overwrite model.svg"),
         (
             &["add", "coulomb_friction", "--model", "model.toml", "--data", "data.csv", "--force"],
             &["-o", "data.csv"],

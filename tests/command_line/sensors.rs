@@ -21,7 +21,7 @@ fn oscillator(bench: &Bench, seed: u64, hidden: &str) -> Vec<[f64; 4]> {
          excitation = {{ {excitation} }}\n[hidden]\n{hidden}\n[[stage]]\nstart = 0.0\ncoefficients = [1.0, 0.6, 40.0]\n"
     );
     bench.write("plant.toml", &scenario);
-    bench.json(&["simulate", "plant.toml", "-o", "plant.csv", "--json"]);
+    bench.json(&["simulate", "plant.toml", "-o", "plant.csv", "--force", "--json"]);
     let text = std::fs::read_to_string(bench.0.join("plant.csv")).unwrap();
     let number = |cell: &str| cell.parse::<f64>().unwrap();
     let row = |line: &str| <[f64; 4]>::try_from(line.split(',').map(number).collect::<Vec<_>>()).unwrap();

@@ -11,7 +11,7 @@ fn stage(bench: &Bench, file: &str) -> Value {
 
 /// The first seconds of a Duffing oscillator under this header, q times a scale.
 fn duffing(bench: &Bench, header: &str, scale: f64) -> String {
-    assert!(bench.run(&["simulate", "duffing-sine", "-o", "duffing.csv"]).status.success());
+    assert!(bench.run(&["simulate", "duffing-sine", "-o", "duffing.csv", "--force"]).status.success());
     let record = std::fs::read_to_string(bench.0.join("duffing.csv")).unwrap();
     let line = |line: &str| {
         let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();

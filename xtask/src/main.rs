@@ -38,6 +38,8 @@ usage: cargo xtask CHORE
                      errors, delays, missed switches and false alarms of the built-in scenarios; beside
                      what any method could reach
   effects [--help]   the benchmark of hidden effects: which a diagnosis finds, at what strength and noise
+  faults [--seeds N] [--first SEED] [--only TEXT] [--threads N] [--cells]
+                     what faults of sensors, clocks and masters do to `valid`, switches and delays
   known-laws [SEEDS] how soon laws that return are known
   dropbear FOLDER [PICTURE.svg]
                      a real record that switches and drifts, FOLDER that of dropbear.csv
@@ -75,7 +77,7 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         ("wine", []) => wine::compare(),
         ("importers", []) => importers::importers(),
         ("bench", rest) => cargo(&["bench", "--package", MEASURE, "--bench", "step", "--"], rest),
-        (program @ ("figures" | "study" | "effects" | "known-laws" | "dropbear"), rest) => {
+        (program @ ("figures" | "study" | "effects" | "faults" | "known-laws" | "dropbear"), rest) => {
             cargo(&["run", "--quiet", "--release", "--package", MEASURE, "--bin", program, "--"], rest)
         }
         ("real", rest) => real::real(rest),

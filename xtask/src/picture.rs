@@ -25,8 +25,8 @@ pub fn picture() -> Result<(), Error> {
     let interpreter = python::environment()?;
     fmu::build_command()?;
     let [record, truth, trace] = ["record.csv", "record.truth.json", "trace.csv"].map(|name| folder.join(name));
-    switchid(&["simulate", "duffing-sine", "--noise", "0.01", "-o"], &record, &[])?;
-    switchid(&["identify", "--model", "docs/duffing.toml", "--trace"], &trace, &[&record])?;
+    switchid(&["simulate", "duffing-sine", "--noise", "0.01", "--force", "-o"], &record, &[])?;
+    switchid(&["identify", "--model", "docs/duffing.toml", "--force", "--trace"], &trace, &[&record])?;
     let mut command = harness(&interpreter);
     command.args(["-m", "switchid_harness.picture"]).args([&record, &truth, &trace]).arg("docs/switching.svg");
     run(&mut command, python::NO_PYTHON)

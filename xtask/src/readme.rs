@@ -7,6 +7,9 @@ use std::process::Command;
 /// The documents whose commands a reader runs first.
 const DOCUMENTS: [&str; 2] = ["README.md", "docs/command-line.md"];
 
+/// Where their commands write.
+const FOLDER: &str = "target/readme";
+
 /// Runs every ```` ```sh ```` block of a document in the workspace's root, in order, one document after the other; lines
 /// that call `cargo xtask` are left out, since CI runs those itself.
 ///
@@ -24,6 +27,8 @@ fn commands_of(document: &str) -> Result<(), Error> {
     if blocks.is_empty() {
         return Err(Error::Document { path, text: "has no ```sh block: its commands are tested from there" });
     }
+    // a reader begins with an empty folder: nothing that exists is overwritten unasked
+    let _ = std::fs::remove_dir_all(root().join(FOLDER));
     let script = blocks.join("\n");
     run(Command::new("bash").args(["-euxo", "pipefail", "-c", &script]).current_dir(root()), "install bash")
 }

@@ -4,7 +4,7 @@ use crate::parameters::{Parameters, position};
 use crate::stream::Watch;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use switchid::identify::{Identifier, OutputValue, Outputs, Sample, SavedLaws, SavedLawsError, Skipped};
+use switchid::identify::{Identifier, OutputValue, Outputs, Sample, SavedLaws, SavedLawsError, SensorState, Skipped};
 use switchid::law::{Model, ModelError, Term};
 use switchid_fmu_slave::{Category, Description, Log, Slave, SlaveError, Value, Values, seconds};
 use thiserror::Error;
@@ -111,23 +111,44 @@ impl Slave for IdentifierSlave {
         let Some(running) = self.running.as_mut() else { return Ok(()) };
         let [q, qd, excitation] = self.inputs.map(|reference| values.real(reference));
         let before = running.identifier.output().switch_count;
+        let sensors = running.identifier.output().sensors;
         let sample = Sample { t: time, q, qd, excitation };
         let outcome = running.identifier.step(sample);
-        match outcome {
-            Ok(()) => running.publish(&self.output_references, values),
-            Err(skipped) => say_skipped(skipped, log),
+        running.publish(&self.output_references, values);
+        if let Err(skipped) = outcome {
+            say_skipped(skipped, log);
         }
         running.watch.take(&sample, &outcome, log);
         values.put(self.stream, Value::Integer(running.watch.shown()));
         running.say_switch(before, log);
+        running.say_sensors(time, sensors, log);
         Ok(())
     }
 }
+
+/// What each sensor measures, and the key of its warnings.
+const SENSORS: [(&str, &str); 3] = [("q", "sensor of q"), ("qd", "sensor of qd"), ("F", "sensor of F")];
 
 impl Running {
     fn publish(&self, references: &[usize], values: &mut Values) {
         for (reference, value) in references.iter().zip(self.outputs.values(&self.identifier)) {
             values.put(*reference, to_fmi(value));
+        }
+    }
+
+    /// A sensor's fault is said once when it begins and once when it ends.
+    fn say_sensors(&self, time: f64, before: [SensorState; 3], log: &mut Log) {
+        let now = self.identifier.output().sensors;
+        for (channel, (before, now)) in SENSORS.into_iter().zip(before.into_iter().zip(now)) {
+            if before != now {
+                let t = seconds(time);
+                log.warn_of_onset(channel.1, || match now {
+                    SensorState::Ok => format!("sensor of {}: {} until t = {t} s, ok again", channel.0, before.id()),
+                    fault => {
+                        format!("sensor of {}: {} from t = {t} s on, its readings do not count", channel.0, fault.id())
+                    }
+                });
+            }
         }
     }
 
@@ -140,10 +161,10 @@ impl Running {
     }
 }
 
-/// A sample that the identifier did not take; what is thinned is for the [`Watch`] to say.
+/// A sample that the identifier did not take; what comes too soon or after a hole is for the [`Watch`] to say.
 fn say_skipped(skipped: Skipped, log: &mut Log) {
     match skipped {
-        Skipped::TooSoon { .. } => {}
+        Skipped::TooSoon { .. } | Skipped::Ahead { .. } => {}
         Skipped::NotFinite { t, channel } => {
             log.warn_rarely(channel, || Skipped::NotFinite { t: seconds(t), channel }.to_string());
         }
@@ -166,6 +187,7 @@ fn to_fmi(value: OutputValue) -> Value {
         OutputValue::Count(count) => Value::Integer(i32::try_from(count).unwrap_or(i32::MAX)),
         OutputValue::Flag(flag) => Value::Boolean(flag),
         OutputValue::Status(status) => Value::Integer(status as i32),
+        OutputValue::Sensor(sensor) => Value::Integer(sensor as i32),
         OutputValue::Effect(effect) => Value::Integer(i32::from(effect)),
     }
 }

@@ -63,7 +63,7 @@ fn numbers(subject: &Subject, instance: &Instance) -> Vec<f64> {
     let read = |name: &str| {
         let reference = subject.reference(name);
         match name {
-            "switch.count" | "status" | "missing.effect" | "law.number" => {
+            "switch.count" | "status" | "missing.effect" | "law.number" | "sensor.q" | "sensor.qd" | "sensor.F" => {
                 f64::from(instance.integer(reference).unwrap())
             }
             name if matches!(name, "valid" | "drifting") || name.starts_with("known.") => {

@@ -106,7 +106,7 @@ def _stage_row(run: dict, index: int) -> str:
 
 _COLUMNS = (
     "<th>e</th><th>detected<small>after</small></th><th>tracked<small>after</small></th>"
-    "<th>vouched<small>at</small></th>"
+    "<th>validated<small>at</small></th>"
 )
 _HEAD = (
     '<thead><tr><th rowspan="2">stage</th><th rowspan="2" class="left">coefficient ± std, truth</th>'

@@ -142,7 +142,7 @@ mod tests {
         let stage = |detection: Option<f64>| Stage {
             detection,
             tracking: None,
-            vouched: None,
+            validated: None,
             error: 1.0,
             worst: 0.0,
             wrong: 0.0,

@@ -133,7 +133,7 @@ impl<'a> Group<'a> {
         let of = |value: fn(&Stage) -> f64| -> Vec<f64> { stages.iter().map(|stage| value(stage)).collect() };
         let scores =
             |of: fn(&Stage) -> &[f64]| -> Vec<f64> { stages.iter().flat_map(|stage| of(stage)).copied().collect() };
-        let [vouched, stated] = [scores(|stage| &stage.normalised), scores(|stage| &stage.stated)].map(coverage);
+        let [validated, stated] = [scores(|stage| &stage.normalised), scores(|stage| &stage.stated)].map(coverage);
         let worst = quantile(&of(|stage| stage.worst), 1.0).filter(|worst| *worst > 0.0);
         let own = vec![
             stages.len().to_string(),
@@ -146,7 +146,7 @@ impl<'a> Group<'a> {
             small(worst),
         ];
         let told = percent(mean(&of(|stage| stage.told)).unwrap_or_default());
-        own.into_iter().chain(vouched).chain([told]).chain(stated).collect()
+        own.into_iter().chain(validated).chain([told]).chain(stated).collect()
     }
 }
 

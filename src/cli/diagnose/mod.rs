@@ -5,11 +5,13 @@ mod report;
 mod text;
 
 pub(super) use report::{CandidateReport, TimingReport, WindowReport};
-pub(super) use text::{answer, candidates, verdict};
+pub(super) use text::{answer, candidates, text, verdict};
 
 use super::error::CommandError;
+use super::figures;
 use super::input::{Input, InputArguments};
-use super::output;
+use super::output::{self, Targets};
+use super::pictures::PictureArguments;
 use super::progress::Waiting;
 use crate::diagnose::diagnose_stages;
 use clap::Args;
@@ -33,22 +35,34 @@ Errors are the RMS weak residual ÷ std of the weak target over windows of 0.1, 
 pub(super) struct Arguments {
     #[command(flatten)]
     input: InputArguments,
+    #[command(flatten)]
+    picture: PictureArguments,
+    /// Overwrite files where they exist
+    #[arg(long)]
+    force: bool,
     /// Print one JSON document instead of text
     #[arg(long)]
     json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
+    let mut targets = Targets::new(arguments.input.files()?, arguments.force);
+    let picture = arguments.picture.open(&mut targets)?;
     let input = Input::open(&arguments.input.data, &arguments.input.model)?;
     let found = Waiting::on("diagnosing", || find(&input))?;
+    picture.map_or(Ok(()), |picture| picture.draw(&figures::diagnosis(&input, &found.principal)))?;
     if arguments.json {
         output::print_json(&report::Report::of(&found, &input))
     } else {
-        output::print(&text::text(&found, &input))
+        output::print(&text(&found, &input))
     }
 }
 
-fn find(input: &Input) -> Result<Found, CommandError> {
+/// The diagnosis of all recordings.
+///
+/// # Errors
+/// Where no law is determined.
+pub(super) fn find(input: &Input) -> Result<Found, CommandError> {
     let found = diagnose_stages(&input.model, &input.recordings(), input.hold);
     let (Some(finding), Some(principal)) = (found.finding(), found.principal().cloned()) else {
         return Err(input.undetermined());

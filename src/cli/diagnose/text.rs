@@ -18,7 +18,7 @@ pub(in crate::cli) fn verdict(finding: Finding) -> &'static str {
     }
 }
 
-pub(super) fn text(found: &Found, input: &Input) -> String {
+pub(in crate::cli) fn text(found: &Found, input: &Input) -> String {
     let mut text = lines(found, input).join("\n") + "\n\n";
     if found.stages.is_empty() {
         text += &body(&found.principal, input);

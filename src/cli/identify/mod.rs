@@ -4,9 +4,14 @@ mod found;
 mod report;
 mod text;
 
+use super::columns::ColumnArguments;
+use super::course::Course;
 use super::error::CommandError;
+use super::figures;
 use super::input::is_noiseless;
-use super::output;
+use super::looked;
+use super::output::{self, Target, Targets};
+use super::pictures::PictureArguments;
 use super::progress::{Progress, Waiting};
 use super::stage_limit::{force_limits, stage_limits};
 use super::trace::Trace;
@@ -16,7 +21,7 @@ use crate::law::{Hold, Model};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use found::Run;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// More gaps than these are told together.
 const GAPS_TOLD: usize = 4;
@@ -50,6 +55,8 @@ pub(super) struct Arguments {
     /// The model file (TOML)
     #[arg(long, short)]
     model: PathBuf,
+    #[command(flatten)]
+    columns: ColumnArguments,
     /// What the excitation did between samples; else the model says, or the best one is kept
     #[arg(long, value_parser = PossibleValuesParser::new(Hold::ALL.map(Hold::id)))]
     hold: Option<String>,
@@ -65,32 +72,89 @@ pub(super) struct Arguments {
     /// Laws to recognise from the first sample on, as --save-laws wrote them
     #[arg(long, value_name = "FILE")]
     known_laws: Option<PathBuf>,
-    /// Write the laws that were vouched for into this file (TOML), to be recognised in other recordings
+    /// Write the laws that were validated into this file (TOML), to be recognised in other recordings
     #[arg(long, value_name = "FILE")]
     save_laws: Option<PathBuf>,
+    #[command(flatten)]
+    picture: PictureArguments,
+    /// Overwrite files where they exist
+    #[arg(long)]
+    force: bool,
     /// Print one JSON document instead of text
     #[arg(long)]
     json: bool,
 }
 
+/// What a page tells of a run.
+#[cfg(feature = "pictures")]
+pub(super) struct Told {
+    /// The text that the command prints.
+    pub(super) text: String,
+    /// The picture that it draws.
+    pub(super) figure: crate::report::Figure,
+    /// Value with std, and symbol, of the last stage's coefficients.
+    pub(super) law: Vec<[String; 2]>,
+}
+
+/// Identifies a recording with nothing but a model.
+///
+/// # Errors
+/// What [`run`] refuses.
+#[cfg(feature = "pictures")]
+pub(super) fn told(data: &str, model: &super::input::ModelArguments) -> Result<Told, CommandError> {
+    let arguments = Arguments {
+        data: data.into(),
+        model: model.model.clone(),
+        columns: model.columns.clone(),
+        hold: model.hold.clone(),
+        method: Method::Default.id().into(),
+        false_alarm_interval: Settings::default().false_alarm_interval,
+        trace: None,
+        known_laws: None,
+        save_laws: None,
+        picture: PictureArguments::default(),
+        force: false,
+        json: false,
+    };
+    let (run, course) = run_over(&arguments, None)?;
+    let known = run.found.stages.last().map_or_else(Vec::new, |stage| stage.known().collect());
+    let told = known.iter().filter(|(coefficient, _)| coefficient.value != 0.0);
+    let law = told.map(|(known, std)| [super::words::number(known.value, *std), known.term.symbol()]).collect();
+    Ok(Told { text: text::text(&run), figure: figures::stages(&run.opened, &run.found, &course), law })
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
-    check_targets(arguments)?;
-    let model = data::open_model(&arguments.model)?;
+    let mut targets = Targets::new(inputs(arguments)?, arguments.force);
+    let mut claim =
+        |option, path: &Option<PathBuf>| path.as_deref().map(|path| targets.claim(option, path)).transpose();
+    let trace = claim("--trace", &arguments.trace)?;
+    let laws = claim("--save-laws", &arguments.save_laws)?;
+    let picture = arguments.picture.open(&mut targets)?;
+    let (run, course) = run_over(arguments, trace)?;
+    looked::say(&run.opened);
+    laws.map_or(Ok(()), |laws| save(&laws, &run.found))?;
+    warnings(&run)
+        .iter()
+        .chain(&unsaved(arguments, &run.found))
+        .for_each(|warning| output::complain("warning", warning));
+    picture.map_or(Ok(()), |picture| picture.draw(&figures::stages(&run.opened, &run.found, &course)))?;
+    if arguments.json { output::print_json(&report::Report::of(&run)) } else { output::print(&text::text(&run)) }
+}
+
+/// The run, and how the coefficients went over it.
+fn run_over(arguments: &Arguments, trace: Option<Target>) -> Result<(Run, Course), CommandError> {
+    let mut model = data::open_model(&arguments.model)?;
+    arguments.columns.apply(&mut model)?;
     let opened = data::open_recording(&arguments.data, &model)?;
     let (settings, hold_from) = settings(arguments, &model, &opened.recording)?;
-    let found = identify(arguments, &model, settings, &opened.recording)?;
-    arguments.save_laws.as_deref().map_or(Ok(()), |path| save(path, &found))?;
+    let mut course = Course::new(opened.recording.count());
+    let found = identify(arguments, &model, settings, &opened.recording, trace.as_ref(), &mut course)?;
     let limits = Waiting::on("looking for the limits", || match model.is_force_law() {
         true => force_limits(&model, &found, &opened.recording),
         false => stage_limits(&found, &opened.recording, &settings),
     });
     let gives_force = model.is_force_law();
-    let run = Run { opened, settings, hold_from, gives_force, found, limits };
-    warnings(&run)
-        .iter()
-        .chain(&unsaved(arguments, &run.found))
-        .for_each(|warning| output::complain("warning", warning));
-    if arguments.json { output::print_json(&report::Report::of(&run)) } else { output::print(&text::text(&run)) }
+    Ok((Run { opened, settings, hold_from, gives_force, found, limits }, course))
 }
 
 fn identify(
@@ -98,12 +162,15 @@ fn identify(
     model: &Model,
     settings: Settings,
     recording: &Recording,
+    trace: Option<&Target>,
+    course: &mut Course,
 ) -> Result<Identification, CommandError> {
     let known = arguments.known_laws.as_deref().map(data::open_laws).transpose()?.unwrap_or_default();
     let mut progress = Progress::new(recording.count());
-    let mut trace = arguments.trace.as_deref().map(|path| Trace::create(path, model)).transpose()?;
+    let mut trace = trace.map(|target| Trace::create(target, model)).transpose()?;
     let found = identify::identify_knowing(model, settings, &known, recording, |identifier, index| {
         progress.reached(index);
+        course.push(recording.t()[index], index, identifier);
         if let Some(trace) = &mut trace {
             trace.push(recording.t()[index], identifier);
         }
@@ -123,31 +190,26 @@ fn refused(arguments: &Arguments, source: BuildError) -> CommandError {
     }
 }
 
-/// What is written must not be what is read.
-fn check_targets(arguments: &Arguments) -> Result<(), CommandError> {
+/// What is read.
+fn inputs(arguments: &Arguments) -> Result<Vec<PathBuf>, CommandError> {
     let mut inputs = output::files_of(std::slice::from_ref(&arguments.data))?;
     inputs.push(arguments.model.clone());
     inputs.extend(arguments.known_laws.clone());
-    for (option, path) in [("--trace", &arguments.trace), ("--save-laws", &arguments.save_laws)] {
-        path.as_deref().map_or(Ok(()), |path| output::check_target(option, path, &inputs))?;
-    }
-    Ok(())
+    Ok(inputs)
 }
 
 /// A warning where laws were to be saved, and there is none.
 fn unsaved(arguments: &Arguments, found: &Identification) -> Option<String> {
     let path = arguments.save_laws.as_ref().filter(|_| found.known_laws.laws.is_empty())?;
     Some(format!(
-        "{}: no law was saved, since none was vouched for: this record is too short or too noisy for the model, or the model's form \
+        "{}: no law was saved, since none was validated: this record is too short or too noisy for the model, or the model's form \
          does not explain it (`switchid compare` tells)",
         path.display()
     ))
 }
 
-fn save(path: &Path, found: &Identification) -> Result<(), CommandError> {
-    let file = path.display().to_string();
-    let text = found.known_laws.to_toml().map_err(|error| CommandError::write(&file, error))?;
-    std::fs::write(path, text).map_err(|error| CommandError::write(&file, error))
+fn save(target: &Target, found: &Identification) -> Result<(), CommandError> {
+    target.write(&found.known_laws.to_toml().map_err(|error| CommandError::write("the laws", error))?)
 }
 
 fn settings(

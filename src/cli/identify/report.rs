@@ -3,7 +3,7 @@
 use super::found::{Run, noise, stages};
 use crate::cli::output::Pairs;
 use crate::cli::stage_limit::StageLimit;
-use crate::identify::Stage;
+use crate::identify::{SensorFault, Stage};
 use crate::law::{Units, unit_of};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -15,6 +15,7 @@ pub(super) struct Report {
     output: &'static str,
     stages: Vec<StageReport>,
     noise: Pairs,
+    sensors: Vec<SensorReport>,
     hold: &'static str,
     gaps: Vec<[f64; 2]>,
     skipped: usize,
@@ -27,8 +28,10 @@ struct StageReport {
     start_std: Option<f64>,
     end: f64,
     detected: Option<f64>,
+    /// When the alarm had its name, no sensor's fault, s.
+    named: Option<f64>,
     identified: Option<f64>,
-    /// The same whenever a law returns; null where no law was vouched for.
+    /// The same whenever a law returns; null where no law was validated.
     law_number: Option<u32>,
     recognised: bool,
     /// Whether the law was validated at the stage's end.
@@ -47,6 +50,23 @@ struct StageReport {
     unidentifiable: Vec<String>,
     /// What any method could reach on this stage; null where that is not known.
     limit: Option<LimitReport>,
+}
+
+/// A sensor's fault.
+#[derive(Serialize)]
+struct SensorReport {
+    channel: &'static str,
+    kind: &'static str,
+    start: f64,
+    /// s; null where the record ends before.
+    end: Option<f64>,
+}
+
+impl SensorReport {
+    fn of(fault: &SensorFault) -> SensorReport {
+        let SensorFault { channel, kind, start, end } = *fault;
+        SensorReport { channel, kind: kind.id(), start, end }
+    }
 }
 
 #[derive(Serialize)]
@@ -68,6 +88,7 @@ impl Report {
             output: if run.gives_force { "F" } else { "motion" },
             stages: stages(run).map(|(stage, limit)| StageReport::of(stage, limit, forced, &opened.units)).collect(),
             noise: Pairs(noise(found)),
+            sensors: found.sensors.iter().map(SensorReport::of).collect(),
             hold: settings.hold.id(),
             gaps: opened.recording.gaps().into_iter().map(|gap| [gap.start, gap.end]).collect(),
             skipped: found.skipped.len(),
@@ -82,6 +103,7 @@ impl StageReport {
             start_std: stage.start_std,
             end: stage.end,
             detected: stage.detected,
+            named: stage.named,
             identified: stage.identified,
             law_number: stage.law_number,
             recognised: stage.recognised,

@@ -27,6 +27,10 @@ pub(super) fn text(run: &Run) -> String {
             stage.end
         );
     }
+    for fault in &run.found.sensors {
+        let end = fault.end.map_or_else(|| "the end".into(), |end| format!("{end:.3} s"));
+        let _ = writeln!(text, "sensor of {}: {} from {:.3} s to {end}", fault.channel, fault.kind.id(), fault.start);
+    }
     for (index, (stage, limit)) in stages(run).enumerate() {
         let law = law(stage, limit, run.settings.channels.excitation, &run.opened.units);
         let drifting = if stage.drifting { " (drifting; its last coefficients)" } else { "" };
@@ -109,7 +113,7 @@ fn explained(stage: &Stage) -> String {
     stage.explained.map_or_else(String::new, line)
 }
 
-/// `q^3: not known yet, about 1.4 s more of such motion`, a line for each coefficient that a law to vouch for needs better.
+/// `q^3: not known yet, about 1.4 s more of such motion`, a line for each coefficient that a validated law needs better.
 fn lacking(stage: &Stage) -> String {
     let last = stage.lacking().map(|(_, seconds)| seconds).fold(0.0, f64::max);
     let line = |(term, seconds): (Term, f64)| {

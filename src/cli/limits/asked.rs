@@ -2,6 +2,7 @@
 
 use crate::cli::error::CommandError;
 use crate::cli::input::{ModelArguments, is_noiseless};
+use crate::cli::pictures::PictureArguments;
 use crate::estimation::Noise;
 use crate::identify::{Recording, Settings};
 use crate::law::{Model, ModelError, Term};
@@ -39,6 +40,11 @@ pub(in crate::cli) struct Arguments {
     /// Mean time between two false alarms that a detector is allowed
     #[arg(long, value_name = "S", allow_negative_numbers = true, default_value_t = Settings::default().false_alarm_interval)]
     false_alarm_interval: f64,
+    #[command(flatten)]
+    pub(super) picture: PictureArguments,
+    /// Overwrite files where they exist
+    #[arg(long)]
+    pub(super) force: bool,
     /// Print one JSON document instead of text
     #[arg(long)]
     pub(super) json: bool,

@@ -79,6 +79,12 @@ fn std<'a>(found: &'a Limits) -> impl Iterator<Item = (Term, f64, Option<f64>)> 
     sought.map(|(index, std)| (terms[*index], values[*index], *std))
 }
 
+/// The smallest std of each coefficient that is determined, ÷ its value, with both in words.
+pub(super) fn bars(found: &Limits) -> Vec<(String, f64, String)> {
+    let known = std(found).filter_map(|(term, value, std)| Some((term, value, std?)));
+    known.map(|(term, value, std)| (term.name(), 100.0 * (std / value).abs(), number(value, std))).collect()
+}
+
 fn together(terms: &[Term]) -> String {
     let names: Vec<String> = terms.iter().map(|term| term.name()).collect();
     if names.len() > 1 { names.join(" and ") + " together" } else { names.concat() }

@@ -5,10 +5,11 @@
 //! would be were the law right.
 
 use super::coefficients::{Estimate, Held, best_coefficients};
-use super::force::left_over;
+use super::force::{Left, left_over};
 use super::free_run::{Distance, FreeRun, variance};
 use super::locate::{Fail, locate};
 use super::record::{Balance, Record};
+use super::spectrum::spectrum;
 use super::window::{choose_window, periods};
 use crate::diagnose::judge::Target;
 use crate::diagnose::verdict::{Law, Posed, WindowError, are_adequate};
@@ -74,6 +75,8 @@ pub struct Side {
     pub judged: Option<Judged>,
     /// Where it fails, the most evident place first; none where the error is spread evenly or is noise.
     pub fails: Vec<Fail>,
+    /// What it leaves over of the force, along the motion.
+    pub left: Vec<Left>,
 }
 
 /// What comparing a model with recordings tells.
@@ -125,6 +128,15 @@ impl Error {
     /// Residual ÷ noise floor.
     pub fn ratio(&self) -> f64 {
         if self.noise_floor > 0.0 { self.force_residual / self.noise_floor } else { f64::INFINITY }
+    }
+}
+
+impl Side {
+    /// Energy over frequency (Hz) of what is left over and of the force; empty where the record is too short.
+    pub fn spectrum(&self, period: f64) -> Vec<[f64; 3]> {
+        let Some(found) = spectrum(&self.left, period) else { return Vec::new() };
+        let energies = found.bins.energy.iter().zip(&found.bins.baseline).enumerate();
+        energies.map(|(bin, (energy, force))| [(bin + 1) as f64 * found.width, *energy, *force]).collect()
     }
 }
 
@@ -226,8 +238,9 @@ fn side(law: Estimate, records: &[Record], expressions: &[Expression], [window, 
     let error = totals.iter().fold(Totals::default(), |sum, totals| sum.and(totals)).error();
     let inertia = law.terms.iter().position(|term| *term == Term::Inertia);
     let noisy = error.ratio() <= NOISE_RATIO;
-    let left = if noisy { Vec::new() } else { left_over(records, &law.coefficients, inertia, window) };
-    Side { error, judged: None, fails: locate(&left, period), each: totals.iter().map(Totals::error).collect(), law }
+    let left = left_over(records, &law.coefficients, inertia, window);
+    let fails = if noisy { Vec::new() } else { locate(&left, period) };
+    Side { error, judged: None, fails, left, each: totals.iter().map(Totals::error).collect(), law }
 }
 
 impl Totals {

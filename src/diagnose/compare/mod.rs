@@ -17,4 +17,5 @@ mod window;
 
 pub use coefficients::{Estimate, Held};
 pub use comparison::{Comparison, Error, Judged, NOISE_RATIO, Options, Side, Verdict, compare};
+pub use force::{Left, Place};
 pub use locate::{Bounds, Fail, Over};

@@ -44,8 +44,9 @@ fn responses(record: &Record, term: Term) -> Option<Vec<Column>> {
     let (omega, damping) = (frequency.value(), damping_ratio.value());
     let swings = omega * (1.0 - damping * damping).sqrt();
     let fades = omega * damping;
-    let of =
-        |piece: usize, shape: fn(f64) -> f64| record.in_piece(piece, move |t| (-fades * t).exp() * shape(swings * t));
+    let of = |piece: usize, shape: fn(f64) -> f64| {
+        record.acting(|own, t| if own == piece { (-fades * t).exp() * shape(swings * t) } else { 0.0 })
+    };
     let both = |piece: usize| [of(piece, f64::cos), of(piece, f64::sin)];
     (damping < 1.0).then(|| (0..record.pieces()).flat_map(both).collect())
 }

@@ -6,6 +6,7 @@
 
 mod beginning;
 mod drift;
+mod driven;
 mod equation;
 mod estimate;
 mod floor;
@@ -20,7 +21,7 @@ pub(super) use drift::{Drift, drift};
 pub use equation::Target;
 pub(super) use equation::{Equation, delay_of};
 pub(super) use estimate::{Estimate, estimate};
-pub(super) use floor::{Bootstrap, floor, noise_share};
+pub(super) use floor::{Bootstrap, Trial, floor, floor_of_law, noise_share};
 pub(super) use held_out::{Folds, HeldOut, Screen};
 pub(super) use instruments::instrumented;
 pub use record::Timing;

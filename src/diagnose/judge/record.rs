@@ -185,13 +185,11 @@ impl Record {
         self.nodes.len()
     }
 
-    /// A function of the time since a piece began, s, as a force; 0 in all other pieces.
-    pub(super) fn in_piece(&self, number: usize, value: impl Fn(f64) -> f64) -> Column {
+    /// A function of a piece's number and the time since it began, s, as a force.
+    pub(super) fn acting(&self, value: impl Fn(usize, f64) -> f64) -> Column {
         let mut column = [0, 1, 2].map(|which| vec![0.0; self.windows[which].rows()]);
         let own = |(index, (.., nodes)): (usize, &(usize, usize, Nodes))| {
-            let inside = index == number;
-            let values: Vec<f64> = nodes.elapsed().map(|t| if inside { value(t) } else { 0.0 }).collect();
-            nodes.integrals(&values)
+            nodes.integrals(&nodes.elapsed().map(|t| value(index, t)).collect::<Vec<f64>>())
         };
         self.add(0, &self.nodes.iter().enumerate().map(own).collect(), 1.0, &mut column);
         column

@@ -3,8 +3,8 @@
 use super::errors::{TIE, WindowError, are_adequate, errors};
 use super::law::Law;
 use crate::diagnose::judge::{
-    Blocks, Bootstrap, COUNT, Equation, Estimate, Folds, HeldOut, Record, Target, Timing, delay_of, estimate, floor,
-    instrumented, noise_share,
+    Blocks, Bootstrap, COUNT, Equation, Estimate, Folds, HeldOut, Record, Target, Timing, Trial, delay_of, estimate,
+    floor, floor_of_law, instrumented, noise_share,
 };
 use crate::identify::Recording;
 use crate::law::{Expression, Hold, Term};
@@ -197,20 +197,43 @@ impl Case {
         let held = self.folds.judge(&equation);
         let blocks = Blocks::new(&self.record, &held);
         let estimate = estimate(&self.record, &equation, &blocks, self.inertia)?;
-        let same = |other: &Record| Equation::new(other, &equation.terms, self.target, equation.timing, true);
-        let floor = floor(&equation, &estimate.solutions, &self.bootstrap.map(same), &held.errors, Some(&self.folds));
+        let (coefficients, solutions) = (&estimate.coefficients, &estimate.solutions);
+        let (errors, folds) = (&held.errors, Some(&self.folds));
+        let floor = floor(&Trial { equation: &equation, coefficients, solutions, errors, folds }, &self.bootstrap);
         Some(Standing { equation, held, estimate, floor, blocks })
+    }
+
+    /// The same standing beside what the sensors leave of the motion that the law itself makes, where more is left than of a smooth one.
+    pub(in crate::diagnose) fn settled(&self, standing: Standing) -> Standing {
+        if are_adequate(&self.errors_of(&standing)) {
+            return standing;
+        }
+        let Standing { equation, held: HeldOut { errors, .. }, estimate, .. } = &standing;
+        let (coefficients, solutions) = (&estimate.coefficients, &estimate.solutions);
+        let trial = Trial { equation, coefficients, solutions, errors, folds: Some(&self.folds) };
+        let floor = self.raised(&trial, standing.floor);
+        Standing { floor, ..standing }
+    }
+
+    /// The floor, or that of a law that makes the motion itself, where it is higher.
+    fn raised(&self, trial: &Trial, floor: [f64; COUNT]) -> [f64; COUNT] {
+        let force = self.record.force_noise(self.record.is_output);
+        let own = floor_of_law(trial, &self.record, force).unwrap_or(floor);
+        std::array::from_fn(|which| floor[which].max(own[which]))
     }
 
     /// Errors of a law whose numbers are held, over all windows, and whether they are what the sensors alone would leave.
     pub(in crate::diagnose) fn errors_as_given(&self, law: &Law) -> Option<([WindowError; COUNT], bool)> {
-        let equation = Equation::new(&self.record, &law.terms, self.target, law.timing, false);
+        let equation = &Equation::new(&self.record, &law.terms, self.target, law.timing, false);
         let solution = equation.solution(&law.coefficients, self.record.forced)?;
-        let solutions = [solution.clone(), solution.clone(), solution];
-        let held = HeldOut::as_given(&equation, &solutions);
-        let same = |other: &Record| Equation::new(other, &equation.terms, self.target, equation.timing, false);
-        let floor = floor(&equation, &solutions, &self.bootstrap.map(same), &held.errors, None);
-        let errors = errors(&self.record, &held, &held, &floor);
+        let solutions = &[solution.clone(), solution.clone(), solution];
+        let held = HeldOut::as_given(equation, solutions);
+        let trial = Trial { equation, coefficients: &law.coefficients, solutions, errors: &held.errors, folds: None };
+        let first = floor(&trial, &self.bootstrap);
+        let mut errors = errors(&self.record, &held, &held, &first);
+        if !are_adequate(&errors) {
+            errors = super::errors::errors(&self.record, &held, &held, &self.raised(&trial, first));
+        }
         Some((errors, are_adequate(&errors)))
     }
 

@@ -345,6 +345,8 @@ fn conclude(
     entries: &[Entry],
     (ties, tried): (Vec<Vec<String>>, usize),
 ) -> Diagnosis {
+    let improved = improved.map(|improved| case.settled(improved));
+    let standing = if improved.is_none() { case.settled(standing) } else { standing };
     let adequate = are_adequate(&case.errors_of(&standing));
     let finding = match &improved {
         Some(_) => Finding::Missing,

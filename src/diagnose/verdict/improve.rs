@@ -142,7 +142,7 @@ impl Search<'_> {
         Step {
             effect: effect.map(|effect| effect_name(effect, &self.case.record.expressions)),
             ties: ties.unwrap_or_default(),
-            errors: self.case.errors_of(standing),
+            errors: self.case.errors_of(&self.case.settled(standing.clone())),
             law: self.case.law(standing),
         }
     }

@@ -62,13 +62,13 @@ impl Posed {
 
     /// The law of the model's form, and its held-out errors by window length (before and after alike).
     pub fn law(&self) -> Option<(Law, [WindowError; COUNT])> {
-        let standing = self.case.stand(&self.terms)?;
+        let standing = self.case.settled(self.case.stand(&self.terms)?);
         Some((self.case.law(&standing), self.case.errors_of(&standing)))
     }
 
     /// Held-out errors of a law of these terms on the recordings, by window length. None where they are too short for it.
     pub fn errors(&self, terms: &[Term]) -> Option<[WindowError; COUNT]> {
-        Some(self.case.errors_of(&self.case.stand(terms)?))
+        Some(self.case.errors_of(&self.case.settled(self.case.stand(terms)?)))
     }
 
     /// Errors of a law whose numbers are held, and whether they are what the sensors alone would leave.

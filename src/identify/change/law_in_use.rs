@@ -82,14 +82,19 @@ impl LawInUse {
     /// Takes a sample; returns what it says of a switch, readings that do not count included.
     pub fn step(&mut self, problem: &Problem, observation: &Observation) -> [Option<Innovation>; 2] {
         let motion = Motion { terms: &problem.terms, coefficients: &self.all };
-        let sensor = [0, 1].map(|channel| self.noise.sensor[channel] * self.adaptive.factor(channel));
-        let noise = Noise { process: self.noise.process + self.uncertainty(), sensor };
+        let noise = self.noise_now();
         let innovations = self.run.step(&motion, &problem.free_terms, &noise, observation);
         self.adaptive.add(&innovations, &observation.measured);
         self.follow_slopes(observation.dt, problem.free_inertia());
         let [q, qd] = innovations;
         let [q_aside, qd_aside] = self.run.set_aside;
         [q.or(q_aside), qd.or(qd_aside)]
+    }
+
+    /// The sensors' noise as it is now, and what the law leaves open.
+    pub fn noise_now(&self) -> Noise {
+        let sensor = [0, 1].map(|channel| self.noise.sensor[channel] * self.adaptive.factor(channel));
+        Noise { process: self.noise.process + self.uncertainty(), sensor }
     }
 
     /// Slopes after an interval. The inertia's goes with the acceleration, which a rough excitation turns around faster

@@ -240,6 +240,7 @@ impl ForceTracker {
         output.switch_time = switch.time;
         output.switch_time_std = Some(switch.std);
         output.detection_time = Some(now);
+        output.named_time = output.detection_time;
         output.identified_time = None;
     }
 

@@ -22,7 +22,7 @@ use crate::law::Term;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// Laws that an identifier vouched for.
+/// Laws that an identifier has validated.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SavedLaws {

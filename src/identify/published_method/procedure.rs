@@ -202,6 +202,7 @@ impl Publication {
         output.switch_count += 1;
         output.switch_time = now.t;
         output.detection_time = Some(now.t);
+        output.named_time = output.detection_time;
         output.identified_time = None;
         output.valid = false;
         output.status = Status::ReIdentifying;

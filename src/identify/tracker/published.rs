@@ -29,6 +29,8 @@ pub(super) struct Switches {
     pub(super) time_std: Option<f64>,
     /// Time of its alarm, s.
     pub(super) detection_time: Option<f64>,
+    /// Time at which it had its name, s.
+    pub(super) named_time: Option<f64>,
 }
 
 impl Published {

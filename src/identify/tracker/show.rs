@@ -14,6 +14,9 @@ impl Tracker {
         self.foretell(problem);
         shown.copy_from_slice(&self.published.coefficients);
         *output = self.output();
+        output.valid &= self.is_fresh();
+        let unknown = shown.iter().any(|coefficient| coefficient.std.is_none());
+        output.valid &= !unknown;
         if output.drifting {
             return;
         }
@@ -24,7 +27,6 @@ impl Tracker {
             let sensor = Setup { problem, settings }.first_noise(&self.difference_noise);
             output.explained = self.weak_form.publish(problem, sensor, shown);
         }
-        output.valid &= stated == problem.n();
     }
 
     fn output(&self) -> Output {
@@ -37,7 +39,9 @@ impl Tracker {
             identified_time: self.regime.identified_time(),
             law_number: self.regime.law().map(|law| law.number),
             recognised: self.regime.recognition().is_some(),
-            status: self.regime.status(),
+            sensors: self.sensors(),
+            named_time: published.switches.named_time,
+            status: self.status(),
             valid: self.regime.is_valid(),
             drifting: self.regime.is_drifting(),
             deviation: prediction.shown_deviation,

@@ -7,6 +7,7 @@ use crate::estimation::DifferenceNoise;
 use crate::evidence::Bank;
 use crate::identify::change::{EmpiricalNull, LawInUse, Prediction};
 use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
+use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition, Scatter};
 use crate::identify::functional::WeakForm;
 use crate::identify::problem::Problem;
 use crate::identify::segment::{MotionScales, Segment, WeakStart};
@@ -43,6 +44,8 @@ pub(super) struct Setup<'a> {
 /// The identifier of a law of motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Tracker {
+    /// Readings that may be a sensor's fault, on their way into the record.
+    pub(super) intake: Intake,
     pub(super) window: Window,
     pub(super) regime: Regime,
     pub(super) published: Published,
@@ -65,6 +68,21 @@ pub struct Tracker {
     pub(super) weak_form: WeakForm,
     /// The sensors' noise before any law.
     pub(super) difference_noise: DifferenceNoise,
+}
+
+/// What stands between the stream and the record.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Intake {
+    pub(super) excitation: ExcitationGate,
+    pub(super) quarantine: Quarantine,
+    pub(super) scatter: Scatter,
+    pub(super) after_outage: AfterOutage,
+    /// Whether an alarm waits for the decision between another law and an offset.
+    pub(super) undecided: bool,
+    /// How often F repeats its value.
+    pub(super) force: Repetition,
+    /// Whether F has been found stuck and has not varied since.
+    pub(super) force_lost: bool,
 }
 
 /// How far the fit of the record has come.
@@ -150,6 +168,15 @@ impl Tracker {
         let n = problem.n();
         let capacity = (settings.max_window / settings.sample_time).ceil() as usize;
         Tracker {
+            intake: Intake {
+                excitation: ExcitationGate::default(),
+                quarantine: Quarantine::new(),
+                scatter: Scatter::default(),
+                after_outage: AfterOutage::new(),
+                undecided: false,
+                force: Repetition::default(),
+                force_lost: false,
+            },
             window: Window::new(capacity, problem.channels, problem.hold),
             regime: Regime::Acquiring,
             published: Published::new(problem),

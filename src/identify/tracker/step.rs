@@ -5,8 +5,7 @@ use super::state::{Setup, Tracker, YOUNG};
 use crate::evidence::Law;
 use crate::identify::change::SUSPENSE;
 use crate::identify::problem::Problem;
-use crate::identify::sample::Sample;
-use crate::identify::settings::Settings;
+use crate::identify::reading::Reading;
 use crate::identify::validation::TRUSTED;
 
 /// A hypothesis starts every so many samples.
@@ -32,20 +31,22 @@ const LASTS: u32 = 3;
 const ROUGHLY: u64 = 500;
 
 impl Tracker {
-    /// Takes an accepted sample.
-    pub fn step(&mut self, problem: &Problem, settings: &Settings, sample: Sample) {
-        let setup = Setup { problem, settings };
+    /// Takes a reading into the record.
+    pub(super) fn take(&mut self, setup: Setup, reading: Reading) {
+        let (problem, sample) = (setup.problem, reading.sample);
         if self.window.end() == 0 {
             self.published.switches.time = sample.t;
             self.start.begin(0);
         }
         let switches = self.published.switches.count;
-        self.window.push(sample);
+        self.window.push(reading);
         self.weak_form.step(problem, sample);
         if self.window.end().is_multiple_of(REST_EVERY) {
             self.weak_form.rest(problem, setup.first_noise(&self.difference_noise));
         }
-        self.measure_noise(problem);
+        if reading.faulty == [false; 2] {
+            self.measure_noise(problem);
+        }
         self.follow(setup);
         if self.regime.seeks_constant_law() {
             self.seek_constant_law(setup);
@@ -85,7 +86,8 @@ impl Tracker {
                 return;
             }
             monitor.bank.step(&monitor.law.run.map, &innovations);
-            let sample = self.window.sample(number);
+            self.weigh_faults(setup, number, &innovations);
+            let (sample, monitor) = (self.window.sample(number), &mut self.monitor);
             monitor.prediction.step(setup.problem, setup.settings, &monitor.law, sample, &observation);
             if number.is_multiple_of(SPAWN_EVERY) {
                 self.suppose_switch_after(number);
@@ -128,6 +130,10 @@ impl Tracker {
 
     /// Whether a suspicion is so young that the law in use must not be renewed.
     fn is_in_suspense(&self) -> bool {
+        // what comes after an outage may have an offset, and no law must be fitted to that
+        if self.intake.after_outage.is_open() && self.regime.law().is_some() {
+            return true;
+        }
         self.regime.suspected_since().is_some_and(|since| self.window.end() < since + SUSPENSE)
     }
 
@@ -218,6 +224,8 @@ impl Tracker {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identify::sample::Sample;
+    use crate::identify::settings::Settings;
     use crate::identify::tracker::regime::letter;
     use crate::law::{Given, Model};
     use crate::simulate::{Builtin, Scenario, record};

@@ -23,7 +23,12 @@ impl Tracker {
         let unusual = suspect.evidence > decision.unusual(threshold);
         monitor.unusual_since = unusual.then(|| monitor.unusual_since.unwrap_or(end));
         let deviates = self.monitor.prediction.deviates(setup.settings, self.now());
-        if suspect.evidence > threshold || deviates {
+        let alarms = suspect.evidence > threshold || deviates;
+        self.intake.undecided &= alarms;
+        if alarms && self.is_fault(suspect, threshold) {
+            return;
+        }
+        if alarms {
             match self.moves_again() {
                 Some(follower) => self.begin_drift(follower),
                 None => self.switch(setup.problem, suspect, threshold),
@@ -88,6 +93,7 @@ impl Tracker {
         if self.is_superseded(instant) {
             return self.supersede();
         }
+        self.intake.after_outage.end();
         self.keep_law(problem);
         self.set_spread(problem);
         self.belief.scales.remember(&self.segment.scales, 1.0);
@@ -135,6 +141,7 @@ impl Tracker {
         switches.count += 1;
         switches.time = self.window.sample(instant).t;
         switches.time_std = distance.map(|distance| distance.hypot(interval));
+        switches.named_time = Some(self.intake.quarantine.now());
         switches.detection_time = Some(self.window.sample(self.window.end() - 1).t);
         self.published.missing = None;
     }

@@ -1,4 +1,4 @@
-//! When a law is good enough: to be shown, to be weighed against a switch, to be vouched for.
+//! When a law is good enough: to be shown, to be weighed against a switch, to be validated.
 //!
 //! - `bounds`: what its stated error may be;
 //! - `stability`: what a wrong structure or a wrong minimum makes up does not survive more data;

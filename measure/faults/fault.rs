@@ -1,0 +1,225 @@
+//! Faults of sensors, clocks and masters, put into readings.
+
+use crate::{COURSE, NOISE};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::ops::Range;
+use switchid::simulate::{Builtin, Reading};
+
+/// Sizes of a burst's readings, in σ.
+const SIZES: [f64; 6] = [3.0, 10.0, 30.0, 100.0, 300.0, 1000.0];
+
+/// Samples of a short burst.
+const SHORT: [usize; 5] = [2, 3, 5, 10, 20];
+
+/// An offset that a sensor returns with, m.
+const OFFSET: f64 = 0.05;
+
+/// A glitch of F, in amplitudes.
+const GLITCH: f64 = 2.5;
+
+/// A channel, or both of the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Of {
+    Q,
+    Qd,
+    Both,
+    F,
+}
+
+/// What happens to a record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// Nothing.
+    Clean,
+    /// 2 to 20 readings are wide draws of 3 to 1000 σ.
+    Burst(Of),
+    /// 50 readings of both channels are.
+    LongBurst,
+    /// The reading stays as it is for 1 s.
+    Stuck(Of),
+    /// The reading is 0 for 1 s.
+    Zero(Of),
+    /// One F is 2.5 amplitudes off.
+    Glitch,
+    /// One F is 1e100.
+    HugeForce,
+    /// Ten q are 1e300.
+    HugeDisplacement,
+    /// Every channel is NaN for 5 s.
+    NotANumber,
+    /// No samples for this many s.
+    Gap(u32),
+    /// The displacement is off by 0.05 from a gap of 1 s on.
+    Offset,
+    /// One time stamp is 1e6.
+    Stamp,
+    /// q and q̇ come one sample late against F, throughout.
+    Late,
+    /// One sample in so many is kept: F moves within the step, and is not held.
+    Coarse(usize),
+}
+
+impl Fault {
+    /// All of them, in the order of the table.
+    pub const ALL: [Fault; 25] = [
+        Fault::Clean,
+        Fault::Burst(Of::Q),
+        Fault::Burst(Of::Qd),
+        Fault::Burst(Of::Both),
+        Fault::LongBurst,
+        Fault::Stuck(Of::Q),
+        Fault::Stuck(Of::Qd),
+        Fault::Stuck(Of::F),
+        Fault::Zero(Of::Q),
+        Fault::Zero(Of::Qd),
+        Fault::Zero(Of::Both),
+        Fault::Zero(Of::F),
+        Fault::Glitch,
+        Fault::HugeForce,
+        Fault::HugeDisplacement,
+        Fault::NotANumber,
+        Fault::Gap(1),
+        Fault::Gap(5),
+        Fault::Offset,
+        Fault::Stamp,
+        Fault::Late,
+        Fault::Coarse(2),
+        Fault::Coarse(5),
+        Fault::Coarse(10),
+        Fault::Coarse(20),
+    ];
+
+    /// Its name in the table.
+    pub fn id(self) -> String {
+        match self {
+            Fault::Clean => "clean".into(),
+            Fault::Burst(of) => format!("burst of 2 to 20, {}", of.id()),
+            Fault::LongBurst => "burst of 50, q and qd".into(),
+            Fault::Stuck(of) => format!("stuck 1 s, {}", of.id()),
+            Fault::Zero(of) => format!("zero 1 s, {}", of.id()),
+            Fault::Glitch => "glitch of F".into(),
+            Fault::HugeForce => "one F = 1e100".into(),
+            Fault::HugeDisplacement => "ten q = 1e300".into(),
+            Fault::NotANumber => "NaN 5 s".into(),
+            Fault::Gap(seconds) => format!("gap {seconds} s"),
+            Fault::Offset => "offset 0.05 of q after a gap".into(),
+            Fault::Stamp => "one time stamp 1e6".into(),
+            Fault::Late => "q, qd one sample late".into(),
+            Fault::Coarse(step) => format!("steps of {step} ms, hold wrong"),
+        }
+    }
+
+    /// Whether it can happen to the plant: white noise that is sampled too seldom is not known at all.
+    pub fn suits(self, plant: Builtin) -> bool {
+        let white = matches!(plant, Builtin::DuffingWhite | Builtin::VanDerPolWhite);
+        !(white && matches!(self, Fault::Coarse(_)))
+    }
+
+    /// How long it lasts, s; nothing where it is not a matter of time.
+    fn lasts(self) -> f64 {
+        match self {
+            Fault::Stuck(_) | Fault::Zero(_) | Fault::Offset => 1.0,
+            Fault::NotANumber => 5.0,
+            Fault::Gap(seconds) => f64::from(seconds),
+            _ => 0.0,
+        }
+    }
+
+    /// Puts it into the readings; returns the time of the last faulty one, s.
+    pub fn apply(self, readings: &mut Vec<Reading>, seed: u64) -> f64 {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xfa17);
+        let first = readings.partition_point(|reading| reading.t < COURSE[0]);
+        let last = readings.partition_point(|reading| reading.t < COURSE[0] + self.lasts());
+        let mut end = last;
+        match self {
+            Fault::Clean => {}
+            Fault::Burst(of) => {
+                end = first + SHORT[generator.random_range(0..SHORT.len())];
+                burst(&mut readings[first..end], of, &mut generator);
+            }
+            Fault::LongBurst => {
+                end = first + 50;
+                burst(&mut readings[first..end], Of::Both, &mut generator);
+            }
+            Fault::Stuck(of) => {
+                let before = readings[first - 1];
+                readings[first..last].iter_mut().for_each(|reading| of.set(reading, &before));
+            }
+            Fault::Zero(of) => {
+                let zero = Reading { t: 0.0, q: 0.0, qd: 0.0, excitation: 0.0 };
+                readings[first..last].iter_mut().for_each(|reading| of.set(reading, &zero));
+            }
+            Fault::Glitch => {
+                let most = readings.iter().map(|reading| reading.excitation.abs()).fold(0.0, f64::max);
+                readings[first].excitation += GLITCH * most * sign(&mut generator);
+            }
+            Fault::HugeForce => readings[first].excitation = 1e100,
+            Fault::HugeDisplacement => {
+                end = first + 10;
+                readings[first..end].iter_mut().for_each(|reading| reading.q = 1e300);
+            }
+            Fault::NotANumber => readings[first..last].iter_mut().for_each(|reading| {
+                (reading.q, reading.qd, reading.excitation) = (f64::NAN, f64::NAN, f64::NAN);
+            }),
+            Fault::Gap(_) => drop(readings.drain(first..last)),
+            Fault::Offset => {
+                drop(readings.drain(first..last));
+                readings[first..].iter_mut().for_each(|reading| reading.q += OFFSET);
+                end = first;
+            }
+            Fault::Stamp => readings[first].t = 1e6,
+            Fault::Late => late(readings),
+            Fault::Coarse(step) => *readings = readings.iter().step_by(step).copied().collect(),
+        }
+        match self {
+            Fault::Stamp => COURSE[0],
+            Fault::Late | Fault::Coarse(_) => COURSE[0],
+            _ => readings[end.clamp(first + 1, readings.len()) - 1].t.min(COURSE[0] + self.lasts().max(0.05)),
+        }
+    }
+}
+
+impl Of {
+    fn id(self) -> &'static str {
+        match self {
+            Of::Q => "q",
+            Of::Qd => "qd",
+            Of::Both => "q and qd",
+            Of::F => "F",
+        }
+    }
+
+    fn set(self, reading: &mut Reading, from: &Reading) {
+        match self {
+            Of::Q => reading.q = from.q,
+            Of::Qd => reading.qd = from.qd,
+            Of::Both => (reading.q, reading.qd) = (from.q, from.qd),
+            Of::F => reading.excitation = from.excitation,
+        }
+    }
+}
+
+fn burst(readings: &mut [Reading], of: Of, generator: &mut ChaCha8Rng) {
+    let size = NOISE * SIZES[generator.random_range(0..SIZES.len())];
+    for reading in readings {
+        let off = [0, 1].map(|_| size * generator.random_range(0.5..1.5) * sign(generator));
+        if of != Of::Qd {
+            reading.q += off[0];
+        }
+        if of != Of::Q {
+            reading.qd += off[1];
+        }
+    }
+}
+
+fn late(readings: &mut [Reading]) {
+    let indices: Range<usize> = 1..readings.len();
+    for index in indices.rev() {
+        (readings[index].q, readings[index].qd) = (readings[index - 1].q, readings[index - 1].qd);
+    }
+}
+
+fn sign(generator: &mut ChaCha8Rng) -> f64 {
+    if generator.random_bool(0.5) { 1.0 } else { -1.0 }
+}

@@ -1,0 +1,148 @@
+//! One record through the identifier, judged by its truth.
+
+use crate::fault::Fault;
+use crate::{COURSE, Failure};
+use switchid::identify::{Coefficient, Identifier, Sample, Settings};
+use switchid::law::{Drive, Model, State};
+use switchid::limits::{Course, Law, Sensors, detection, level};
+use switchid::simulate::{Plant, Reading, Scenario};
+
+/// A law is wrong from this e on.
+const WRONG: f64 = 0.05 * 0.05;
+
+/// Std that no honest error is beyond.
+const BEYOND: f64 = 6.0;
+
+/// Time after a true switch in which a wrong law counts for nothing, s.
+const ALLOWED: f64 = 1.0;
+
+/// How long before the fault a law has to be valid, s.
+const BEFORE: f64 = 0.01;
+
+/// What was seen of one record.
+#[derive(Clone, Debug, Default)]
+pub struct Seen {
+    /// Time valid and wrong, s.
+    pub wrong: f64,
+    /// Time valid with a coefficient beyond 6 of its std, s.
+    pub dishonest: f64,
+    /// False switches from the fault on.
+    pub false_switches: u32,
+    /// Whether a law was valid just before the fault.
+    pub valid_before: bool,
+    /// From the last faulty sample until a law is valid, s; infinite where none is before the switch.
+    pub valid_again: f64,
+    /// Delay of the switch's name, s; infinite where it is missed.
+    pub named: f64,
+    /// Limit of that delay, s.
+    pub limit: f64,
+    /// Samples with `valid`, and of those with a coefficient of unknown std.
+    pub valid: [u64; 2],
+}
+
+/// The motion without noise beside what sensors say of it.
+struct Recorded {
+    readings: Vec<Reading>,
+    states: Vec<State>,
+}
+
+fn record(scenario: &Scenario) -> Result<Recorded, Failure> {
+    let mut plant = Plant::new(scenario.clone())?;
+    let sample_time = scenario.excitation.sample_time;
+    let mut recorded = Recorded { readings: Vec::new(), states: Vec::new() };
+    for index in 0..(scenario.duration / sample_time) as u64 {
+        plant.advance_to(index as f64 * sample_time)?;
+        recorded.readings.push(plant.reading());
+        recorded.states.push(plant.truth().state);
+    }
+    Ok(recorded)
+}
+
+/// Steps a new identifier over the scenario's record with the fault in it.
+pub fn watch(model: &Model, scenario: &Scenario, fault: Fault, seed: u64) -> Result<Seen, Failure> {
+    let recorded = record(scenario)?;
+    let mut readings = recorded.readings.clone();
+    let last = fault.apply(&mut readings, seed);
+    let mut identifier = Identifier::new(model, Settings::default())?;
+    let none = f64::INFINITY;
+    let mut seen = Seen { valid_again: none, named: none, limit: limit(scenario, &recorded)?, ..Seen::default() };
+    let (mut before, mut count) = (0.0, 0);
+    for reading in readings {
+        let sample = Sample { t: reading.t, q: reading.q, qd: reading.qd, excitation: reading.excitation };
+        // what is skipped leaves the outputs as the identifier has them
+        identifier.step(sample).ok();
+        let t = if reading.t < COURSE[2] { reading.t } else { before };
+        seen.take(&identifier, scenario, t, t - before, last);
+        let switches = identifier.output().switch_count;
+        if switches != count {
+            seen.alarm(t, switches.saturating_sub(count));
+        }
+        (before, count) = (t, switches);
+    }
+    Ok(seen)
+}
+
+impl Seen {
+    fn take(&mut self, identifier: &Identifier, scenario: &Scenario, t: f64, dt: f64, last: f64) {
+        let valid = identifier.output().valid;
+        if t < COURSE[0] - BEFORE {
+            self.valid_before = valid;
+        } else if valid && t > last && t < COURSE[1] {
+            self.valid_again = self.valid_again.min(t - last);
+        }
+        if !valid {
+            return;
+        }
+        let coefficients = identifier.coefficients();
+        self.valid[0] += 1;
+        self.valid[1] += u64::from(coefficients.iter().any(|known| known.std.is_none()));
+        let stage = scenario.stage_at(t);
+        let since = t - scenario.stages[stage].start;
+        if stage > 0 && since < ALLOWED {
+            return;
+        }
+        let [error, z] = errors(coefficients, scenario, stage);
+        self.wrong += if error > WRONG { dt } else { 0.0 };
+        self.dishonest += if z > BEYOND { dt } else { 0.0 };
+    }
+
+    fn alarm(&mut self, t: f64, count: u32) {
+        match t < COURSE[1] {
+            true if t >= COURSE[0] => self.false_switches += count,
+            true => {}
+            false if self.named.is_infinite() => {
+                (self.named, self.false_switches) = (t - COURSE[1], self.false_switches + count - 1)
+            }
+            false => self.false_switches += count,
+        }
+    }
+}
+
+/// e of eq. (8), and the largest error ÷ stated std.
+fn errors(published: &[Coefficient], scenario: &Scenario, stage: usize) -> [f64; 2] {
+    let truth = &scenario.stages[stage].coefficients;
+    let of = |known: &Coefficient| scenario.terms.iter().position(|term| *term == known.term).map_or(0.0, |i| truth[i]);
+    let square: f64 = published.iter().map(|known| (known.value - of(known)).powi(2)).sum();
+    let z = |known: &Coefficient| known.std.filter(|std| *std > 0.0).map(|std| (known.value - of(known)).abs() / std);
+    let worst = published.iter().filter_map(z).fold(0.0, f64::max);
+    [square / truth.iter().map(|value| value * value).sum::<f64>(), worst]
+}
+
+/// The limit of the delay at the switch, s; infinite where it cannot be seen.
+fn limit(scenario: &Scenario, recorded: &Recorded) -> Result<f64, Failure> {
+    let law = |stage: usize| {
+        let pairs: Vec<_> = scenario.terms.iter().copied().zip(scenario.stages[stage].coefficients.clone()).collect();
+        Law::new(&pairs, &(0..pairs.len()).collect::<Vec<_>>())
+    };
+    let from = recorded.readings.partition_point(|reading| reading.t < COURSE[1] - 1e-9);
+    let readings = &recorded.readings[from..];
+    let course = Course {
+        t: readings.iter().map(|reading| reading.t).collect(),
+        drives: readings[..readings.len() - 1].iter().map(|reading| Drive::Held(reading.excitation)).collect(),
+        states: recorded.states[from..].to_vec(),
+    };
+    let settings = Settings::default();
+    let level = level(settings.false_alarm_interval, settings.sample_time);
+    let sensors = Sensors([Some(scenario.noise.q), Some(scenario.noise.qd)]);
+    Ok(detection(&law(0)?, &law(1)?, &[course], sensors, level)?.at_start.unwrap_or(f64::INFINITY))
+}

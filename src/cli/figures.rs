@@ -1,0 +1,257 @@
+//! What commands found, as figures.
+
+use super::course::Course;
+use super::input::Input;
+use super::looked::Looked;
+use super::words::percent;
+use crate::data::Opened;
+use crate::diagnose::{Candidate, Comparison, Diagnosis, Options, Place, Side, compare};
+use crate::identify::{Identification, Recording};
+use crate::law::{Term, Units};
+use crate::report::{Axis, Figure, Layer, MOST, Panel};
+
+/// Candidates that are drawn through the residual.
+const DRAWN: usize = 3;
+
+/// Points of a candidate's curve.
+const CURVE: usize = 200;
+
+/// The measured channels over time, a panel each.
+fn channels(recording: &Recording, units: Units) -> Vec<Panel> {
+    let unit = |channel: &str| match channel {
+        "q" => units.displacement(),
+        "qd" => units.velocity(),
+        _ => units.excitation(),
+    };
+    let panel = |channel: &'static str| {
+        let symbol = unit(channel).map(|unit| unit.symbol).filter(|symbol| symbol != "1");
+        let name = if channel == "qd" { "q̇" } else { channel };
+        let label = symbol.map_or_else(|| name.to_string(), |symbol| format!("{name}, {symbol}"));
+        let layers = vec![Layer::line(name, recording.t(), recording.signal(channel)?)];
+        Some(Panel { title: String::new(), x: Axis::of("t, s"), y: Axis::of(&label), layers })
+    };
+    ["q", "qd", "F"].into_iter().filter_map(panel).collect()
+}
+
+/// How long series are drawn; empty where they are drawn whole.
+fn thinned(count: usize) -> String {
+    match count > MOST {
+        true => format!("Of {count} samples the smallest and the largest of every {} are drawn.", 2 * count / MOST),
+        false => String::new(),
+    }
+}
+
+/// A recording with what is conspicuous of it.
+pub(super) fn recording(looked: &Looked) -> Figure {
+    let recording = &looked.opened.recording;
+    let said: Vec<String> =
+        looked.remarks.iter().map(|remark| format!("{} {}.", remark.channel, remark.sentence)).collect();
+    let said = if said.is_empty() { "Nothing is conspicuous.".into() } else { said.join(" ") };
+    Figure {
+        title: recording.source().into(),
+        caption: format!("{said} {}", thinned(recording.count())),
+        panels: channels(recording, looked.opened.units),
+    }
+}
+
+/// Motion and excitation with the stages as bands, then every coefficient with its std, alarms marked.
+pub(super) fn stages(opened: &Opened, found: &Identification, course: &Course) -> Figure {
+    let bands = |named: bool| {
+        let band = move |(index, stage): (usize, &crate::identify::Stage)| Layer::Band {
+            from: stage.start,
+            to: stage.end,
+            label: if named && found.stages.len() > 1 { format!("stage {}", index + 1) } else { String::new() },
+        };
+        found.stages.iter().enumerate().map(band)
+    };
+    let alarms = || {
+        let alarm = |at| Layer::Mark { at, label: String::new() };
+        found.stages.iter().filter_map(|stage| stage.detected).map(alarm)
+    };
+    let mut panels = channels(&opened.recording, opened.units);
+    for (index, panel) in panels.iter_mut().enumerate() {
+        panel.layers.splice(0..0, bands(index == 0));
+        panel.layers.extend(alarms());
+    }
+    let terms = found.stages.first().map_or(&[][..], |stage| &stage.coefficients);
+    let has = |series: &[[f64; 2]]| series.iter().any(|[value, _]| value.is_finite() && *value != 0.0);
+    for (coefficient, series) in terms.iter().zip(&course.coefficients).filter(|(_, series)| has(series)) {
+        let edge = |(t, [value, std]): (&f64, &[f64; 2])| [*t, value - std, value + std];
+        let known = |edge: &[f64; 3]| edge.iter().all(|value| value.is_finite());
+        let edges: Vec<[f64; 3]> = course.t.iter().zip(series).map(edge).filter(known).collect();
+        let values: Vec<f64> = series.iter().map(|[value, _]| *value).collect();
+        let mut layers: Vec<Layer> = bands(false).collect();
+        layers.push(Layer::Area { name: "± std".into(), edges: sober(edges, &values) });
+        layers.push(Layer::line(&coefficient.term.name(), &course.t, &values));
+        layers.extend(alarms());
+        let label = format!("coefficient of {}", coefficient.term.symbol());
+        panels.push(Panel { title: String::new(), x: Axis::of("t, s"), y: Axis::of(&label), layers });
+    }
+    let caption = format!(
+        "Shaded: stages; red: alarms. Coefficients stand where they are known, each with its std. {}",
+        thinned(opened.recording.count())
+    );
+    Figure { title: format!("{}: stages and their laws", opened.recording.source()), caption, panels }
+}
+
+/// Std bands no wider than twice the range of the values: a first guess's does not flatten all that follows.
+fn sober(edges: Vec<[f64; 3]>, values: &[f64]) -> Vec<[f64; 3]> {
+    let finite = || values.iter().copied().filter(|value| value.is_finite());
+    let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    let room = (high - low).max(0.05 * high.abs().max(low.abs()));
+    edges.into_iter().map(|[t, lower, upper]| [t, lower.max(low - room), upper.min(high + room)]).collect()
+}
+
+/// What a law leaves over of the force: beside the force, and over t, q, q̇ and frequency.
+pub(super) fn comparison(found: &Comparison) -> Figure {
+    let side = &found.given;
+    let places: Vec<&Place> = side.left.iter().flat_map(|left| &left.places).collect();
+    let of = |value: fn(&Place) -> f64| places.iter().map(|place| value(place)).collect::<Vec<f64>>();
+    let (t, residual) = (of(|place| place.t), of(|place| place.residual));
+    let force = label("F", found.units.excitation().map(|unit| unit.symbol));
+    let left = label("left over", found.units.excitation().map(|unit| unit.symbol));
+    let noise: Vec<[f64; 3]> = places.iter().map(|place| [place.t, -place.noise.sqrt(), place.noise.sqrt()]).collect();
+    let noise = noise.into_iter().step_by(places.len().div_ceil(MOST).max(1)).collect();
+    let marked = side.fails.iter().find(|fail| fail.over == crate::diagnose::Over::Time);
+    let band = marked.and_then(|fail| Some([fail.bounds.lower?, fail.bounds.upper?]));
+    let band = band.map(|[from, to]| Layer::Band { from, to, label: "worst".into() });
+    let measured = Layer::line("measured", &t, &of(|place| place.force));
+    let predicted = Layer::line("the law", &t, &of(|place| place.force + place.residual));
+    let time = |label: &str, layers: Vec<Layer>| Panel {
+        title: String::new(),
+        x: Axis::of("t, s"),
+        y: Axis::of(label),
+        layers: band.iter().cloned().chain(layers).collect(),
+    };
+    let mut panels = vec![
+        time(&force, vec![measured, predicted]),
+        time(
+            &left,
+            vec![
+                Layer::Area { name: "std of the noise".into(), edges: noise },
+                Layer::line("left over", &t, &residual),
+            ],
+        ),
+    ];
+    panels.extend(over_motion(side, found.units));
+    let spectrum = side.spectrum(found.period);
+    let energies = |at: usize| spectrum.iter().map(|row| row[at]).collect::<Vec<f64>>();
+    if !spectrum.is_empty() {
+        let layers = vec![
+            Layer::line("left over", &energies(0), &energies(1)),
+            Layer::line("force", &energies(0), &energies(2)),
+        ];
+        panels.push(Panel { title: String::new(), x: Axis::of("frequency, Hz"), y: Axis::log("energy"), layers });
+    }
+    let said: Vec<String> = side.fails.iter().take(3).map(|fail| found.sentence(fail) + ".").collect();
+    Figure {
+        title: format!("{}: what the model as given leaves over", found.sources.join(", ")),
+        caption: format!("Forces are means over windows of at most {:.3} s. {}", found.window, said.join(" ")),
+        panels,
+    }
+}
+
+fn label(name: &str, unit: Option<String>) -> String {
+    unit.filter(|unit| unit != "1").map_or_else(|| name.to_string(), |unit| format!("{name}, {unit}"))
+}
+
+/// What is left over, over q and over q̇.
+fn over_motion(side: &Side, units: Units) -> [Panel; 2] {
+    let places: Vec<&Place> = side.left.iter().flat_map(|left| &left.places).collect();
+    let residual: Vec<f64> = places.iter().map(|place| place.residual).collect();
+    let left = label("left over", units.excitation().map(|unit| unit.symbol));
+    let panel = |name: &str, unit: Option<String>, x: Vec<f64>| Panel {
+        title: String::new(),
+        x: Axis::of(&label(name, unit)),
+        y: Axis::of(&left),
+        layers: vec![Layer::points("left over", &x, &residual)],
+    };
+    let velocity = units.velocity().map(|unit| unit.symbol);
+    let displacement = units.displacement().map(|unit| unit.symbol);
+    [
+        panel("q̇", velocity, places.iter().map(|place| place.qd).collect()),
+        panel("q", displacement, places.iter().map(|place| place.q).collect()),
+    ]
+}
+
+/// What the best numbers of the model leave over, against q̇ and q, with the best candidates drawn through it.
+pub(super) fn diagnosis(input: &Input, found: &Diagnosis) -> Figure {
+    let recordings: Vec<_> =
+        input.recordings().into_iter().map(|recording| (recording, found.base.timing.hold)).collect();
+    let compared = compare(&input.model.freed(), &recordings, &Options { units: input.units, ..Options::default() });
+    let mut panels = over_motion(&compared.best, input.units);
+    let drawn = found.candidates.iter().filter(|candidate| candidate.doubt.is_none()).take(DRAWN);
+    for candidate in drawn {
+        for (panel, of_velocity) in panels.iter_mut().zip([true, false]) {
+            panel.layers.extend(curve(panel, candidate, of_velocity));
+        }
+    }
+    let error = found.candidates.iter().take(8);
+    let bars = error.map(|candidate| {
+        let error = candidate.error().after;
+        (candidate.effect.clone(), 100.0 * error, percent(error))
+    });
+    let bars = bars.filter(|(_, error, _)| error.is_finite()).collect();
+    let now = found.errors[1];
+    let stairs = Panel {
+        title: String::new(),
+        x: Axis::log("held-out error with the candidate, %"),
+        y: Axis::default(),
+        layers: vec![
+            Layer::Bars(bars),
+            Layer::Mark { at: 100.0 * now.after, label: format!("now {}", percent(now.after)) },
+        ],
+    };
+    let effect = found.effect.as_deref().unwrap_or("nothing of the catalogue");
+    Figure {
+        title: format!("{}: what the law leaves over, and {effect} in it", input.named()),
+        caption: format!("Left over is Σ θ f − F: what is missing has the other sign and is drawn so. {}", found.left),
+        panels: panels.into_iter().chain([stairs]).collect(),
+    }
+}
+
+/// −θ f of a candidate over the extent of the panel's points; none where it takes more than q or q̇ of one instant.
+fn curve(panel: &Panel, candidate: &Candidate, of_velocity: bool) -> Option<Layer> {
+    let Layer::Points { points, .. } = panel.layers.first()? else { return None };
+    let term = candidate.term;
+    if !term.is_pointwise() || term == Term::Inertia || !candidate.coefficient.is_finite() {
+        return None;
+    }
+    let low = points.iter().map(|point| point[0]).fold(f64::INFINITY, f64::min);
+    let high = points.iter().map(|point| point[0]).fold(f64::NEG_INFINITY, f64::max);
+    let x: Vec<f64> = (0..=CURVE).map(|at| low + (high - low) * at as f64 / CURVE as f64).collect();
+    let force = |x: &f64| {
+        -candidate.coefficient * if of_velocity { term.force(0.0, *x, 0.0) } else { term.force(*x, 0.0, 0.0) }
+    };
+    let y: Vec<f64> = x.iter().map(force).collect();
+    let moves = y.iter().any(|value| (value - y[0]).abs() > 0.0) && y.iter().all(|value| value.is_finite());
+    moves.then(|| Layer::line(&candidate.effect, &x, &y))
+}
+
+/// The error falling step by step to the noise floor; `floor` with the length of its windows, s.
+pub(super) fn staircase(steps: &[(String, f64)], [floor, window]: [f64; 2]) -> Figure {
+    let bars = steps.iter().map(|(title, error)| (title.clone(), 100.0 * error, percent(*error))).collect();
+    let panel = Panel {
+        title: String::new(),
+        x: Axis::log("error on held-out data, %"),
+        y: Axis::default(),
+        layers: vec![
+            Layer::Bars(bars),
+            Layer::Mark { at: 100.0 * floor, label: format!("noise floor {}", percent(floor)) },
+        ],
+    };
+    let caption = format!("Errors over windows of {window:.3} s, on stretches that no coefficient has seen.");
+    Figure { title: "The error as effects join the law".into(), caption, panels: vec![panel] }
+}
+
+/// The smallest std of every coefficient ÷ its value.
+pub(super) fn limits(bars: &[(String, f64, String)]) -> Figure {
+    let panel = Panel {
+        title: String::new(),
+        x: Axis::log("smallest std of a coefficient, % of its value"),
+        y: Axis::default(),
+        layers: vec![Layer::Bars(bars.to_vec())],
+    };
+    let caption = "The Cramér–Rao bound: no unbiased method errs less, on average over records like this one.".into();
+    Figure { title: "What any method could reach".into(), caption, panels: vec![panel] }
+}

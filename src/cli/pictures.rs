@@ -1,0 +1,80 @@
+//! `--picture OUT.svg|.png|.html`: what a command found, drawn.
+
+use super::error::CommandError;
+use super::output::{Target, Targets};
+use crate::report::Figure;
+#[cfg(feature = "pictures")]
+use crate::report::{self, Block};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Where a picture goes.
+#[derive(Args, Default)]
+pub(super) struct PictureArguments {
+    /// Draw what was found into this file; its extension says how: .svg, .png or .html (to be zoomed)
+    #[arg(long, value_name = "OUT.svg|png|html")]
+    picture: Option<PathBuf>,
+}
+
+/// How a picture is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Svg,
+    Png,
+    Html,
+}
+
+/// A picture to be drawn into a file.
+pub(super) struct Picture {
+    target: Target,
+    file: String,
+    kind: Kind,
+}
+
+impl PictureArguments {
+    /// The picture that is asked for.
+    ///
+    /// # Errors
+    /// [`CommandError::PictureKind`]; what [`Targets::claim`] refuses; [`CommandError::NoPictures`].
+    pub(super) fn open(&self, targets: &mut Targets) -> Result<Option<Picture>, CommandError> {
+        let Some(path) = &self.picture else { return Ok(None) };
+        let file = path.display().to_string();
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        let kind = match extension.as_deref() {
+            Some("svg") => Kind::Svg,
+            Some("png") => Kind::Png,
+            Some("html" | "htm") => Kind::Html,
+            _ => return Err(CommandError::PictureKind { file }),
+        };
+        #[cfg(not(feature = "pictures"))]
+        return Err(CommandError::NoPictures { file });
+        #[cfg(feature = "pictures")]
+        Ok(Some(Picture { target: targets.claim("--picture", path)?, file, kind }))
+    }
+}
+
+impl Picture {
+    /// Draws it.
+    ///
+    /// # Errors
+    /// [`CommandError::Draw`] says what the drawing failed on; what writing says.
+    #[cfg(feature = "pictures")]
+    pub(super) fn draw(&self, figure: &Figure) -> Result<(), CommandError> {
+        let failed = |reason: String| CommandError::Draw { file: self.file.clone(), reason };
+        match self.kind {
+            Kind::Svg => self.target.write(&report::svg(figure).map_err(failed)?),
+            Kind::Png => self.target.write_bytes(&report::png(figure).map_err(failed)?),
+            Kind::Html => self.target.write(&report::page(&figure.title, &[Block::Figure(figure.clone())])),
+        }
+    }
+
+    /// Refuses.
+    ///
+    /// # Errors
+    /// [`CommandError::NoPictures`].
+    #[cfg(not(feature = "pictures"))]
+    pub(super) fn draw(&self, _figure: &Figure) -> Result<(), CommandError> {
+        let _ = (&self.target, self.kind);
+        Err(CommandError::NoPictures { file: self.file.clone() })
+    }
+}

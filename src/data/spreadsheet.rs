@@ -1,0 +1,52 @@
+//! Spreadsheets: the first sheet with numbers, as the text that it would be exported to.
+
+use super::DataError;
+use super::rows::Source;
+#[cfg(feature = "formats")]
+use calamine::{Data, Range, Reader};
+
+/// The sheet as text with tabs between cells, a line for each of its rows.
+///
+/// # Errors
+/// [`DataError::Damaged`].
+#[cfg(feature = "formats")]
+pub(super) fn text(source: &Source, bytes: Vec<u8>) -> Result<String, DataError> {
+    let damaged = |reason: String| DataError::Damaged { file: source.file.clone(), kind: source.kind, reason };
+    let cursor = std::io::Cursor::new(bytes);
+    let mut book = calamine::open_workbook_auto_from_rs(cursor).map_err(|error| damaged(error.to_string()))?;
+    for name in book.sheet_names() {
+        let sheet = book.worksheet_range(&name).map_err(|error| damaged(error.to_string()))?;
+        if sheet.used_cells().any(|(.., cell)| matches!(cell, Data::Float(_) | Data::Int(_))) {
+            return Ok(lines(&sheet));
+        }
+    }
+    Err(damaged("no sheet has numbers".into()))
+}
+
+/// Refuses the file.
+#[cfg(not(feature = "formats"))]
+pub(super) fn text(source: &Source, _bytes: Vec<u8>) -> Result<String, DataError> {
+    Err(DataError::LeftOut { file: source.file.clone(), kind: source.kind })
+}
+
+#[cfg(feature = "formats")]
+fn lines(sheet: &Range<Data>) -> String {
+    let above = sheet.start().map_or(0, |(row, _)| row as usize);
+    let mut text = "\n".repeat(above);
+    for row in sheet.rows() {
+        let cells: Vec<String> = row.iter().map(cell).collect();
+        text += &(cells.join("\t") + "\n");
+    }
+    text
+}
+
+#[cfg(feature = "formats")]
+fn cell(cell: &Data) -> String {
+    match cell {
+        Data::DateTime(time) => {
+            let (year, month, day, hour, minute, second, milli) = time.to_ymd_hms_milli();
+            format!("{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}.{milli:03}")
+        }
+        other => other.to_string().replace(['\t', '\n', '\r'], " "),
+    }
+}

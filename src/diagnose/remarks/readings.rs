@@ -1,0 +1,241 @@
+//! One channel by itself: wild readings, stuck stretches, coarse steps, clipping, an offset.
+
+use super::Remark;
+use crate::identify::Recording;
+
+/// Robust std by which a reading stands off the middle of its neighbours before it is wild: noise alone never does, and the neighbours'
+/// own differences must show its mirror image.
+const WILD: f64 = 12.0;
+
+/// Least share of a wild reading's height that its neighbours' differences show, of one half, and the most.
+const MIRRORED: std::ops::Range<f64> = 0.35..0.65;
+
+/// Std ÷ step from which on steps are no coarse ones: the rounding error is then below a thousandth of the motion.
+const FINE: f64 = 300.0;
+
+/// Share of readings that equal the one before where steps are what limits a sensor.
+const REPEATED: f64 = 0.1;
+
+/// Evidence in nats that equal readings are no chance: one in 10¹³.
+const STUCK: f64 = 30.0;
+
+/// Readings at an end of the range ÷ those of the nearest other value or 2 % of the range. A turning point has at most 2.4 times as many,
+/// since the time that a parabola spends within k steps of its top goes as √k.
+const CLIPPED: f64 = 5.0;
+
+/// Fewest stretches at an end, and fewest readings of one.
+const STRETCHES: usize = 3;
+
+/// Fewest different values of a signal that is not switched between levels.
+const LEVELS: usize = 16;
+
+/// Mean ÷ std about it from which the motion is beside its zero.
+const OFFSET: f64 = 3.0;
+
+/// Remarks on every channel.
+pub(super) fn remarks(recording: &Recording) -> Vec<Remark> {
+    let channels = ["q", "qd", "F"];
+    let signals = channels.map(|channel| Some((channel, recording.signal(channel)?)));
+    let signals: Vec<(&'static str, &[f64])> = signals.into_iter().flatten().collect();
+    let t = recording.t();
+    let mut said = Vec::new();
+    for (channel, values) in &signals {
+        let others: Vec<&[f64]> =
+            signals.iter().filter(|(other, _)| other != channel).map(|(_, values)| *values).collect();
+        said.extend(wild(t, values).map(|(kind, sentence)| Remark::new(channel, kind, sentence)));
+        said.extend(stuck(t, values, &others).map(|sentence| Remark::new(channel, "stuck", sentence)));
+        said.extend(clipped(values).map(|sentence| Remark::new(channel, "clipped", sentence)));
+        if *channel != "F" {
+            said.extend(coarse(values).map(|sentence| Remark::new(channel, "coarse", sentence)));
+            said.extend(beside(values).map(|sentence| Remark::new(channel, "offset", sentence)));
+        }
+    }
+    said
+}
+
+/// Readings that stand alone: each third difference shows a spike and its mirror images.
+fn wild(t: &[f64], values: &[f64]) -> Option<(&'static str, String)> {
+    let bend = |at: usize| values[at] - 0.5 * values[at - 1] - 0.5 * values[at + 1];
+    let mut sizes: Vec<f64> = (1..values.len() - 1).map(|at| bend(at).abs()).collect();
+    let middle = sizes.len() / 2;
+    let usual = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745;
+    let usual = usual.max(smallest_step(values));
+    let mirrored = |at: usize, other: usize| MIRRORED.contains(&(-bend(other) / bend(at)));
+    let is_wild = |at: &usize| bend(*at).abs() > WILD * usual && mirrored(*at, at - 1) && mirrored(*at, at + 1);
+    let found: Vec<usize> = (2..values.len().saturating_sub(2)).filter(is_wild).collect();
+    let largest = found.iter().copied().max_by(|a, b| bend(*a).abs().total_cmp(&bend(*b).abs()))?;
+    let readings = if found.len() == 1 { "reading stands" } else { "readings stand" };
+    let sentence = format!(
+        "{} single {readings} far off their neighbours, the largest with {:.4e} at {} s: correct or delete them, a law pays for each",
+        found.len(),
+        values[largest],
+        t[largest]
+    );
+    Some(("wild", sentence))
+}
+
+fn smallest_step(values: &[f64]) -> f64 {
+    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
+    Some(steps.fold(f64::INFINITY, f64::min)).filter(|step| step.is_finite()).unwrap_or(0.0)
+}
+
+/// The runs of equal readings, as positions of their first and last.
+fn runs(values: &[f64]) -> Vec<(usize, usize)> {
+    let mut runs = Vec::new();
+    let mut start = 0;
+    for at in 1..=values.len() {
+        if at == values.len() || values[at] != values[start] {
+            runs.push((start, at - 1));
+            start = at;
+        }
+    }
+    runs
+}
+
+/// The longest run of equal readings, where chance does not explain it and another channel goes on meanwhile as it does elsewhere.
+fn stuck(t: &[f64], values: &[f64], others: &[&[f64]]) -> Option<String> {
+    let runs = runs(values);
+    let (start, end) = *runs.iter().max_by_key(|(start, end)| end - start)?;
+    let length = end - start;
+    let repeats = values.len() - runs.len() - length;
+    let rate = (repeats as f64 + 1.0) / (values.len() - length).max(2) as f64;
+    let goes_on = |other: &&[f64]| {
+        let part = &other[start..=end];
+        let [low, high] = ends(part);
+        spread(other) > 0.0 && high - low > spread(other) && runs_of(part) > part.len() / 2
+    };
+    if length as f64 * -rate.ln() < STUCK || others.is_empty() || !others.iter().any(goes_on) {
+        return None;
+    }
+    Some(format!(
+        "reads {:.6e} without a change from {} s to {} s ({} samples) while the others go on: stuck; leave that stretch out",
+        values[start],
+        t[start],
+        t[end],
+        length + 1
+    ))
+}
+
+fn runs_of(values: &[f64]) -> usize {
+    runs(values).len()
+}
+
+fn ends(values: &[f64]) -> [f64; 2] {
+    [values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().map(|value| value / values.len() as f64).sum()
+}
+
+/// Std about the mean.
+fn spread(values: &[f64]) -> f64 {
+    let mean = mean(values);
+    (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+/// Many readings at an end of the range, in several stretches, and few next to it.
+fn clipped(values: &[f64]) -> Option<String> {
+    let [low, high] = ends(values);
+    let at_end = |end: f64, inwards: f64| {
+        let stretches =
+            runs(values).into_iter().filter(|(from, to)| values[*from] == end && to - from + 1 >= STRETCHES);
+        let lengths: Vec<usize> = stretches.map(|(from, to)| to - from + 1).collect();
+        let distance = |value: &f64| (value - end) * inwards;
+        let nearest = values.iter().map(distance).filter(|distance| *distance > 0.0).fold(f64::INFINITY, f64::min);
+        let reach = nearest.max(0.02 * (high - low));
+        let beside = values.iter().map(distance).filter(|distance| *distance > 0.0 && *distance <= reach).count();
+        let held: usize = lengths.iter().sum();
+        (lengths.len() >= STRETCHES && held as f64 > CLIPPED * beside as f64).then_some((end, held))
+    };
+    let found: Vec<(f64, usize)> = [at_end(low, 1.0), at_end(high, -1.0)].into_iter().flatten().collect();
+    if found.is_empty() || has_few_levels(values) {
+        return None;
+    }
+    let at: Vec<String> = found.iter().map(|(end, _)| format!("{end:.4e}")).collect();
+    let share = found.iter().map(|(_, held)| held).sum::<usize>() as f64 / values.len() as f64;
+    Some(format!(
+        "stays at {} in {:.1} % of the samples: clipped; what lies beyond is lost, take a wider range",
+        at.join(" and "),
+        100.0 * share
+    ))
+}
+
+/// Whether a signal switches between a few levels.
+fn has_few_levels(values: &[f64]) -> bool {
+    let mut levels: Vec<f64> = Vec::new();
+    for value in values {
+        if !levels.contains(value) {
+            levels.push(*value);
+        }
+        if levels.len() > LEVELS {
+            return false;
+        }
+    }
+    true
+}
+
+/// Steps so large that readings repeat, all differences being multiples of one.
+fn coarse(values: &[f64]) -> Option<String> {
+    let step = smallest_step(values);
+    let (spread, count) = (spread(values), values.len() as f64);
+    let repeated = values.windows(2).filter(|pair| pair[0] == pair[1]).count() as f64 / count;
+    let whole = |pair: &&[f64]| {
+        let steps = (pair[1] - pair[0]) / step;
+        (steps - steps.round()).abs() < 0.05
+    };
+    let is_stepped = values.windows(2).filter(whole).count() as f64 > 0.95 * (count - 1.0);
+    (step > 0.0 && spread < FINE * step && repeated > REPEATED && is_stepped).then(|| {
+        format!(
+            "is read in steps of {step:.3e}, 1/{:.0} of its std: the rounding is noise that is no white one at slow motion",
+            spread / step
+        )
+    })
+}
+
+/// A mean far from 0 of what swings.
+fn beside(values: &[f64]) -> Option<String> {
+    let (mean, spread) = (mean(values), spread(values));
+    (mean.abs() > OFFSET * spread).then(|| {
+        format!("swings by {spread:.3e} (std) about {mean:.3e}: subtract the offset, or give the law a constant_force")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sine() -> Vec<f64> {
+        (0..4000).map(|n| (0.013 * f64::from(n)).sin()).collect()
+    }
+
+    #[test]
+    fn a_clean_signal_is_not_remarked_on() {
+        let (t, values): (Vec<f64>, Vec<f64>) = ((0..4000).map(f64::from).collect(), sine());
+        let cosine: Vec<f64> = t.iter().map(|t| (0.013 * t).cos()).collect();
+        assert_eq!((wild(&t, &values), stuck(&t, &values, &[&cosine]), clipped(&values)), (None, None, None));
+        assert_eq!((coarse(&values), beside(&values)), (None, None));
+        let rounded: Vec<f64> = values.iter().map(|value| (value * 50.0).round() / 50.0).collect();
+        assert_eq!((wild(&t, &rounded), clipped(&rounded)), (None, None));
+        assert!(coarse(&rounded).unwrap().contains("2.000e-2"));
+        let square: Vec<f64> = values.iter().map(|value| value.signum()).collect();
+        assert_eq!((wild(&t, &square), clipped(&square)), (None, None));
+    }
+
+    #[test]
+    fn faults_are_seen() {
+        let (t, values): (Vec<f64>, Vec<f64>) = ((0..4000).map(f64::from).collect(), sine());
+        let cosine: Vec<f64> = t.iter().map(|t| (0.013 * t).cos()).collect();
+        for size in [0.3, 1e6, 1e308] {
+            let mut spiked = values.clone();
+            spiked[700] = size;
+            assert!(wild(&t, &spiked).unwrap().1.contains("at 700 s"), "{size}");
+        }
+        let mut held = values.clone();
+        held[1000..1400].fill(values[1000]);
+        assert!(stuck(&t, &held, &[&cosine]).unwrap().contains("from 1000 s to 1399 s"));
+        let cut: Vec<f64> = values.iter().map(|value| value.clamp(-0.8, 2.0)).collect();
+        assert!(clipped(&cut).unwrap().contains("stays at -8.0000e-1"));
+        assert!(beside(&values.iter().map(|value| value + 9.0).collect::<Vec<_>>()).is_some());
+    }
+}

@@ -1,0 +1,50 @@
+//! The clock: even or not, samples lost, and how many of them a period has.
+
+use super::Remark;
+use crate::identify::Recording;
+
+/// Share of the usual distance of two samples by which distances differ before a clock is called uneven: times that are rounded to a
+/// tenth of it stay below.
+const UNEVEN: f64 = 0.1;
+
+/// Distance of two samples in usual ones from which one at least is lost: half a sample beyond the usual.
+const LOST: f64 = 1.5;
+
+/// Fewest samples of a natural period that weak windows of a tenth of it still resolve.
+const FEW: f64 = 10.0;
+
+/// Remarks on the times.
+pub(super) fn remarks(recording: &Recording, period: Option<f64>) -> Vec<Remark> {
+    let usual = recording.sample_time();
+    let distances = || recording.t().windows(2).map(|pair| (pair[0], pair[1] - pair[0]));
+    let mut said = Vec::new();
+    let lost: Vec<(f64, f64)> = distances().filter(|(_, distance)| *distance > LOST * usual).collect();
+    let missing: f64 = lost.iter().map(|(_, distance)| (distance / usual).round() - 1.0).sum();
+    if let Some((first, _)) = lost.first().filter(|_| missing >= 1.0) {
+        let share = 100.0 * missing / (missing + recording.count() as f64);
+        let sentence = format!(
+            "{missing} samples are missing in {} places ({share:.2} %), the first after {first} s: nothing is known of the motion there",
+            lost.len()
+        );
+        said.push(Remark::new("t", "lost", sentence));
+    }
+    let whole = || distances().map(|(_, distance)| distance).filter(|distance| *distance <= LOST * usual);
+    let count = whole().count().max(1) as f64;
+    let spread = (whole().map(|distance| (distance - usual).powi(2)).sum::<f64>() / count).sqrt() / usual;
+    if spread > UNEVEN {
+        let sentence = format!(
+            "the distance of two samples varies by {:.0} % (std) about {usual:.4e} s: times are used as they are; where they are those \
+             of a computer and not of the sensor, a rate in their place is nearer the truth",
+            100.0 * spread
+        );
+        said.push(Remark::new("t", "uneven", sentence));
+    }
+    if let Some(samples) = period.map(|period| period / usual).filter(|samples| *samples < FEW) {
+        let sentence = format!(
+            "a natural period has {samples:.1} samples only: what the motion does between them is a guess; sample ten times as fast as \
+             the fastest motion"
+        );
+        said.push(Remark::new("t", "slow", sentence));
+    }
+    said
+}

@@ -1,0 +1,141 @@
+//! Time stamps: one that is far ahead alone is none; a clock that was set back goes on from where it was.
+
+use crate::identify::sample::Skipped;
+use serde::{Deserialize, Serialize};
+
+/// A stamp this many usual steps ahead is believed once the next one agrees.
+const AHEAD: f64 = 250.0;
+
+/// Steps after which it is known what is usual.
+const KNOWN: u32 = 10;
+
+/// Stamps in a row, each a usual step after the one before, that make up a clock which was set back.
+const STEADY: u32 = 10;
+
+/// Steps that are usual differ by this factor at most.
+const ALIKE: std::ops::Range<f64> = 0.4..2.5;
+
+/// Share of a step in the usual one.
+const ADAPTION: f64 = 0.05;
+
+/// Steps without a sample that is used after which nothing that is said holds for the present.
+const STALE: f64 = 2.5;
+
+/// The clock of a stream.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Clock {
+    /// Last time of the record, s.
+    last: Option<f64>,
+    /// What is added to a stamp: the clock may have been set back.
+    shift: f64,
+    /// The usual step, s, and how many it is known from.
+    pace: f64,
+    known: u32,
+    /// The last stamp that was not believed, and how many in a row went on from it.
+    stray: Option<f64>,
+    steady: u32,
+}
+
+impl Clock {
+    /// The time of the record for a stamp; `sample_time` is the shortest step.
+    ///
+    /// # Errors
+    /// [`Skipped`] where the stamp is not believed.
+    pub fn time(&mut self, stamp: f64, sample_time: f64) -> Result<f64, Skipped> {
+        let Some(last) = self.last else { return Ok(stamp) };
+        let t = stamp + self.shift;
+        let step = t - last;
+        let agrees = self.stray.is_some_and(|stray| ALIKE.contains(&((stamp - stray) / self.pace)));
+        if step <= 0.0 {
+            return self
+                .set_back(stamp, agrees, last)
+                .ok_or(Skipped::NotLater { t: stamp, previous: last - self.shift });
+        }
+        if step < 0.5 * sample_time {
+            return Err(Skipped::TooSoon { t: stamp });
+        }
+        if self.known >= KNOWN && step > AHEAD * self.pace && !agrees {
+            self.stray = Some(stamp);
+            return Err(Skipped::Ahead { t: stamp, previous: last - self.shift });
+        }
+        Ok(t)
+    }
+
+    /// The time of a stamp of a clock that was set back, once that is sure.
+    fn set_back(&mut self, stamp: f64, agrees: bool, last: f64) -> Option<f64> {
+        if self.known < KNOWN || self.stray == Some(stamp) {
+            return None;
+        }
+        self.steady = if agrees { self.steady + 1 } else { 0 };
+        self.stray = Some(stamp);
+        if self.steady < STEADY {
+            return None;
+        }
+        self.shift = last + self.pace - stamp;
+        Some(last + self.pace)
+    }
+
+    /// A sample of that time is used.
+    pub fn advance(&mut self, t: f64) {
+        if let Some(last) = self.last {
+            let step = t - last;
+            if self.pace == 0.0 || ALIKE.contains(&(step / self.pace)) {
+                self.known = (self.known + 1).min(KNOWN);
+                self.pace += if self.pace == 0.0 { step } else { ADAPTION * (step - self.pace) };
+            } else if self.known < KNOWN {
+                (self.pace, self.known) = (step, 0);
+            }
+        }
+        (self.last, self.stray, self.steady) = (Some(t), None, 0);
+    }
+
+    /// Whether the record has had no sample for longer than is usual, at a stamp that was skipped.
+    pub fn is_stale(&self, stamp: f64) -> bool {
+        let step = self.last.map_or(0.0, |last| stamp + self.shift - last);
+        self.known >= KNOWN && !(step.abs() <= STALE * self.pace) && stamp.is_finite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn times(stamps: impl IntoIterator<Item = f64>) -> Vec<f64> {
+        let mut clock = Clock::default();
+        let mut believed = Vec::new();
+        for stamp in stamps {
+            if let Ok(t) = clock.time(stamp, 1e-3) {
+                clock.advance(t);
+                believed.push(t);
+            }
+        }
+        believed
+    }
+
+    fn stamps(from: f64, count: u32) -> impl Iterator<Item = f64> {
+        (0..count).map(move |index| from + 1e-3 * f64::from(index))
+    }
+
+    #[test]
+    fn one_stamp_far_ahead_is_skipped_alone() {
+        let seen = times(stamps(0.0, 50).chain([1e6]).chain(stamps(0.05, 50)));
+        assert!(seen.len() == 100 && seen[99] < 0.2, "{seen:?}");
+    }
+
+    #[test]
+    fn an_outage_is_believed_with_its_second_sample() {
+        let seen = times(stamps(0.0, 50).chain(stamps(5.0, 50)));
+        assert!(seen.len() == 99 && (seen[50] - 5.001).abs() < 1e-9, "{seen:?}");
+    }
+
+    #[test]
+    fn a_clock_that_was_set_back_goes_on() {
+        let seen = times(stamps(3600.0, 50).chain(stamps(0.0, 50)));
+        assert!(seen.len() > 85 && seen.is_sorted() && seen[seen.len() - 1] < 3600.2, "{seen:?}");
+    }
+
+    #[test]
+    fn stamps_that_repeat_are_skipped() {
+        assert_eq!(times([0.0, 1e-3, 1e-3, 1e-3, 2e-3]).len(), 3);
+    }
+}

@@ -1,0 +1,297 @@
+//! One hypothesis of what happened: a filter of (q, q̇) and two unknowns under the law in use.
+//!
+//! x = (q, q̇, u₀, u₁). Under "the law changed" q̈ is the law's + u₀ + u₁ F ÷ m: over the few readings that decide, a
+//! change of any coefficient is one of these two. Under "a channel has an offset" u₀ is the offset.
+
+use super::price::{Burst, faulty, working};
+use crate::estimation::{Channel, Filter, Noise};
+use crate::law::{Drive, Motion, State};
+use serde::{Deserialize, Serialize};
+
+/// What may have happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Kind {
+    /// Nothing but readings that are wide draws, if any.
+    Readings,
+    /// The law changed so many samples before the first reading that is held.
+    Law(u8),
+    /// Something moved q̇, and q follows.
+    Kick,
+    /// A channel has an offset.
+    Offset(Channel),
+    /// A channel repeats its value.
+    Stuck(Channel),
+    /// Both channels do.
+    BothStuck,
+}
+
+impl Kind {
+    /// Every one of them, the least first.
+    pub const ALL: [Kind; 9] = [
+        Kind::Readings,
+        Kind::Law(0),
+        Kind::Law(3),
+        Kind::Kick,
+        Kind::Offset(Channel::Q),
+        Kind::Offset(Channel::Qd),
+        Kind::Stuck(Channel::Q),
+        Kind::Stuck(Channel::Qd),
+        Kind::BothStuck,
+    ];
+
+    /// Whether the channel repeats its value.
+    pub fn sticks(self, channel: Channel) -> bool {
+        self == Kind::BothStuck || self == Kind::Stuck(channel)
+    }
+
+    /// Whether the law is another one.
+    pub fn is_law(self) -> bool {
+        matches!(self, Kind::Law(_))
+    }
+}
+
+/// What the readings are held against.
+#[derive(Clone, Copy, Debug)]
+pub struct Expected<'a> {
+    /// The law in use.
+    pub motion: Motion<'a>,
+    /// The sensors' noise, and what the law leaves unexplained.
+    pub noise: Noise,
+    /// Std of what a switch adds to q̈, and of the part of F ÷ m that it does.
+    pub switch: [f64; 2],
+    /// RMS of q and q̇: what an offset or a kick may be.
+    pub size: [f64; 2],
+    /// Parts of an interval between two samples.
+    pub parts: usize,
+}
+
+impl Expected<'_> {
+    /// Intensity of the white force, N² s, that moves q̇ by its own RMS within an interval of `dt` s.
+    pub fn kick(&self, q: f64, dt: f64) -> f64 {
+        (self.size[1] * self.motion.mass(q)).powi(2) / dt
+    }
+
+    /// The noise, and a white force of intensity `unseen`, N² s, that acts on the mass at `q`.
+    pub fn noise_with(&self, unseen: f64, q: f64) -> Noise {
+        let mass = self.motion.mass(q);
+        Noise { process: self.noise.process + unseen / (mass * mass), ..self.noise }
+    }
+}
+
+/// A reading of a channel beside how rare it is.
+#[derive(Clone, Copy, Debug)]
+pub struct Value {
+    /// What was read.
+    pub value: f64,
+    /// −ln of how often the channel repeats a value, where it does and that is rare.
+    pub repeats: Option<f64>,
+    /// Probability that a burst begins.
+    pub start: f64,
+}
+
+/// A stuck sensor that varies is none, nats.
+const VARIES: f64 = -40.0;
+
+/// The filter of a hypothesis.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Hypothesis {
+    pub kind: Kind,
+    mean: [f64; 4],
+    covariance: [[f64; 4]; 4],
+    /// Log-likelihood of the readings since it began, with its prior.
+    pub log: f64,
+    bursts: [Burst; 2],
+    /// Which readings are a sensor's fault: one bit a sample held, by channel.
+    faulty: [u64; 2],
+    /// The state at every sample held.
+    path: Vec<State>,
+    /// Samples since it began.
+    age: u32,
+}
+
+impl Hypothesis {
+    /// Room for so many samples held.
+    pub fn new(kind: Kind, room: usize) -> Hypothesis {
+        Hypothesis {
+            kind,
+            mean: [0.0; 4],
+            covariance: [[0.0; 4]; 4],
+            log: 0.0,
+            bursts: [Burst::default(); 2],
+            faulty: [0; 2],
+            path: vec![State::default(); room],
+            age: 0,
+        }
+    }
+
+    /// Begins at the state before the first reading that is held; `dt` is the time between two samples.
+    pub fn begin(&mut self, filter: &Filter, law: &Expected, dt: f64, log: f64) {
+        let [qq, qv, vv] = filter.covariance;
+        self.mean = [filter.state.q, filter.state.qd, 0.0, 0.0];
+        self.covariance = [[qq, qv, 0.0, 0.0], [qv, vv, 0.0, 0.0], [0.0; 4], [0.0; 4]];
+        (self.log, self.age) = (log, 0);
+        self.bursts = [Burst::default(); 2];
+        self.forget_held();
+        let [acceleration, gain] = law.switch;
+        match self.kind {
+            Kind::Law(before) => {
+                let since = f64::from(before) * dt;
+                let square = acceleration * acceleration;
+                self.covariance[1][1] += square * since * since;
+                (self.covariance[1][2], self.covariance[2][1]) = (square * since, square * since);
+                (self.covariance[2][2], self.covariance[3][3]) = (square, gain * gain);
+            }
+            Kind::Kick => self.covariance[1][1] += law.size[1] * law.size[1],
+            Kind::Offset(channel) => self.covariance[2][2] = law.size[channel as usize].powi(2),
+            Kind::Readings | Kind::Stuck(_) | Kind::BothStuck => {}
+        }
+    }
+
+    /// These channels are in a burst.
+    pub fn begin_bursts(&mut self, bursts: [Burst; 2]) {
+        self.bursts = bursts;
+    }
+
+    /// The samples held have been let through.
+    pub fn forget_held(&mut self) {
+        self.faulty = [0; 2];
+    }
+
+    /// Goes over an interval and takes the readings at its end, number `place` of those held.
+    pub fn take(&mut self, law: &Expected, dt: f64, drive: &Drive, values: [Option<Value>; 2], place: usize) {
+        self.predict(law, dt, drive);
+        for channel in Channel::ALL {
+            if let Some(value) = values[channel as usize] {
+                let counts = self.read(channel, &value, law);
+                self.faulty[channel as usize] |= u64::from(!counts) << place;
+            }
+        }
+        self.path[place] = self.state();
+        self.age += 1;
+        if !self.state().is_finite() || self.log.is_nan() {
+            self.log = f64::NEG_INFINITY;
+        }
+    }
+
+    /// The state after the last reading.
+    pub fn state(&self) -> State {
+        State { q: self.mean[0], qd: self.mean[1] }
+    }
+
+    /// The filter of (q, q̇) after the last reading.
+    pub fn filter(&self) -> Filter {
+        let [first, second, ..] = self.covariance;
+        Filter { state: self.state(), covariance: [first[0], first[1], second[1]] }
+    }
+
+    /// The state at a sample held.
+    pub fn state_at(&self, place: usize) -> State {
+        self.path[place]
+    }
+
+    /// Whether the channel's reading at a sample held is no fault of the sensor's.
+    pub fn counts(&self, channel: Channel, place: usize) -> bool {
+        self.faulty[channel as usize] >> place & 1 == 0
+    }
+
+    /// Probability that the channel is in a burst.
+    pub fn burst(&self, channel: Channel) -> f64 {
+        self.bursts[channel as usize].probability
+    }
+
+    /// The offset and its std.
+    pub fn offset(&self) -> (f64, f64) {
+        (self.mean[2], self.covariance[2][2].max(0.0).sqrt())
+    }
+
+    /// Expected value of the channel, and the variance of a reading about it.
+    pub fn expects(&self, channel: Channel, law: &Expected) -> (f64, f64) {
+        let index = channel as usize;
+        (self.mean[index], self.covariance[index][index] + law.noise.sensor[index])
+    }
+
+    /// Goes over an interval.
+    pub fn predict(&mut self, law: &Expected, dt: f64, drive: &Drive) {
+        let parts = drive.parts(law.parts);
+        let part_dt = dt / parts as f64;
+        for part in 0..parts {
+            let [from, middle, to] = drive.part(part, parts);
+            let state = self.state();
+            let gradient = law.motion.acceleration_gradient(state, middle);
+            let inputs = match self.kind {
+                Kind::Law(_) => [1.0, middle / law.motion.mass(state.q)],
+                _ => [0.0; 2],
+            };
+            let moved = law.motion.step_linear(state, part_dt, from, to);
+            let extra = inputs[0] * self.mean[2] + inputs[1] * self.mean[3];
+            self.mean[0] = moved.q + 0.5 * part_dt * part_dt * extra;
+            self.mean[1] = moved.qd + part_dt * extra;
+            self.carry(part_dt, gradient, inputs, law.noise.process);
+        }
+    }
+
+    /// Carries the covariance over a part of an interval.
+    fn carry(&mut self, dt: f64, gradient: [f64; 2], inputs: [f64; 2], process: f64) {
+        let half = 0.5 * dt * dt;
+        let [by_q, by_qd] = gradient;
+        let rows = [
+            [1.0 + half * by_q, dt + half * by_qd, half * inputs[0], half * inputs[1]],
+            [dt * by_q, 1.0 + dt * by_qd, dt * inputs[0], dt * inputs[1]],
+        ];
+        let before = self.covariance;
+        let carried = |row: &[f64; 4], column: usize| (0..4).map(|k| row[k] * before[k][column]).sum::<f64>();
+        let mut first = before;
+        for (target, row) in first.iter_mut().zip(&rows) {
+            *target = std::array::from_fn(|column| carried(row, column));
+        }
+        for row in 0..4 {
+            let entries = first[row];
+            for (column, coefficients) in rows.iter().enumerate() {
+                self.covariance[row][column] = entries.iter().zip(coefficients).map(|(a, b)| a * b).sum();
+            }
+            self.covariance[row][2] = entries[2];
+            self.covariance[row][3] = entries[3];
+        }
+        self.covariance[0][0] += process * dt * dt * dt / 3.0;
+        self.covariance[0][1] += process * dt * dt / 2.0;
+        self.covariance[1][0] = self.covariance[0][1];
+        self.covariance[1][1] += process * dt;
+    }
+
+    /// Takes a reading; returns whether it is no fault of the sensor's.
+    fn read(&mut self, channel: Channel, value: &Value, law: &Expected) -> bool {
+        let index = channel as usize;
+        let offset = if self.kind == Kind::Offset(channel) { 1.0 } else { 0.0 };
+        let column: [f64; 4] =
+            std::array::from_fn(|row| self.covariance[row][index] + offset * self.covariance[row][2]);
+        let variance = column[index] + offset * column[2] + law.noise.sensor[index];
+        let residual = value.value - self.mean[index] - offset * self.mean[2];
+        let faulty = faulty(residual, variance.sqrt());
+        if self.kind.sticks(channel) {
+            self.log += match value.repeats {
+                Some(_) => 0.0,
+                None if self.age == 0 => faulty,
+                None => faulty + VARIES,
+            };
+            return false;
+        }
+        let repeats = value.repeats.unwrap_or(0.0);
+        self.log += self.bursts[index].take(working(residual, variance), faulty, value.start) - repeats;
+        if self.bursts[index].is_on() {
+            return false;
+        }
+        self.update(column, residual, variance);
+        // a reading with an offset tells the state by what it knows of the offset
+        offset == 0.0
+    }
+
+    fn update(&mut self, column: [f64; 4], residual: f64, variance: f64) {
+        let gain = column.map(|entry| entry / variance);
+        for row in 0..4 {
+            self.mean[row] += gain[row] * residual;
+            for (entry, other) in self.covariance[row].iter_mut().zip(&column) {
+                *entry -= gain[row] * other;
+            }
+        }
+    }
+}

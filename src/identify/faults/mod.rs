@@ -1,0 +1,38 @@
+//! What may have happened to the sensors instead of to the law: one posterior over both.
+//!
+//! A reading far from what the law in use expects is not used at once. It is held, with those after it, until what
+//! happened has a name: the law changed, or a sensor failed. Every hypothesis is a filter of the state from the last
+//! reading that was as expected, scored on the same readings; physics prices them. A switch leaves q and q̇ continuous
+//! and changes q̈ alone; readings of a burst are independent wide draws, priced one by one; an offset moves one
+//! channel; a kick (an F that was not the plant's) moves q̇, and q follows; a stuck sensor repeats exactly where it
+//! varied before. What is held enters the record once the law or a fault has [`NAMED`](weighing) nats on the other,
+//! without the readings that are a sensor's fault: nothing that is not committed has to be taken back.
+//!
+//! - `price`: densities of readings, and the two states of a channel;
+//! - `repetition`: how often a channel repeats a value exactly;
+//! - `hypothesis`: the filter of one hypothesis;
+//! - `weighing`: all of them on the same readings;
+//! - `quarantine`: readings held, and what is let through;
+//! - `excitation`: a reading of F that leaves its course and returns;
+//! - `scatter`: a burst too small for any one reading to be unexpected;
+//! - `after_outage`: whether a sensor came back from an outage with an offset;
+//! - `clock`: time stamps that are none.
+
+mod after_outage;
+mod clock;
+mod excitation;
+mod hypothesis;
+mod price;
+mod quarantine;
+mod repetition;
+mod scatter;
+mod weighing;
+
+pub use after_outage::{AfterOutage, Returned};
+pub use clock::Clock;
+pub use excitation::ExcitationGate;
+pub use hypothesis::Expected;
+pub use quarantine::Quarantine;
+pub use repetition::Repetition;
+pub use scatter::Scatter;
+pub use weighing::NAMED;

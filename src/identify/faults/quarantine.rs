@@ -1,0 +1,375 @@
+//! Readings held until what happened has a name, and those that are let through.
+
+use super::hypothesis::{Expected, Kind, Value};
+use super::price::Burst;
+use super::repetition::Repetition;
+use super::weighing::{Verdict, Weighing};
+use crate::estimation::{Channel, Filter};
+use crate::identify::reading::Reading;
+use crate::identify::report::SensorState;
+use crate::identify::sample::Sample;
+use crate::law::{Drive, Hold};
+use serde::{Deserialize, Serialize};
+
+/// Samples held at most: what has no name by then has the likeliest one.
+pub const ROOM: usize = 64;
+
+/// A reading this many stds off is not as expected: by chance one in five hundred million is.
+const UNEXPECTED: f64 = 6.0;
+
+/// Mean time between two events of a kind, s: what nothing is known of happens as often as a false alarm is allowed.
+const SELDOM: f64 = 1e6;
+
+/// A channel is in no burst any more below this probability of one.
+const OVER: f64 = 0.05;
+
+/// Samples for which nothing is held after the law was named: the evidence of a switch decides.
+const DECIDED: u32 = 200;
+
+/// An offset is known once its std is below this part of the sensor's noise.
+const OFFSET_KNOWN: f64 = 0.5;
+
+/// Samples that the size of the motion is known from.
+const MEMORY: f64 = 10_000.0;
+
+/// An interval this many times the usual one is an outage.
+const OUTAGE: f64 = 5.0;
+
+/// What is believed of the last readings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum Stance {
+    /// They were as expected.
+    Calm,
+    /// What they say has no name yet.
+    Doubt,
+    /// The hypothesis of this place was named.
+    Named(usize),
+}
+
+/// The readings of a stream on their way into the record.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Quarantine {
+    weighing: Weighing,
+    stance: Stance,
+    /// Readings held, and how many.
+    held: Vec<Reading>,
+    count: usize,
+    /// Time from the last sample that was as expected to the first one held, s.
+    interval: f64,
+    /// Readings let through and not taken yet: a ring, its first place and its length.
+    through: Vec<Reading>,
+    first: usize,
+    waiting: usize,
+    last: Option<Sample>,
+    repetitions: [Repetition; 2],
+    /// Bursts so far by channel, and samples.
+    bursts: [f64; 2],
+    samples: f64,
+    /// Mean squares of q and q̇ let through.
+    squares: [f64; 2],
+    /// Samples that are let through because the law was named.
+    decided: u32,
+    /// Bursts that the record showed before any reading was unexpected.
+    found: Option<[Burst; 2]>,
+    /// What is taken off the readings of q and q̇.
+    offset: [f64; 2],
+    sensors: [SensorState; 3],
+}
+
+/// A reading beside the interval since the last one.
+struct Arrival {
+    reading: Reading,
+    dt: f64,
+    drive: Drive,
+    values: [Option<Value>; 2],
+    /// What repetitions before this one have cost by channel, nats.
+    runs: [f64; 2],
+}
+
+impl Quarantine {
+    /// Nothing held.
+    pub fn new() -> Quarantine {
+        Quarantine {
+            weighing: Weighing::new(ROOM),
+            stance: Stance::Calm,
+            held: vec![Reading::default(); ROOM],
+            count: 0,
+            interval: 0.0,
+            through: vec![Reading::default(); 2 * ROOM],
+            first: 0,
+            waiting: 0,
+            last: None,
+            repetitions: [Repetition::default(); 2],
+            bursts: [0.0; 2],
+            samples: 0.0,
+            squares: [0.0; 2],
+            decided: 0,
+            found: None,
+            offset: [0.0; 2],
+            sensors: [SensorState::Ok; 3],
+        }
+    }
+
+    /// Takes a reading; `law` is what it is held against, `filter` the state after the last reading let through, `pace`
+    /// the usual time between two samples, s. Without a law nothing is held.
+    pub fn take(
+        &mut self,
+        mut reading: Reading,
+        measured: [bool; 2],
+        hold: Hold,
+        pace: f64,
+        law: Option<(Expected, Filter)>,
+    ) {
+        reading.sample.q -= self.offset[0];
+        reading.sample.qd -= self.offset[1];
+        let before = self.last.replace(reading.sample);
+        self.samples += 1.0;
+        self.sensors = self.standing();
+        let arrival = before.map(|before| self.arrival(reading, &before, measured, hold));
+        match (law, arrival) {
+            (Some((law, filter)), Some(arrival)) if arrival.dt < OUTAGE * pace => {
+                let law = Expected { noise: law.noise_with(reading.unseen, filter.state.q), ..law };
+                self.weigh(&arrival, &law, &filter);
+            }
+            _ => {
+                self.settle();
+                self.let_through(reading);
+            }
+        }
+    }
+
+    /// The next reading for the record.
+    pub fn next(&mut self) -> Option<Reading> {
+        let left = self.waiting.checked_sub(1)?;
+        let reading = self.through[self.first];
+        (self.first, self.waiting) = ((self.first + 1) % self.through.len(), left);
+        Some(reading)
+    }
+
+    /// Samples that are not in the record yet.
+    pub fn behind(&self) -> usize {
+        self.count + self.waiting
+    }
+
+    /// Whether what is held speaks for another law more than for any fault.
+    pub fn suspects_law(&self) -> bool {
+        self.count > 0 && self.weighing.law_against_fault() > 0.0
+    }
+
+    /// A burst has been found in readings that were let through: it may go on.
+    pub fn go_on_in(&mut self, bursts: [Burst; 2]) {
+        self.found = Some(bursts);
+    }
+
+    /// An offset of the channel has been found in readings that were let through.
+    pub fn take_off(&mut self, channel: Channel, offset: f64) {
+        self.offset[channel as usize] += offset;
+    }
+
+    /// Time of the last sample of the stream, s.
+    pub fn now(&self) -> f64 {
+        self.last.map_or(0.0, |sample| sample.t)
+    }
+
+    /// RMS of q and q̇.
+    pub fn size(&self) -> [f64; 2] {
+        self.squares.map(f64::sqrt)
+    }
+
+    /// What the sensors of q, q̇ and F do.
+    pub fn sensors(&self) -> [SensorState; 3] {
+        self.sensors
+    }
+
+    fn arrival(&mut self, reading: Reading, before: &Sample, measured: [bool; 2], hold: Hold) -> Arrival {
+        let sample = reading.sample;
+        let drive = match hold {
+            Hold::Zero => Drive::Held(before.excitation),
+            Hold::Linear | Hold::BandLimited => Drive::Line(before.excitation, sample.excitation),
+        };
+        let dt = sample.t - before.t;
+        let event = (dt / SELDOM).min(OVER);
+        let runs = self.repetitions.map(|repetition| repetition.run());
+        let values = Channel::ALL.map(|channel| {
+            let index = channel as usize;
+            let value = [sample.q, sample.qd][index];
+            let start = event.max(self.bursts[index] / self.samples);
+            let repeats = self.repetitions[index].take(value);
+            measured[index].then_some(Value { value, repeats, start })
+        });
+        Arrival { reading, dt, drive, values, runs }
+    }
+
+    fn weigh(&mut self, arrival: &Arrival, law: &Expected, filter: &Filter) {
+        if let Some(bursts) = self.found.take() {
+            self.weighing.begin(filter, law, arrival.dt, OVER, [0.0; 2]);
+            self.weighing.begin_bursts(bursts);
+            self.stance = Stance::Named(0);
+        }
+        self.calm_down();
+        let calm = self.stance == Stance::Calm;
+        // while readings wait the law in use is behind them
+        let expected = calm && (self.decided > 0 || self.waiting > 0 || self.is_expected(arrival, law, filter));
+        self.decided = self.decided.saturating_sub(u32::from(calm));
+        match self.stance {
+            Stance::Calm if expected => self.let_through(arrival.reading),
+            Stance::Calm => self.begin(arrival, law, *filter),
+            Stance::Named(place) if self.is_released(place, arrival) => {
+                let filter = self.weighing.hypothesis(place).filter();
+                self.begin(arrival, law, filter);
+            }
+            Stance::Doubt | Stance::Named(_) => self.hold(arrival, law),
+        }
+    }
+
+    /// Once no burst goes on and everything is in the record, the law in use says again what is expected.
+    fn calm_down(&mut self) {
+        if let Stance::Named(place) = self.stance
+            && self.behind() == 0
+        {
+            let named = self.weighing.hypothesis(place);
+            let over = Channel::ALL.into_iter().all(|channel| named.burst(channel) < OVER);
+            if over && matches!(named.kind, Kind::Readings | Kind::Kick) {
+                self.stance = Stance::Calm;
+            }
+        }
+    }
+
+    fn is_expected(&mut self, arrival: &Arrival, law: &Expected, filter: &Filter) -> bool {
+        let expected = self.weighing.expects(filter, law, arrival.dt, &arrival.drive);
+        Channel::ALL.into_iter().all(|channel| match arrival.values[channel as usize] {
+            Some(Value { value, repeats, .. }) => {
+                let (mean, variance) = expected.expects(channel, law);
+                repeats.is_none() && (value - mean).abs() <= UNEXPECTED * variance.sqrt()
+            }
+            None => true,
+        })
+    }
+
+    /// Whether a sensor that was stuck varies again.
+    fn is_released(&self, place: usize, arrival: &Arrival) -> bool {
+        let kind = self.weighing.hypothesis(place).kind;
+        Channel::ALL.into_iter().any(|channel| {
+            let varies = arrival.values[channel as usize].is_none_or(|value| value.repeats.is_none());
+            kind.sticks(channel) && varies
+        })
+    }
+
+    fn begin(&mut self, arrival: &Arrival, law: &Expected, filter: Filter) {
+        self.weighing.begin(&filter, law, arrival.dt, (arrival.dt / SELDOM).min(OVER), arrival.runs);
+        (self.stance, self.interval) = (Stance::Doubt, arrival.dt);
+        self.hold(arrival, law);
+    }
+
+    fn hold(&mut self, arrival: &Arrival, law: &Expected) {
+        self.held[self.count] = arrival.reading;
+        self.weighing.take(law, arrival.dt, &arrival.drive, arrival.values, self.count);
+        self.count += 1;
+        let full = self.count == ROOM;
+        match self.weighing.verdict() {
+            Verdict::Named(place) => self.name(place, law),
+            Verdict::Open if full => self.name(self.weighing.best(), law),
+            Verdict::Open => {}
+        }
+    }
+
+    /// What was held enters the record as the named hypothesis has it.
+    fn name(&mut self, place: usize, law: &Expected) {
+        let named = self.weighing.hypothesis(place);
+        let (kind, offset) = (named.kind, named.offset());
+        let first = self.stance == Stance::Doubt;
+        let mut any = [false; 2];
+        for number in 0..self.count {
+            let mut reading = self.held[number];
+            let state = self.weighing.hypothesis(place).state_at(number);
+            let faulty = Channel::ALL.map(|channel| !self.weighing.hypothesis(place).counts(channel, number));
+            let Sample { q, qd, .. } = reading.sample;
+            (reading.sample.q, reading.sample.qd) =
+                (if faulty[0] { state.q } else { q }, if faulty[1] { state.qd } else { qd });
+            reading.faulty = faulty;
+            if kind == Kind::Kick && first && number == 0 {
+                reading.unseen += law.kick(state.q, self.interval);
+            }
+            any = [any[0] || faulty[0], any[1] || faulty[1]];
+            self.let_through(reading);
+        }
+        self.count = 0;
+        self.weighing.forget_held();
+        self.stance = Stance::Named(place);
+        match kind {
+            Kind::Law(_) => (self.stance, self.decided) = (Stance::Calm, DECIDED),
+            Kind::Offset(channel) => self.know_offset(channel, offset, law),
+            _ => {}
+        }
+        self.say(kind, any, first);
+    }
+
+    /// An offset that is known well is taken off.
+    fn know_offset(&mut self, channel: Channel, (offset, std): (f64, f64), law: &Expected) {
+        let index = channel as usize;
+        let noise = law.noise.sensor[index].sqrt();
+        if std > OFFSET_KNOWN * noise {
+            return;
+        }
+        self.offset[index] += offset;
+        if self.offset[index].abs() < noise {
+            self.offset[index] = 0.0;
+        }
+        self.stance = Stance::Calm;
+    }
+
+    /// What the sensors do by the hypothesis just named.
+    fn say(&mut self, kind: Kind, faulty: [bool; 2], first: bool) {
+        for index in 0..2 {
+            if kind == Kind::Readings && faulty[index] {
+                self.sensors[index] = SensorState::Outlier;
+                self.bursts[index] += if first { 1.0 } else { 0.0 };
+            }
+        }
+        for channel in Channel::ALL.into_iter().filter(|channel| kind.sticks(*channel)) {
+            self.sensors[channel as usize] = SensorState::Stuck;
+        }
+        match kind {
+            Kind::Offset(channel) => self.sensors[channel as usize] = SensorState::Offset,
+            Kind::Kick if first => self.sensors[2] = SensorState::Outlier,
+            _ => {}
+        }
+    }
+
+    /// What lasts of what the sensors do.
+    fn standing(&self) -> [SensorState; 3] {
+        let offset = self.offset.map(|offset| if offset == 0.0 { SensorState::Ok } else { SensorState::Offset });
+        let mut sensors = [offset[0], offset[1], SensorState::Ok];
+        if let Stance::Named(place) = self.stance {
+            let named = self.weighing.hypothesis(place);
+            for channel in Channel::ALL {
+                let index = channel as usize;
+                match named.kind {
+                    kind if kind.sticks(channel) => sensors[index] = SensorState::Stuck,
+                    Kind::Offset(off) if off == channel => sensors[index] = SensorState::Offset,
+                    _ if named.burst(channel) > OVER => sensors[index] = SensorState::Outlier,
+                    _ => {}
+                }
+            }
+        }
+        sensors
+    }
+
+    /// Everything held enters the record as it is: there is no law to hold it against any more.
+    fn settle(&mut self) {
+        for number in 0..self.count {
+            self.let_through(self.held[number]);
+        }
+        (self.count, self.stance, self.decided, self.found) = (0, Stance::Calm, 0, None);
+        self.weighing.forget_held();
+    }
+
+    fn let_through(&mut self, reading: Reading) {
+        for (square, value) in self.squares.iter_mut().zip([reading.sample.q, reading.sample.qd]) {
+            *square += (value * value - *square) / self.samples.min(MEMORY);
+        }
+        let room = self.through.len();
+        self.through[(self.first + self.waiting) % room] = reading;
+        self.waiting = (self.waiting + 1).min(room);
+    }
+}

@@ -1,0 +1,65 @@
+//! How often a channel repeats its last value exactly, and what one more repetition says of a stuck sensor.
+
+use serde::{Deserialize, Serialize};
+
+/// A repetition rarer than this says something.
+const RARE: f64 = 0.01;
+
+/// Repetitions of one channel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Repetition {
+    last: Option<f64>,
+    readings: f64,
+    repeated: f64,
+    /// What the rare repetitions in a row so far have cost, nats.
+    run: f64,
+    /// How many there are.
+    length: u64,
+}
+
+impl Repetition {
+    /// Takes a reading; returns −ln of how often the channel repeats a value, nats, where this one does and that is
+    /// rare.
+    pub fn take(&mut self, value: f64) -> Option<f64> {
+        let repeats = self.last.replace(value) == Some(value);
+        let rate = (self.repeated + 0.5) / (self.readings + 1.0);
+        let rare = repeats && rate < RARE;
+        self.run = if rare { self.run - rate.ln() } else { 0.0 };
+        self.length = if rare { self.length + 1 } else { 0 };
+        // what is called a fault does not become usual
+        if !rare {
+            self.readings += 1.0;
+            self.repeated += f64::from(u8::from(repeats));
+        }
+        rare.then(|| -rate.ln())
+    }
+
+    /// −ln of how seldom the channel repeats a value as often as it just has, nats.
+    pub fn run(&self) -> f64 {
+        self.run
+    }
+
+    /// Rare repetitions in a row.
+    pub fn length(&self) -> u64 {
+        self.length
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_channel_that_always_varied_repeats_by_a_fault() {
+        let mut channel = Repetition::default();
+        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index)), None));
+        assert!(channel.take(999.0).unwrap() > 7.0);
+        assert_eq!(channel.take(5.0), None);
+    }
+
+    #[test]
+    fn a_coarse_sensor_repeats_all_the_time() {
+        let mut channel = Repetition::default();
+        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index / 3)), None));
+    }
+}

@@ -1,0 +1,111 @@
+//! All hypotheses on the same readings: whether the law or a sensor is the likelier, and by how much.
+
+use super::hypothesis::{Expected, Hypothesis, Kind, Value};
+use super::price::{Burst, log_sum};
+use crate::estimation::{Channel, Filter};
+use crate::law::Drive;
+use serde::{Deserialize, Serialize};
+
+/// Log-odds at which what happened has a name: twenty to one.
+pub const NAMED: f64 = 3.0;
+
+/// What the readings say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The hypothesis of this place is named.
+    Named(usize),
+    /// Not yet.
+    Open,
+}
+
+/// The hypotheses.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Weighing {
+    hypotheses: Vec<Hypothesis>,
+}
+
+impl Weighing {
+    /// Room for so many samples held.
+    pub fn new(room: usize) -> Weighing {
+        Weighing { hypotheses: Kind::ALL.map(|kind| Hypothesis::new(kind, room)).into() }
+    }
+
+    /// The hypothesis of that place.
+    pub fn hypothesis(&self, place: usize) -> &Hypothesis {
+        &self.hypotheses[place]
+    }
+
+    /// Every hypothesis begins at the state before the first reading held, `event` the probability that a sample begins
+    /// one of them, `runs` what repetitions before it have cost by channel, nats.
+    pub fn begin(&mut self, filter: &Filter, law: &Expected, dt: f64, event: f64, runs: [f64; 2]) {
+        let changes = self.hypotheses.iter().filter(|hypothesis| hypothesis.kind.is_law()).count() as f64;
+        for hypothesis in &mut self.hypotheses {
+            let log = match hypothesis.kind {
+                Kind::Readings => 0.0,
+                Kind::Law(_) => (event / changes).ln(),
+                _ => event.ln(),
+            };
+            let varies = |channel: &Channel| !hypothesis.kind.sticks(*channel);
+            let run: f64 = Channel::ALL.into_iter().filter(varies).map(|channel| runs[channel as usize]).sum();
+            hypothesis.begin(filter, law, dt, log - run);
+        }
+    }
+
+    /// The first hypothesis is named: these channels are in a burst already.
+    pub fn begin_bursts(&mut self, bursts: [Burst; 2]) {
+        self.hypotheses[0].begin_bursts(bursts);
+    }
+
+    /// Whether the sample's readings are as expected: the first hypothesis is left before them.
+    pub fn expects(&mut self, filter: &Filter, law: &Expected, dt: f64, drive: &Drive) -> &Hypothesis {
+        self.hypotheses[0].begin(filter, law, dt, 0.0);
+        self.hypotheses[0].predict(law, dt, drive);
+        &self.hypotheses[0]
+    }
+
+    /// Takes a sample.
+    pub fn take(&mut self, law: &Expected, dt: f64, drive: &Drive, values: [Option<Value>; 2], place: usize) {
+        self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.take(law, dt, drive, values, place));
+    }
+
+    /// The samples held have been let through.
+    pub fn forget_held(&mut self) {
+        self.hypotheses.iter_mut().for_each(Hypothesis::forget_held);
+    }
+
+    /// ln(law changed ÷ law unchanged).
+    pub fn law_against_fault(&self) -> f64 {
+        let sum = |law: bool| {
+            let of = self.hypotheses.iter().filter(|hypothesis| hypothesis.kind.is_law() == law);
+            of.map(|hypothesis| hypothesis.log).fold(f64::NEG_INFINITY, log_sum)
+        };
+        sum(true) - sum(false)
+    }
+
+    /// What is named: the law against all faults, or one fault against the law and against the other faults.
+    pub fn verdict(&self) -> Verdict {
+        let odds = self.law_against_fault();
+        if odds.is_nan() || odds.abs() < NAMED {
+            return Verdict::Open;
+        }
+        let best = self.likeliest(odds > 0.0);
+        let own = &self.hypotheses[best];
+        let others = self.hypotheses.iter().filter(|other| !other.kind.is_law() && other.kind != own.kind);
+        let rival = others.map(|other| other.log).fold(f64::NEG_INFINITY, log_sum);
+        match odds > 0.0 || own.log - rival > NAMED {
+            true => Verdict::Named(best),
+            false => Verdict::Open,
+        }
+    }
+
+    /// The likeliest of all.
+    pub fn best(&self) -> usize {
+        self.likeliest(self.law_against_fault() > 0.0)
+    }
+
+    /// The likeliest of the hypotheses of another law, or of those of a fault.
+    fn likeliest(&self, law: bool) -> usize {
+        let of = self.hypotheses.iter().enumerate().filter(|(_, hypothesis)| hypothesis.kind.is_law() == law);
+        of.max_by(|a, b| a.1.log.total_cmp(&b.1.log)).map_or(0, |(place, _)| place)
+    }
+}

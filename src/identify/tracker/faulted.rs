@@ -1,0 +1,156 @@
+//! An alarm that is a sensor's fault: evidence against the law that a fault explains as well or better.
+
+use super::regime::Event;
+use super::state::{Intake, Setup, Tracker};
+use crate::estimation::{Channel, Filter, Innovation};
+use crate::evidence::Suspect;
+use crate::identify::change::LawInUse;
+use crate::identify::faults::{Expected, NAMED, Returned};
+use crate::identify::problem::Problem;
+use crate::identify::reading::Reading;
+use crate::identify::segment::MotionScales;
+use crate::law::Motion;
+
+/// A switch may take a part of F ÷ m: the inertia becomes 0.6 to 1.6 times what it was, as a std.
+const GAIN: f64 = 0.5;
+
+/// A decision between an offset and another law may take this long after an outage, s …
+const UNDECIDED: f64 = 3.0;
+
+/// … and is made before with these log-odds: the law and the offset are near each other for some tenths of a second.
+const DECISIVE: f64 = 6.0;
+
+/// Log-probability that a sensor comes back from an outage with an offset: one outage in a hundred.
+const COMES_BACK_OFF: f64 = -4.6;
+
+/// Probability of a fault, as a logarithm, before anything speaks for one: as of any event in a sample.
+const SELDOM: f64 = -20.0;
+
+/// What readings are held against: the law in use, in a motion of these scales and this size.
+pub(super) fn expected<'a>(
+    problem: &'a Problem,
+    law: &'a LawInUse,
+    scales: &MotionScales,
+    size: [f64; 2],
+) -> Expected<'a> {
+    Expected {
+        motion: Motion { terms: &problem.terms, coefficients: &law.all },
+        noise: law.noise_now(),
+        switch: [scales.restoring_acceleration(), GAIN],
+        size,
+        parts: law.run.parts,
+    }
+}
+
+impl Tracker {
+    /// Takes what the law in use makes of a sample, number `number`, for the hypotheses of faults that no single
+    /// reading shows.
+    pub(super) fn weigh_faults(&mut self, setup: Setup, number: u64, innovations: &[Option<Innovation>; 2]) {
+        self.intake.scatter.take(innovations);
+        let law = &self.monitor.law;
+        let outage = self.window.ends_outage(number);
+        if !(outage || self.intake.after_outage.is_open()) || !law.explains {
+            return;
+        }
+        let observation = self.window.observation(number);
+        let Tracker { intake, segment, monitor, .. } = self;
+        let law = &monitor.law;
+        let Intake { after_outage, quarantine, .. } = intake;
+        let expected = expected(setup.problem, law, &segment.scales, quarantine.size());
+        if outage {
+            after_outage.begin(&expected);
+        }
+        after_outage.take(&expected, observation.dt, &observation.drive, observation.measured);
+    }
+
+    /// Whether what speaks for a switch is a sensor's fault, or may be.
+    pub(super) fn is_fault(&mut self, suspect: &Suspect, threshold: f64) -> bool {
+        if !self.monitor.law.explains {
+            return false;
+        }
+        if self.intake.scatter.evidence() > suspect.evidence + NAMED {
+            self.intake.quarantine.go_on_in(self.intake.scatter.bursts());
+            self.clear_suspicion();
+            return true;
+        }
+        let repeated = self.intake.force.run();
+        if repeated + SELDOM > NAMED {
+            self.lose_excitation();
+            return true;
+        }
+        self.is_offset(suspect, threshold)
+    }
+
+    /// F repeats exactly where it varied, and the motion goes its own way: F is not known.
+    fn lose_excitation(&mut self) {
+        self.intake.force_lost = true;
+        let (since, unseen) = (self.intake.force.length(), self.unknown_excitation());
+        self.window.amend(since, |reading| reading.unseen += unseen);
+        self.segment.begin_run(&self.window);
+        self.restart_law(None);
+    }
+
+    /// Intensity of the white force, N² s, that an excitation of which nothing is known is like.
+    pub(super) fn unknown_excitation(&self) -> f64 {
+        let force = self.intake.excitation.size();
+        2.0 * force * force * self.segment.scales.natural_time().min(1.0)
+    }
+
+    /// Whether one offset since the last outage explains what several coefficients would have to change for,
+    /// `threshold` being what the improbability of a switch asks; until that is decided there is no alarm.
+    fn is_offset(&mut self, suspect: &Suspect, threshold: f64) -> bool {
+        let Some(returned) = self.intake.after_outage.likeliest() else { return false };
+        let odds = (returned.evidence + COMES_BACK_OFF) - (suspect.evidence - threshold);
+        self.intake.undecided = odds.abs() < DECISIVE && returned.since < UNDECIDED;
+        if self.intake.undecided || odds < 0.0 {
+            return self.intake.undecided;
+        }
+        self.correct_offset(&returned);
+        true
+    }
+
+    fn correct_offset(&mut self, returned: &Returned) {
+        let Returned { channel, offset, since, .. } = *returned;
+        self.intake.quarantine.take_off(channel, offset);
+        self.intake.after_outage.end();
+        let now = self.now();
+        let first = (self.window.oldest()..self.window.end())
+            .rev()
+            .take_while(|number| now - self.window.sample(*number).t <= since);
+        let count = first.count() as u64;
+        self.window.amend(count, |Reading { sample, .. }| match channel {
+            Channel::Q => sample.q -= offset,
+            Channel::Qd => sample.qd -= offset,
+        });
+        self.segment.begin_run(&self.window);
+        self.restart_law(Some(returned));
+    }
+
+    /// What spoke for a switch was a fault: the law in use goes on from a state that the fault did not touch.
+    fn restart_law(&mut self, returned: Option<&Returned>) {
+        self.clear_suspicion();
+        let run = &mut self.monitor.law.run;
+        let spread = match returned {
+            Some(returned) => returned.filter,
+            None => {
+                let [qq, _, vv] = run.filter.covariance;
+                let [q, qd] = self.monitor.law.noise.sensor;
+                Filter { covariance: [qq.max(q), 0.0, vv.max(qd)], ..run.filter }
+            }
+        };
+        run.filter = spread;
+        let state = run.filter.state;
+        self.monitor.prediction.restart(state, self.window.sample(self.window.ready() - 1).t);
+    }
+
+    fn clear_suspicion(&mut self) {
+        self.intake.undecided = false;
+        self.monitor.bank.clear();
+        self.monitor.empirical_null.clear();
+        self.monitor.unusual_since = None;
+        self.intake.scatter.clear();
+        if self.regime.suspected_since().is_some() {
+            self.enter(Event::SuspicionCleared);
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! From the stream into the record: what may be a sensor's fault is held until it has a name.
+
+use super::faulted::expected;
+use super::state::{Intake, Setup, Tracker};
+use crate::identify::problem::Problem;
+use crate::identify::reading::Reading;
+use crate::identify::report::{SensorState, Status};
+use crate::identify::sample::Sample;
+use crate::identify::settings::Settings;
+use crate::law::{Hold, Motion};
+
+/// Readings that enter the record in a step: what was held is made up for at this pace.
+const CATCH_UP: usize = 4;
+
+/// What moves q̇ by so many stds of a reading is told by it.
+const TOLD: f64 = 6.0;
+
+/// Samples after which a law that gets none is not that of the present any more.
+const FRESH: usize = 2;
+
+impl Tracker {
+    /// Takes a sample that is a number.
+    pub fn step(&mut self, problem: &Problem, settings: &Settings, sample: Sample) {
+        let setup = Setup { problem, settings };
+        let mut reading = self.intake.excitation.take(sample);
+        self.weigh_glitch(problem, &mut reading);
+        self.follow_excitation(problem, &mut reading);
+        self.hold_against_law(setup, reading);
+        for _ in 0..CATCH_UP {
+            let Some(reading) = self.intake.quarantine.next() else { break };
+            self.take(setup, reading);
+        }
+    }
+
+    /// A glitch of F that would have moved q̇ by more than its readings scatter is told by q̇ itself: it acted, or the
+    /// motion has been kicked the other way. Of a smaller one nobody knows.
+    fn weigh_glitch(&self, problem: &Problem, reading: &mut Reading) {
+        if reading.unseen == 0.0 {
+            return;
+        }
+        let law = &self.monitor.law;
+        let motion = Motion { terms: &problem.terms, coefficients: &law.all };
+        let dt = reading.sample.t - self.now();
+        let push = reading.unseen * dt / motion.mass(law.run.filter.state.q).powi(2);
+        let scatter = law.noise.sensor[1] + law.run.filter.covariance[2];
+        if !law.running || push > TOLD * TOLD * scatter {
+            reading.unseen = 0.0;
+        }
+    }
+
+    /// An F that is stuck says nothing until it varies again.
+    fn follow_excitation(&mut self, problem: &Problem, reading: &mut Reading) {
+        let varies = self.intake.force.take(reading.sample.excitation).is_none();
+        if self.intake.force_lost && problem.channels.excitation {
+            reading.unseen += self.unknown_excitation();
+            self.intake.force_lost = !varies;
+        }
+    }
+
+    /// A validated law that explains its record says what a reading can be; nothing else does.
+    fn hold_against_law(&mut self, setup: Setup, reading: Reading) {
+        let Setup { problem, .. } = setup;
+        let Tracker { intake, monitor, window, segment, regime, .. } = self;
+        let law = &monitor.law;
+        let known = law.running && law.explains && regime.law().is_some() && problem.hold != Hold::BandLimited;
+        let size = intake.quarantine.size();
+        let expected = known.then(|| (expected(problem, law, &segment.scales, size), law.run.filter));
+        let measured = [problem.channels.q, problem.channels.qd];
+        intake.quarantine.take(reading, measured, problem.hold, window.pace(), expected);
+    }
+
+    /// What the sensors of q, q̇ and F do.
+    pub(super) fn sensors(&self) -> [SensorState; 3] {
+        let Intake { excitation, quarantine, force_lost, .. } = &self.intake;
+        let [q, qd, kicked] = quarantine.sensors();
+        let force = match (force_lost, excitation.is_faulty()) {
+            (true, _) => SensorState::Stuck,
+            (false, true) => SensorState::Outlier,
+            (false, false) => kicked,
+        };
+        [q, qd, force]
+    }
+
+    /// Whether the law in use has been held against the last samples, and nothing is as likely as it.
+    pub(super) fn is_fresh(&self) -> bool {
+        self.intake.quarantine.behind() <= FRESH && !self.intake.undecided
+    }
+
+    /// The status with what is being held: a switch is suspected as soon as that speaks for one.
+    pub(super) fn status(&self) -> Status {
+        match self.regime.status() {
+            Status::Tracking if self.intake.quarantine.suspects_law() => Status::SwitchSuspected,
+            status => status,
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! What a figure shows, in data coordinates.
+
+use super::thin;
+
+/// A figure: panels one below the other.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Figure {
+    /// Its title.
+    pub title: String,
+    /// What is to be known of it, below.
+    pub caption: String,
+    /// Its panels, from the top.
+    pub panels: Vec<Panel>,
+}
+
+/// A panel: layers over a pair of axes, the first one lowest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Panel {
+    /// Its title.
+    pub title: String,
+    /// The axis to the right.
+    pub x: Axis,
+    /// The axis upwards.
+    pub y: Axis,
+    /// What is drawn.
+    pub layers: Vec<Layer>,
+}
+
+/// An axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Axis {
+    /// Quantity and unit.
+    pub label: String,
+    /// Whether it is logarithmic.
+    pub log: bool,
+}
+
+impl Axis {
+    /// A linear axis.
+    pub fn of(label: &str) -> Axis {
+        Axis { label: label.into(), log: false }
+    }
+
+    /// A logarithmic axis.
+    pub fn log(label: &str) -> Axis {
+        Axis { label: label.into(), log: true }
+    }
+}
+
+/// What a panel draws.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Layer {
+    /// A line through points.
+    Line {
+        /// Its name in the legend.
+        name: String,
+        /// Its points; a NaN interrupts it.
+        points: Vec<[f64; 2]>,
+    },
+    /// Points.
+    Points {
+        /// Their name in the legend.
+        name: String,
+        /// The points.
+        points: Vec<[f64; 2]>,
+    },
+    /// The area between two curves: x, lower, upper.
+    Area {
+        /// Its name in the legend.
+        name: String,
+        /// Its edges.
+        edges: Vec<[f64; 3]>,
+    },
+    /// Named bars from the left, one below the other, each with its text.
+    Bars(Vec<(String, f64, String)>),
+    /// A stretch of the x axis.
+    Band {
+        /// Where it begins.
+        from: f64,
+        /// Where it ends.
+        to: f64,
+        /// What it is; empty for a plain one.
+        label: String,
+    },
+    /// An instant, or a value on the x axis.
+    Mark {
+        /// Where.
+        at: f64,
+        /// What it is.
+        label: String,
+    },
+}
+
+impl Layer {
+    /// A line; of more than [`thin::MOST`] points the smallest and the largest of each bin.
+    pub fn line(name: &str, x: &[f64], y: &[f64]) -> Layer {
+        Layer::Line { name: name.into(), points: thin::envelope(x, y) }
+    }
+
+    /// Points; of more than [`thin::MOST`] every so many.
+    pub fn points(name: &str, x: &[f64], y: &[f64]) -> Layer {
+        Layer::Points { name: name.into(), points: thin::sampled(x, y) }
+    }
+}
+
+impl Panel {
+    /// The extents of what is drawn: x from, to, y from, to; finite and not empty.
+    pub(super) fn extents(&self) -> [f64; 4] {
+        let mut extents = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];
+        let mut take = |x: f64, y: Option<f64>| {
+            if x.is_finite() && (!self.x.log || x > 0.0) {
+                extents[0] = extents[0].min(x);
+                extents[1] = extents[1].max(x);
+            }
+            if let Some(y) = y.filter(|y| y.is_finite() && (!self.y.log || *y > 0.0)) {
+                extents[2] = extents[2].min(y);
+                extents[3] = extents[3].max(y);
+            }
+        };
+        for layer in &self.layers {
+            match layer {
+                Layer::Line { points, .. } | Layer::Points { points, .. } => {
+                    points.iter().for_each(|[x, y]| take(*x, Some(*y)));
+                }
+                Layer::Area { edges, .. } => edges.iter().for_each(|[x, low, high]| {
+                    take(*x, Some(*low));
+                    take(*x, Some(*high));
+                }),
+                Layer::Bars(bars) => bars.iter().for_each(|(_, value, _)| take(*value, None)),
+                Layer::Band { from, to, .. } => [from, to].into_iter().for_each(|x| take(*x, None)),
+                Layer::Mark { at, .. } => take(*at, None),
+            }
+        }
+        let [from, to] = widened(extents[0], extents[1], self.x.log);
+        let [low, high] = widened(extents[2], extents[3], self.y.log);
+        [from, to, low, high]
+    }
+}
+
+/// A range that is not empty, a little wider than its content upwards and downwards.
+fn widened(from: f64, to: f64, log: bool) -> [f64; 2] {
+    match (from <= to, log) {
+        (false, true) => [0.1, 1.0],
+        (false, false) => [0.0, 1.0],
+        (true, true) => [from * 0.8, to * 1.25],
+        (true, false) if from == to => {
+            [from - 1.0_f64.min(from.abs().max(1e-12)), to + 1.0_f64.min(to.abs().max(1e-12))]
+        }
+        (true, false) => [from, to],
+    }
+}

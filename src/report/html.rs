@@ -1,0 +1,126 @@
+//! Figures as plotly's, for a page that holds its JavaScript.
+
+use super::figure::{Axis, Figure, Layer, Panel};
+use plotly::common::{Fill, Line, Marker, Mode, Orientation, Title};
+use plotly::layout::{Annotation, AxisType, Layout, Margin, Shape, ShapeLayer, ShapeLine, ShapeType};
+use plotly::{Bar, Plot, Scatter};
+
+/// Colours of curves, as in the SVG.
+const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"];
+
+/// Height of a panel, and of a bar, pixels.
+const PANEL: usize = 300;
+const BAR: usize = 34;
+
+/// The figure's panels as parts of a page, each a plot of its own; `id` tells the figures of a page apart.
+pub fn html(figure: &Figure, id: &str) -> String {
+    let panels = figure.panels.iter().enumerate().map(|(index, panel)| {
+        let height = height(panel);
+        let plot = plot(panel, height).to_inline_html(Some(&format!("{id}-{index}")));
+        format!("<div style=\"height:{height}px\">{plot}</div>\n")
+    });
+    let caption = if figure.caption.is_empty() {
+        String::new()
+    } else {
+        format!("<p class=\"caption\">{}</p>\n", escaped(&figure.caption))
+    };
+    format!("<h2>{}</h2>\n{}{caption}", escaped(&figure.title), panels.collect::<String>())
+}
+
+/// The JavaScript that draws, as an element of a page.
+pub(super) fn script() -> String {
+    let all = Plot::offline_js_sources();
+    let end = all.find("</script>").map_or(all.len(), |at| at + "</script>".len());
+    all[..end].to_string()
+}
+
+/// Text as HTML shows it.
+pub(super) fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+fn height(panel: &Panel) -> usize {
+    let bars =
+        panel.layers.iter().find_map(|layer| if let Layer::Bars(bars) = layer { Some(bars.len()) } else { None });
+    bars.map_or(PANEL, |count| 110 + BAR * count)
+}
+
+fn plot(panel: &Panel, height: usize) -> Plot {
+    let mut plot = Plot::new();
+    let mut colours = COLOURS.iter().cycle();
+    let (mut shapes, mut notes) = (Vec::new(), Vec::new());
+    let mut shade = 0;
+    for layer in &panel.layers {
+        let mut next = || colours.next().copied().unwrap_or("#000");
+        match layer {
+            Layer::Line { name, points } => plot.add_trace(curve(name, points, Mode::Lines, next())),
+            Layer::Points { name, points } => plot.add_trace(curve(name, points, Mode::Markers, next())),
+            Layer::Area { name, edges } => {
+                let colour = next();
+                let edge = |at: usize| edges.iter().map(|edge| [edge[0], edge[at]]).collect::<Vec<_>>();
+                plot.add_trace(curve("", &edge(1), Mode::Lines, colour).show_legend(false));
+                plot.add_trace(curve(name, &edge(2), Mode::Lines, colour).fill(Fill::ToNextY));
+            }
+            Layer::Bars(bars) => {
+                let names: Vec<String> = bars.iter().rev().map(|bar| bar.0.clone()).collect();
+                let values: Vec<f64> = bars.iter().rev().map(|bar| bar.1).collect();
+                let texts: Vec<String> = bars.iter().rev().map(|bar| bar.2.clone()).collect();
+                let bar = Bar::new(values, names).orientation(Orientation::Horizontal).text_array(texts);
+                plot.add_trace(bar.marker(Marker::new().color(next())));
+            }
+            Layer::Band { from, to, label } => {
+                let opacity = if shade % 2 == 0 { 0.05 } else { 0.11 };
+                shade += 1;
+                shapes.push(upright(*from, *to).fill_color("#000").opacity(opacity).layer(ShapeLayer::Below));
+                notes.push(note(0.5 * (from + to), label, panel.x.log));
+            }
+            Layer::Mark { at, label } => {
+                let line = ShapeLine::new().color("#be3c28").width(1.5);
+                shapes.push(upright(*at, *at).line(line));
+                notes.push(note(*at, label, panel.x.log));
+            }
+        }
+    }
+    let layout = Layout::new()
+        .title(Title::with_text(&panel.title))
+        .height(height)
+        .margin(Margin::new().top(50).bottom(50).right(20).auto_expand(true))
+        .x_axis(axis(&panel.x))
+        .y_axis(axis(&panel.y).auto_margin(true))
+        .shapes(shapes)
+        .annotations(notes);
+    plot.set_layout(layout);
+    plot
+}
+
+fn curve(name: &str, points: &[[f64; 2]], mode: Mode, colour: &'static str) -> Box<Scatter<f64, Option<f64>>> {
+    let x = points.iter().map(|point| digits(point[0])).collect();
+    let y = points.iter().map(|point| Some(digits(point[1])).filter(|value| value.is_finite())).collect();
+    let trace = Scatter::new(x, y).name(name).mode(mode);
+    trace
+        .line(Line::new().color(colour).width(1.2))
+        .marker(Marker::new().color(colour).size(3))
+        .show_legend(!name.is_empty())
+}
+
+/// Seven digits: more than a screen of any zoom shows of a few thousand points.
+fn digits(value: f64) -> f64 {
+    format!("{value:.6e}").parse().unwrap_or(value)
+}
+
+fn axis(axis: &Axis) -> plotly::layout::Axis {
+    let kind = if axis.log { AxisType::Log } else { AxisType::Linear };
+    let own = plotly::layout::Axis::new().title(Title::with_text(&axis.label));
+    if axis.label.is_empty() { own } else { own.type_(kind) }
+}
+
+/// A stretch of the x axis from below to above; shapes take values as they are, on a logarithmic axis too.
+fn upright(from: f64, to: f64) -> Shape {
+    Shape::new().shape_type(ShapeType::Rect).x_ref("x").y_ref("paper").x0(from).x1(to).y0(0.0).y1(1.0)
+}
+
+/// A word above the panel; annotations on a logarithmic axis stand at the logarithm.
+fn note(at: f64, label: &str, log: bool) -> Annotation {
+    let at = if log { at.log10() } else { at };
+    Annotation::new().x(at).y(1.0).x_ref("x").y_ref("paper").text(label).show_arrow(false).y_shift(8.0)
+}

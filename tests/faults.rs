@@ -1,0 +1,206 @@
+//! Faults of sensors and clocks: none is a switch, none leaves a trace, and `valid` is a promise all the while.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use switchid::identify::{Identifier, Sample, SensorState, Settings};
+use switchid::law::{Given, Model};
+use switchid::simulate::{Builtin, Scenario, record};
+
+/// Std of the sensors' noise.
+const NOISE: f64 = 0.01;
+
+/// Time at which a fault begins, and number of its first sample.
+const FAULT: f64 = 8.0;
+const FIRST: usize = 8000;
+
+/// Std beyond which no honest error is.
+const BEYOND: f64 = 8.0;
+
+/// A plant whose law switches at `switch` s, for `duration` s.
+fn plant(builtin: Builtin, seed: u64, switch: f64, duration: f64) -> Scenario {
+    let mut scenario = builtin.random(seed).with_noise(NOISE);
+    scenario.stages.truncate(2);
+    (scenario.stages[1].start, scenario.duration) = (switch, duration);
+    scenario
+}
+
+fn samples(scenario: &Scenario) -> Vec<Sample> {
+    let sample = |reading: switchid::simulate::Reading| Sample {
+        t: reading.t,
+        q: reading.q,
+        qd: reading.qd,
+        excitation: reading.excitation,
+    };
+    record(scenario).unwrap().into_iter().map(sample).collect()
+}
+
+/// Ten seconds of one law.
+fn steady(seed: u64) -> (Scenario, Vec<Sample>) {
+    let scenario = plant(Builtin::DuffingSine, seed, 1e3, 10.0);
+    let samples = samples(&scenario);
+    (scenario, samples)
+}
+
+fn identifier(builtin: Builtin) -> Identifier {
+    let model = Model::of("plant", builtin.terms().into_iter().map(|term| (term, Given::Fit)));
+    Identifier::new(&model, Settings::default()).unwrap()
+}
+
+/// What was seen of a stream.
+#[derive(Debug, Default)]
+struct Seen {
+    switches: u32,
+    valid_at_the_end: bool,
+    /// Time of the last sample at which no law was valid, s.
+    invalid_until: f64,
+    /// Largest error ÷ std while valid, the second after a true switch left out.
+    worst: f64,
+    /// Whether `valid` stood beside a coefficient without std.
+    unknown: bool,
+    /// Every state that a sensor was said to be in, by channel.
+    sensors: [Vec<SensorState>; 3],
+}
+
+fn watch(scenario: &Scenario, builtin: Builtin, samples: &[Sample]) -> Seen {
+    let mut identifier = identifier(builtin);
+    let mut seen = Seen::default();
+    for sample in samples {
+        identifier.step(*sample).ok();
+        seen.take(&identifier, scenario, sample.t);
+    }
+    seen.switches = identifier.output().switch_count;
+    seen.valid_at_the_end = identifier.output().valid;
+    seen
+}
+
+impl Seen {
+    fn take(&mut self, identifier: &Identifier, scenario: &Scenario, t: f64) {
+        let output = identifier.output();
+        for (said, now) in self.sensors.iter_mut().zip(output.sensors) {
+            if said.last() != Some(&now) {
+                said.push(now);
+            }
+        }
+        if !output.valid {
+            self.invalid_until = t;
+            return;
+        }
+        let stage = scenario.stage_at(t);
+        let truth = &scenario.stages[stage];
+        let settled = stage == 0 || t - truth.start > 1.0;
+        for (known, truth) in identifier.coefficients().iter().zip(&truth.coefficients) {
+            self.unknown |= known.std.is_none();
+            let z = known.std.map_or(0.0, |std| (known.value - truth).abs() / std);
+            self.worst = if settled { self.worst.max(z) } else { self.worst };
+        }
+    }
+
+    fn said(&self, channel: usize) -> &[SensorState] {
+        &self.sensors[channel]
+    }
+}
+
+/// Readings that are wide draws of `size` stds.
+fn burst(samples: &mut [Sample], size: f64, generator: &mut ChaCha8Rng) {
+    for sample in samples {
+        let sign = if generator.random_bool(0.5) { 1.0 } else { -1.0 };
+        sample.qd += sign * size * NOISE * generator.random_range(0.5..1.5);
+    }
+}
+
+#[test]
+fn a_few_bad_readings_of_the_velocity_are_no_switch() {
+    for (seed, (count, size)) in (40..).zip([(1, 100.0), (2, 10.0), (2, 1000.0), (7, 30.0), (20, 3.0), (50, 300.0)]) {
+        let (scenario, mut samples) = steady(seed);
+        burst(&mut samples[FIRST..FIRST + count], size, &mut ChaCha8Rng::seed_from_u64(seed));
+        let seen = watch(&scenario, Builtin::DuffingSine, &samples);
+        let calm = seen.switches == 0 && seen.valid_at_the_end && !seen.unknown && seen.worst < BEYOND;
+        assert!(calm && seen.invalid_until < FAULT + 0.35, "{count} of {size} stds: {seen:?}");
+    }
+}
+
+#[test]
+fn a_bad_reading_is_said_to_be_one_and_to_be_over() {
+    let (scenario, mut samples) = steady(50);
+    samples[FIRST].q += 1.0;
+    let seen = watch(&scenario, Builtin::DuffingSine, &samples);
+    assert_eq!(seen.said(0), [SensorState::Ok, SensorState::Outlier, SensorState::Ok]);
+    assert!(seen.said(1) == [SensorState::Ok] && seen.said(2) == [SensorState::Ok], "{seen:?}");
+}
+
+#[test]
+fn no_number_that_a_sensor_can_send_leaves_a_trace() {
+    for value in [1e100, -1e300, f64::MAX] {
+        let (scenario, mut samples) = steady(51);
+        samples[FIRST].excitation = value;
+        samples[FIRST + 300..FIRST + 310].iter_mut().for_each(|sample| sample.q = value);
+        samples[FIRST + 600].qd = -value;
+        let seen = watch(&scenario, Builtin::DuffingSine, &samples);
+        let calm = seen.switches == 0 && seen.valid_at_the_end && seen.worst < BEYOND;
+        assert!(calm && seen.invalid_until < FAULT + 0.9, "{value}: {seen:?}");
+    }
+}
+
+#[test]
+fn a_stuck_sensor_is_no_switch_and_is_said_to_be_stuck() {
+    let (scenario, mut samples) = steady(52);
+    let before = samples[FIRST - 1].qd;
+    samples[FIRST..FIRST + 1000].iter_mut().for_each(|sample| sample.qd = before);
+    let seen = watch(&scenario, Builtin::DuffingSine, &samples);
+    assert!(seen.switches == 0 && seen.valid_at_the_end && seen.worst < BEYOND, "{seen:?}");
+    assert!(seen.said(1).contains(&SensorState::Stuck) && seen.said(1).last() == Some(&SensorState::Ok), "{seen:?}");
+}
+
+#[test]
+fn samples_that_are_no_numbers_end_what_is_valid_until_they_are() {
+    let builtin = Builtin::DuffingSine;
+    let (_, samples) = steady(53);
+    let mut identifier = identifier(builtin);
+    samples[..FIRST].iter().for_each(|sample| identifier.step(*sample).unwrap());
+    assert!(identifier.output().valid);
+    for sample in &samples[FIRST..FIRST + 5] {
+        identifier.step(Sample { qd: f64::NAN, ..*sample }).unwrap_err();
+    }
+    assert!(!identifier.output().valid && identifier.output().sensors[1] == SensorState::Missing);
+    samples[FIRST + 5..FIRST + 8].iter().for_each(|sample| identifier.step(*sample).unwrap());
+    assert!(identifier.output().valid && identifier.output().sensors[1] == SensorState::Ok);
+}
+
+#[test]
+fn a_stamp_far_ahead_and_a_clock_that_is_set_back_do_not_end_the_stream() {
+    let (scenario, mut samples) = steady(54);
+    samples[FIRST].t = 1e6;
+    samples[FIRST + 500..].iter_mut().for_each(|sample| sample.t -= 5.0);
+    let mut identifier = identifier(Builtin::DuffingSine);
+    let skipped = samples.iter().filter(|sample| identifier.step(**sample).is_err()).count();
+    let output = identifier.output();
+    assert!(skipped < 15 && output.valid && output.switch_count == 0, "{skipped} skipped: {output:?}");
+    assert!(scenario.stages.len() == 2);
+}
+
+/// A fault drawn at random.
+fn spoil(samples: &mut [Sample], generator: &mut ChaCha8Rng) {
+    let count = generator.random_range(1..60);
+    let stuck = samples[FIRST - 1];
+    match generator.random_range(0..6) {
+        0 => burst(&mut samples[FIRST..FIRST + count], 10.0_f64.powf(generator.random_range(0.5..3.0)), generator),
+        1 => samples[FIRST..FIRST + 10 * count].iter_mut().for_each(|sample| sample.q = stuck.q),
+        2 => samples[FIRST..FIRST + 10 * count].iter_mut().for_each(|sample| sample.qd = 0.0),
+        3 => samples[FIRST].excitation *= generator.random_range(-20.0..20.0),
+        4 => samples[FIRST..FIRST + count].iter_mut().for_each(|sample| sample.q = 1e300),
+        _ => samples[FIRST..FIRST + count].iter_mut().for_each(|sample| sample.excitation = f64::NAN),
+    }
+}
+
+#[test]
+fn valid_is_a_promise_whatever_the_sensors_do() {
+    for seed in 60..72 {
+        let builtin = if seed % 2 == 0 { Builtin::DuffingSine } else { Builtin::DuffingWhite };
+        let scenario = plant(builtin, seed, 10.0, 14.0);
+        let mut samples = samples(&scenario);
+        spoil(&mut samples, &mut ChaCha8Rng::seed_from_u64(seed));
+        let seen = watch(&scenario, builtin, &samples);
+        assert!(!seen.unknown && seen.worst < BEYOND, "seed {seed}: {seen:?}");
+        assert!(seen.switches == 1, "seed {seed}: the switch at 10 s is the only one: {seen:?}");
+    }
+}
