@@ -9,6 +9,7 @@ use crate::diagnose::{Candidate, Comparison, Diagnosis, Options, Place, Side, co
 use crate::identify::{Identification, Recording};
 use crate::law::{Term, Units};
 use crate::report::{Axis, Figure, Layer, MOST, Panel};
+use nalgebra::{DMatrix, DVector};
 
 /// Candidates that are drawn through the residual.
 const DRAWN: usize = 3;
@@ -181,9 +182,11 @@ pub(super) fn diagnosis(input: &Input, found: &Diagnosis) -> Figure {
     let compared = compare(&input.model.freed(), &recordings, &Options { units: input.units, ..Options::default() });
     let mut panels = over_motion(&compared.best, input.units);
     let drawn = found.candidates.iter().filter(|candidate| candidate.doubt.is_none()).take(DRAWN);
+    let places: Vec<&Place> = compared.best.left.iter().flat_map(|left| &left.places).collect();
     for candidate in drawn {
+        let beside = beside(candidate.term, &found.base.terms, &places);
         for (panel, of_velocity) in panels.iter_mut().zip([true, false]) {
-            panel.layers.extend(curve(panel, candidate, of_velocity));
+            panel.layers.extend(curve(panel, candidate, &beside, of_velocity));
         }
     }
     let error = found.candidates.iter().take(8);
@@ -199,19 +202,39 @@ pub(super) fn diagnosis(input: &Input, found: &Diagnosis) -> Figure {
         y: Axis::default(),
         layers: vec![
             Layer::Bars(bars),
-            Layer::Mark { at: 100.0 * now.after, label: format!("now {}", percent(now.after)) },
+            Layer::Mark { at: 100.0 * now.before, label: format!("without {}", percent(now.before)) },
         ],
     };
     let effect = found.effect.as_deref().unwrap_or("nothing of the catalogue");
     Figure {
         title: format!("{}: what the law leaves over, and {effect} in it", input.named()),
-        caption: format!("Left over is Σ θ f − F: what is missing has the other sign and is drawn so. {}", found.left),
+        caption: format!(
+            "Left over is Σ θ f − F: what is missing has the other sign and is drawn so, less what the law's own terms take of it. \
+             As found, {}.",
+            found.left
+        ),
         panels: panels.into_iter().chain([stairs]).collect(),
     }
 }
 
-/// −θ f of a candidate over the extent of the panel's points; none where it takes more than q or q̇ of one instant.
-fn curve(panel: &Panel, candidate: &Candidate, of_velocity: bool) -> Option<Layer> {
+/// What the law's own terms take of a candidate along a motion, by least squares: terms with their coefficients.
+fn beside(candidate: Term, law: &[Term], places: &[&Place]) -> Vec<(Term, f64)> {
+    let own: Vec<Term> = law.iter().copied().filter(|term| term.is_pointwise() && *term != Term::Inertia).collect();
+    if !candidate.is_pointwise() || own.is_empty() || places.is_empty() {
+        return Vec::new();
+    }
+    let force = |term: Term, place: &Place| term.force(place.q, place.qd, 0.0);
+    let columns = DMatrix::from_fn(places.len(), own.len(), |row, column| force(own[column], places[row]));
+    let right = DVector::from_iterator(places.len(), places.iter().map(|place| force(candidate, place)));
+    let solution = (columns.transpose() * &columns)
+        .pseudo_inverse(f64::EPSILON)
+        .map(|inverse| inverse * (columns.transpose() * right));
+    solution.map_or_else(|_| Vec::new(), |solution| own.into_iter().zip(solution.iter().copied()).collect())
+}
+
+/// −θ f of a candidate over the extent of the panel's points, less what the law takes of it; none where it takes more than q or q̇ of
+/// one instant, or does not depend on this one.
+fn curve(panel: &Panel, candidate: &Candidate, beside: &[(Term, f64)], of_velocity: bool) -> Option<Layer> {
     let Layer::Points { points, .. } = panel.layers.first()? else { return None };
     let term = candidate.term;
     if !term.is_pointwise() || term == Term::Inertia || !candidate.coefficient.is_finite() {
@@ -220,11 +243,10 @@ fn curve(panel: &Panel, candidate: &Candidate, of_velocity: bool) -> Option<Laye
     let low = points.iter().map(|point| point[0]).fold(f64::INFINITY, f64::min);
     let high = points.iter().map(|point| point[0]).fold(f64::NEG_INFINITY, f64::max);
     let x: Vec<f64> = (0..=CURVE).map(|at| low + (high - low) * at as f64 / CURVE as f64).collect();
-    let force = |x: &f64| {
-        -candidate.coefficient * if of_velocity { term.force(0.0, *x, 0.0) } else { term.force(*x, 0.0, 0.0) }
-    };
-    let y: Vec<f64> = x.iter().map(force).collect();
-    let moves = y.iter().any(|value| (value - y[0]).abs() > 0.0) && y.iter().all(|value| value.is_finite());
+    let at = |term: Term, x: f64| if of_velocity { term.force(0.0, x, 0.0) } else { term.force(x, 0.0, 0.0) };
+    let taken = |x: f64| beside.iter().map(|(own, share)| share * at(*own, x)).sum::<f64>();
+    let y: Vec<f64> = x.iter().map(|x| -candidate.coefficient * (at(term, *x) - taken(*x))).collect();
+    let moves = x.iter().any(|x| at(term, *x) != at(term, low)) && y.iter().all(|value| value.is_finite());
     moves.then(|| Layer::line(&candidate.effect, &x, &y))
 }
 

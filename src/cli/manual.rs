@@ -1,9 +1,8 @@
 //! Shell completion and the man page, out of the command line itself.
 
-use super::CommandLine;
 use super::error::CommandError;
 use super::output;
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 use clap_complete::Shell;
 
 const FILES: &str = r#"
@@ -42,16 +41,23 @@ pub(super) struct CompletionArguments {
 #[command(after_help = "Examples:\n  switchid manual > switchid.1 && man ./switchid.1")]
 pub(super) struct ManualArguments {}
 
-pub(super) fn completions(arguments: &CompletionArguments) -> Result<(), CommandError> {
+/// Prints the completions of a command line.
+///
+/// # Errors
+/// What writing says.
+pub(super) fn completions(arguments: &CompletionArguments, mut command: Command) -> Result<(), CommandError> {
     let mut text = Vec::new();
-    clap_complete::generate(arguments.shell, &mut CommandLine::command(), "switchid", &mut text);
+    clap_complete::generate(arguments.shell, &mut command, "switchid", &mut text);
     output::print(&String::from_utf8_lossy(&text))
 }
 
-pub(super) fn manual(_: &ManualArguments) -> Result<(), CommandError> {
+/// Prints the man page of a command line.
+///
+/// # Errors
+/// What writing says.
+pub(super) fn manual(mut command: Command) -> Result<(), CommandError> {
     let failed = |error: std::io::Error| CommandError::write("standard output", error);
     let mut text = Vec::new();
-    let mut command = CommandLine::command();
     command.build();
     clap_mangen::Man::new(command.clone()).render(&mut text).map_err(failed)?;
     text.extend(FILES.as_bytes());

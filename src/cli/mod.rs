@@ -31,7 +31,7 @@ mod stage_limit;
 mod trace;
 mod words;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use error::CommandError;
 use std::process::ExitCode;
 
@@ -68,8 +68,8 @@ impl Command {
             Command::Check(arguments) => check::run(&arguments),
             Command::Init(arguments) => init::run(&arguments),
             Command::Effects(arguments) => effects::run(&arguments),
-            Command::Completions(arguments) => manual::completions(&arguments),
-            Command::Manual(arguments) => manual::manual(&arguments),
+            Command::Completions(arguments) => manual::completions(&arguments, CommandLine::command()),
+            Command::Manual(_) => manual::manual(CommandLine::command()),
             Command::Compare(arguments) => compare::run(&arguments),
             Command::Diagnose(arguments) => diagnose::run(&arguments),
             Command::Add(arguments) => add::run(&arguments),

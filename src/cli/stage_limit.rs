@@ -4,16 +4,24 @@ use super::input::is_noiseless;
 use crate::diagnose::{Evidence, Fit, Form, is_evident, refit};
 use crate::estimation::Noise;
 use crate::identify::{Identification, Recording, Settings, Stage, fit_force_law};
-use crate::law::{Model, Term};
+use crate::law::{Hold, Model, Term};
 use crate::limits::{Bound, Course, Imposed, Law, Sensors, Start, bound, force_bound};
 
 /// Process noise, (m/s²)² s, ÷ variance of the sensors' noise from which its search begins.
 const LEAST: f64 = 1e-6;
 
+/// Samples of a stage up to which its limit is formed of all of them: beyond, information grows as the time does.
+const ALL: usize = 200_000;
+
+/// Parts that are taken of a longer stage.
+const PARTS: usize = 8;
+
 /// The limits of one stage.
 pub(super) struct StageLimit {
     law: Law,
     bound: Bound,
+    /// Share of the stage's samples that the bound was formed of: variances fall as it grows to 1.
+    share: f64,
     explained: bool,
 }
 
@@ -26,12 +34,12 @@ impl StageLimit {
     /// The smallest std of a coefficient that the stage estimated.
     pub(super) fn std(&self, term: Term) -> Option<f64> {
         let row = self.law.sought().iter().position(|index| self.law.terms()[*index] == term)?;
-        self.bound.std[row]
+        self.bound.std[row].map(|std| std * self.share.sqrt())
     }
 
     /// The smallest mean of e.
     pub(super) fn relative_error(&self) -> Option<f64> {
-        self.bound.relative_error
+        self.bound.relative_error.map(|error| error * self.share)
     }
 }
 
@@ -48,7 +56,9 @@ pub(super) fn stage_limits(
     let last = found.stages.len().saturating_sub(1);
     let of = |(index, stage): (usize, &Stage)| {
         let range = samples(stage, recording, index == last);
-        stage_limit(stage, noise, &recording.section(range).ok()?, settings)
+        let parts: Vec<Recording> = parts(&range).into_iter().filter_map(|part| recording.section(part).ok()).collect();
+        let taken: usize = parts.iter().map(Recording::count).sum();
+        stage_limit(stage, noise, &parts, taken as f64 / range.len() as f64, settings)
     };
     found.stages.iter().enumerate().map(of).collect()
 }
@@ -67,20 +77,37 @@ fn samples(stage: &Stage, recording: &Recording, is_last: bool) -> std::ops::Ran
     before(stage.start)..if is_last { recording.count() } else { before(stage.end) }
 }
 
-fn stage_limit(stage: &Stage, noise: Noise, section: &Recording, settings: &Settings) -> Option<StageLimit> {
+/// The stage itself, or evenly spread parts of a long one.
+fn parts(range: &std::ops::Range<usize>) -> Vec<std::ops::Range<usize>> {
+    if range.len() <= ALL {
+        return vec![range.clone()];
+    }
+    let start = |part: usize| range.start + (range.len() - ALL / PARTS) * part / (PARTS - 1);
+    (0..PARTS).map(|part| start(part)..start(part) + ALL / PARTS).collect()
+}
+
+fn stage_limit(
+    stage: &Stage,
+    noise: Noise,
+    parts: &[Recording],
+    share: f64,
+    settings: &Settings,
+) -> Option<StageLimit> {
     let (law, pairs) = known_law(stage)?;
-    let (courses, motion) = motion(&pairs, section, settings, noise)?;
-    let measured = [section.channels().q, section.channels().qd];
+    let (courses, motion) = motion(&pairs, parts, settings, noise)?;
+    let channels = parts.first()?.channels();
+    let measured = [channels.q, channels.qd];
     let sensors = Sensors([0, 1].map(|channel| measured[channel].then_some(motion.noise.sensor[channel].sqrt())));
     let bound = bound(&law, &courses, sensors, Start::Unknown).ok()?;
-    Some(StageLimit { law, bound, explained: !is_evident(&motion) })
+    Some(StageLimit { law, bound, share, explained: !is_evident(&motion) })
 }
 
 /// The motion of a stage as its law and its readings together tell it, and the fit that says so.
-fn motion(pairs: &[(Term, f64)], section: &Recording, settings: &Settings, noise: Noise) -> Option<(Vec<Course>, Fit)> {
+fn motion(pairs: &[(Term, f64)], parts: &[Recording], settings: &Settings, noise: Noise) -> Option<(Vec<Course>, Fit)> {
     let (terms, held) = pairs.iter().map(|(term, value)| (*term, Some(*value))).unzip();
     let form = Form::new(terms, held, Vec::new());
-    let evidence = Evidence::new(&[(section, settings.hold)]);
+    let parts: Vec<(&Recording, Hold)> = parts.iter().map(|part| (part, settings.hold)).collect();
+    let evidence = Evidence::new(&parts);
     let coefficients: Vec<f64> = pairs.iter().map(|(_, value)| *value).collect();
     let motion = refit(&form, &evidence.pieces, &coefficients, noise)?;
     let pairs = evidence.pieces.iter().zip(&motion.states);
@@ -113,7 +140,7 @@ pub(super) fn force_limits(model: &Model, found: &Identification, recording: &Re
         let motion: Vec<Imposed> = during.map(|(t, state)| Imposed { t: *t, state: *state }).collect();
         let (law, _) = known_law(stage)?;
         let bound = force_bound(&law, &motion, std).ok()?;
-        Some(StageLimit { law, bound, explained: true })
+        Some(StageLimit { law, bound, share: 1.0, explained: true })
     };
     found.stages.iter().map(limit).collect()
 }

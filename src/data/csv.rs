@@ -64,8 +64,7 @@ impl Clock {
 
 impl<'a> Reader<'a> {
     fn new(source: &'a Source<'a>, layout: &'a Layout, dialect: &'a Dialect, text: &str) -> Reader<'a> {
-        let usual = dialect.sample.iter().map(|cell| cell.len() + 1).sum::<usize>().max(4);
-        let rows = Rows::new(source, layout, text.len() / usual);
+        let rows = Rows::new(source, layout, text.bytes().filter(|byte| *byte == b'\n').count() + 1);
         let first = (layout.time_base == TimeBase::Stamps).then(|| dialect.sample.get(layout.t.index)).flatten();
         let origin = first.filter(|cell| number(cell, dialect.decimal).is_none()).and_then(|cell| Instant::parse(cell));
         let clock = origin.map(|origin| Clock { origin, last: 0.0, midnights: 0.0 });

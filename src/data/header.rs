@@ -87,7 +87,8 @@ impl Layout {
     pub(super) fn find(headings: &Headings, model: &Model) -> Result<Layout, DataError> {
         let finder = Finder { headings, units: &model.units };
         let (file, kind) = (headings.file, headings.kind);
-        let (columns, told) = match (&headings.by_content, model.columns == Columns::default()) {
+        let unnamed = model.columns == Columns::default();
+        let (columns, told) = match (&headings.by_content, unnamed) {
             (Some(columns), true) => (columns, Some("by their numbers")),
             _ => (&model.columns, None),
         };
@@ -100,7 +101,8 @@ impl Layout {
         let excitation = optional(Channel::Excitation, &columns.excitation)?;
         let found = [q, qd, excitation].map(|column| column.map(|column| Column { guessed: told, ..column }));
         let [q, qd, excitation] = match found {
-            [None, None, _] if model.columns == Columns::default() => finder.guess(found)?,
+            [None, None, _] if unnamed => finder.guess(found)?,
+            found if unnamed && !finder.is_timed()? => finder.guess(found)?,
             found => found,
         };
         let taken: Vec<usize> = [&q, &qd, &excitation].into_iter().flatten().map(|column| column.index).collect();
@@ -220,6 +222,12 @@ impl Finder<'_> {
             }
         }
         self.required(Channel::Time, wanted).map(|column| (column, TimeBase::Stamps))
+    }
+
+    /// Whether the times go by their default name: then so do the other columns.
+    fn is_timed(&self) -> Result<bool, DataError> {
+        let column = self.column(Channel::Time, Channel::Time.name())?;
+        Ok(column.is_some() || self.time_base()?.is_some() || self.headings.rate.is_some())
     }
 
     /// A variable of a MAT file that stands for times.

@@ -244,7 +244,7 @@ fn class_name(class: u8) -> &'static str {
         4 => "text",
         5 => "a sparse matrix",
         16 => "a function",
-        _ => "an object",
+        _ => "an object (a table, timetable or timeseries?)",
     }
 }
 

@@ -56,7 +56,7 @@ pub(super) struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// For about so many rows.
+    /// For at most so many rows.
     pub(super) fn new(source: &'a Source<'a>, layout: &'a Layout, count: usize) -> Rows<'a> {
         let mut signals = Signals::default();
         let kept = [true, layout.q.is_some(), layout.qd.is_some(), layout.excitation.is_some()];

@@ -13,7 +13,7 @@ mod remarks;
 mod scale;
 mod verdict;
 
-pub use crate::estimation::Noise;
+pub use crate::estimation::{Noise, Observation};
 pub use candidates::same_effect;
 pub use compare::{
     Bounds, Comparison, Error, Estimate, Fail, Held, Judged, Left, NOISE_RATIO, Options, Over, Place, Side, Verdict,
@@ -26,5 +26,5 @@ pub use piece::Piece;
 pub use remarks::{Remark, remarks};
 pub use verdict::{
     ADEQUATE, Addition, Candidate, Clock, Diagnosis, Doubt, Finding, Improvement, LEVEL, Law, Posed, StageDiagnosis,
-    Step, Switched, WindowError, diagnose_stages, improved_model,
+    Step, Switched, WORTH, WindowError, diagnose_stages, improved_model,
 };

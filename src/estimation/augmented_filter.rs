@@ -2,10 +2,10 @@
 //!
 //! With κ_j = θ_j ÷ m and b = 1 ÷ m the acceleration is linear in what is sought, q̈ = b F − Σ κ_j f_j: the extended
 //! filter (Ljung, IEEE TAC 24, 1979) of (q, q̇, θ) follows a product of two unknowns and is biased, that of (q, q̇, κ,
-//! b) is linear in the unknowns but for the state that they share. The covariance P is (2 + n) × (2 + n); an interval
-//! takes it to Φ P Φᵀ + Q with Φ = [A B; 0 I].
+//! b) is linear in the unknowns but for the state that they share. The covariance is (2 + n) × (2 + n).
 
-use super::filter::Channel;
+use super::covariance::{carry, correct};
+use super::filter::{Channel, Filter, times, white_acceleration};
 use super::pass::{IntervalMap, Observation};
 use crate::law::{Compiled, Motion, State, Term};
 use serde::{Deserialize, Serialize};
@@ -35,9 +35,7 @@ pub struct Start<'a> {
     /// Std of θ relative to it.
     pub width: f64,
     /// (q, q̇).
-    pub state: State,
-    /// Its variances.
-    pub variances: [f64; 2],
+    pub first: Filter,
 }
 
 /// Mean and covariance of state and coefficients.
@@ -50,8 +48,9 @@ pub struct AugmentedFilter {
     scaled: Vec<f64>,
     all: Vec<f64>,
     covariance: Vec<f64>,
-    moved: Vec<f64>,
+    moved: Vec<[f64; 2]>,
     column: Vec<f64>,
+    gain: Vec<f64>,
     slopes: Vec<f64>,
     scaled_slopes: Vec<f64>,
     map: IntervalMap,
@@ -68,8 +67,9 @@ impl AugmentedFilter {
             scaled: vec![0.0; n],
             all: vec![0.0; terms],
             covariance: vec![0.0; size * size],
-            moved: vec![0.0; 2 * size],
+            moved: vec![[0.0; 2]; size],
             column: vec![0.0; size],
+            gain: vec![0.0; size],
             slopes: vec![0.0; n],
             scaled_slopes: vec![0.0; n],
             map: IntervalMap { transition: [[0.0; 2]; 2], input: vec![[0.0; 2]; n], push: [0.0; 2] },
@@ -85,10 +85,11 @@ impl AugmentedFilter {
         for (free, (scaled, place)) in self.scaled.iter_mut().zip(unknowns.free).enumerate() {
             *scaled = if unknowns.free_inertia == Some(free) { inverse } else { start.all[*place] * inverse };
         }
-        (self.state, self.log_likelihood) = (start.state, 0.0);
+        (self.state, self.log_likelihood) = (start.first.state(), 0.0);
         self.covariance.fill(0.0);
-        let size = self.size();
-        (self.covariance[0], self.covariance[size + 1]) = (start.variances[0], start.variances[1]);
+        for (row, first) in self.covariance.chunks_exact_mut(self.scaled.len() + 2).zip(start.first.covariance) {
+            row[..2].copy_from_slice(&first);
+        }
         self.wander(unknowns, start.reach, [start.width; 2]);
     }
 
@@ -140,7 +141,9 @@ impl AugmentedFilter {
                 *state = step.state;
             });
         }
-        self.carry(process + observation.unseen / (mass * mass), observation.dt);
+        let noise = white_acceleration(process + observation.unseen / (mass * mass), observation.dt);
+        let AugmentedFilter { covariance, moved, map, .. } = self;
+        carry(covariance, moved, |change| times(&map.transition, change), &map.input, &noise);
     }
 
     /// Writes κ and b as coefficients of the law; returns the inertia.
@@ -156,35 +159,6 @@ impl AugmentedFilter {
         unknowns.free_inertia.map_or(self.all[unknowns.inertia], |index| self.scaled[index].recip())
     }
 
-    /// P over an interval.
-    fn carry(&mut self, process: f64, dt: f64) {
-        let size = self.size();
-        let AugmentedFilter { covariance, moved, map, .. } = self;
-        let [a, b] = map.transition;
-        let (to_q, to_qd) = moved.split_at_mut(size);
-        for (column, (q, qd)) in to_q.iter_mut().zip(to_qd.iter_mut()).enumerate() {
-            let (first, second) = (covariance[column], covariance[size + column]);
-            (*q, *qd) = (a[0] * first + a[1] * second, b[0] * first + b[1] * second);
-        }
-        for (row, input) in covariance[2 * size..].chunks_exact(size).zip(&map.input) {
-            for ((entry, q), qd) in row.iter().zip(to_q.iter_mut()).zip(to_qd.iter_mut()) {
-                *q += input[0] * entry;
-                *qd += input[1] * entry;
-            }
-        }
-        let onto = |row: &[f64], by: [f64; 2], channel: usize| {
-            let inputs: f64 = row[2..].iter().zip(&map.input).map(|(entry, input)| entry * input[channel]).sum();
-            row[0] * by[0] + row[1] * by[1] + inputs
-        };
-        let cross = onto(to_q, b, 1) + process * dt * dt / 2.0;
-        (to_q[0], to_qd[1]) = (onto(to_q, a, 0) + process * dt.powi(3) / 3.0, onto(to_qd, b, 1) + process * dt);
-        (to_q[1], to_qd[0]) = (cross, cross);
-        covariance[..2 * size].copy_from_slice(moved);
-        for index in 2..size {
-            (covariance[index * size], covariance[index * size + 1]) = (moved[index], moved[size + index]);
-        }
-    }
-
     /// What the measurement would leave, and the variance of that.
     pub fn residual(&self, channel: Channel, measured: f64, variance: f64) -> (f64, f64) {
         let expected = [self.state.q, self.state.qd][channel as usize];
@@ -196,21 +170,14 @@ impl AugmentedFilter {
         let (residual, total) = self.residual(channel, measured, variance);
         let (size, place) = (self.size(), channel as usize);
         self.log_likelihood -= 0.5 * (residual * residual / total + total.ln());
-        let AugmentedFilter { column, covariance, state, scaled, .. } = self;
+        let AugmentedFilter { column, gain, covariance, state, scaled, .. } = self;
         column.copy_from_slice(&covariance[place * size..(place + 1) * size]);
-        let share = residual / total;
-        state.q += column[0] * share;
-        state.qd += column[1] * share;
-        scaled.iter_mut().zip(&column[2..]).for_each(|(value, entry)| *value += entry * share);
-        for (row, first) in covariance.chunks_exact_mut(size).zip(column.iter()) {
-            let gain = first / total;
-            row.iter_mut().zip(column.iter()).for_each(|(entry, second)| *entry -= gain * second);
-        }
-        for (index, entry) in column.iter().enumerate() {
-            // the difference of two large numbers, exactly
-            let left = entry * variance / total;
-            (covariance[place * size + index], covariance[index * size + place]) = (left, left);
-        }
+        let precision = total.recip();
+        gain.iter_mut().zip(column.iter()).for_each(|(gain, entry)| *gain = entry * precision);
+        state.q += gain[0] * residual;
+        state.qd += gain[1] * residual;
+        scaled.iter_mut().zip(&gain[2..]).for_each(|(value, gain)| *value += gain * residual);
+        correct(covariance, column, gain, place, variance);
     }
 
     /// Whether all is finite and the inertia has kept its sign.
@@ -256,6 +223,10 @@ mod tests {
     const DT: f64 = 0.005;
     const VARIANCES: [f64; 2] = [1e-8, 1e-6];
 
+    fn at_rest() -> Filter {
+        Filter::begin([0.0; 2], VARIANCES)
+    }
+
     fn unknowns() -> Unknowns<'static> {
         Unknowns { terms: &TERMS, free: &[0, 1, 2], free_terms: &TERMS, inertia: 0, free_inertia: Some(0) }
     }
@@ -265,7 +236,7 @@ mod tests {
     fn followed(seconds: f64, wander: f64) -> AugmentedFilter {
         let mut joint = AugmentedFilter::new(3, 3);
         let all = TRUTH.map(|value| 1.1 * value);
-        let start = Start { all: &all, reach: &TRUTH, width: 0.2, state: State::default(), variances: VARIANCES };
+        let start = Start { all: &all, reach: &TRUTH, width: 0.2, first: at_rest() };
         joint.begin(&unknowns(), &start);
         let (motion, mut state) = (Motion { terms: &TERMS, coefficients: &TRUTH }, State::default());
         for k in 0..(seconds / DT) as usize {
@@ -309,7 +280,7 @@ mod tests {
     #[test]
     fn an_inertia_that_wanders_takes_no_other_coefficient_with_it() {
         let mut joint = AugmentedFilter::new(3, 3);
-        let start = Start { all: &TRUTH, reach: &TRUTH, width: 0.0, state: State::default(), variances: VARIANCES };
+        let start = Start { all: &TRUTH, reach: &TRUTH, width: 0.0, first: at_rest() };
         joint.begin(&unknowns(), &start);
         joint.wander(&unknowns(), &TRUTH, [0.0, 0.1]);
         let variances = [0, 1, 2].map(|free| joint.coefficient(&unknowns(), free).1);

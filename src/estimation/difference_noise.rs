@@ -7,22 +7,23 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Variance of a third difference of white noise of variance 1.
+/// Variance of a third difference of white noise of variance 1: 1² + 3² + 3² + 1².
 const GAIN: f64 = 20.0;
 
-/// Samples that count.
+/// Samples that count: their variance is then known to 3 %, √(2 Σρ² ÷ N) with Σρ² = 2.3 of overlapping differences.
 const MEMORY: f64 = 4000.0;
 
-/// Differences from which on outliers can be told; the first so many tell no more than that, for they may hold some …
+/// Differences from which on outliers can be told, their variance being known to a quarter; the first so many tell no
+/// more than that, for they may hold some (15 % too much after 4 s, docs/decisions/sensor-faults.md) …
 const ENOUGH: f64 = 64.0;
 
-/// … by lying this many stds off.
+/// … by lying this many stds off: by chance one in 150 000 does.
 const FAR: f64 = 4.5;
 
-/// So many of them in a row are a change of the noise.
+/// So many of them in a row are a change of the noise: an outlier is in four, so that this is ten of them and no gap.
 const LASTS: u32 = 40;
 
-/// Intervals that differ by less than this part are alike.
+/// Intervals that differ by less than this part are alike: hosts jitter, a lost sample doubles one.
 const ALIKE: f64 = 0.2;
 
 /// Mean products of a channel's differences d and of what the excitation explains of them, r.

@@ -1,6 +1,7 @@
-//! The Kalman filter of one coordinate's state under a law.
+//! The Kalman filter of N states, of which the first two, q and q̇, are measured.
 
-use crate::law::{Linearized, State};
+use super::covariance::{Matrix, carry, correct};
+use crate::law::State;
 use serde::{Deserialize, Serialize};
 
 /// A measured channel.
@@ -26,7 +27,16 @@ pub struct Noise {
     pub process: f64,
 }
 
+/// Smallest std of a sensor's noise ÷ the largest value that it measured: what rounding and the integration's own error
+/// leave.
+const NOISE_FLOOR: f64 = 3e-7;
+
 impl Noise {
+    /// Least variance of a sensor that measured values up to `largest`.
+    pub fn floor(largest: f64) -> f64 {
+        (NOISE_FLOOR * largest).powi(2).max(f64::MIN_POSITIVE)
+    }
+
     /// Whether each sensor's variance is within a quarter of the other's.
     pub fn is_near(&self, other: &Noise) -> bool {
         let near = |a: f64, b: f64| (0.8..1.25).contains(&(a / b));
@@ -34,70 +44,94 @@ impl Noise {
     }
 }
 
-/// Mean and covariance of (q, q̇).
+/// Mean and covariance of N states: (q, q̇), and what else moves with them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Filter {
+#[serde(bound(
+    serialize = "[f64; N]: Serialize, Matrix<N>: Serialize",
+    deserialize = "[f64; N]: Deserialize<'de>, Matrix<N>: Deserialize<'de>"
+))]
+pub struct Filter<const N: usize = 2> {
     /// Mean.
-    pub state: State,
-    /// Covariance: q with q, q with q̇, q̇ with q̇.
-    pub covariance: [f64; 3],
+    pub mean: [f64; N],
+    /// Covariance, both triangles.
+    pub covariance: Matrix<N>,
 }
 
 /// What a measurement says that the filter did not expect.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Innovation {
+#[serde(bound(serialize = "[f64; N]: Serialize", deserialize = "[f64; N]: Deserialize<'de>"))]
+pub struct Innovation<const N: usize = 2> {
     /// Measured minus expected.
     pub residual: f64,
     /// Variance of the residual.
     pub variance: f64,
     /// 1 ÷ variance.
     pub precision: f64,
-    /// How much of the residual goes into (q, q̇).
-    pub gain: [f64; 2],
+    /// How much of the residual goes into each state.
+    pub gain: [f64; N],
 }
 
-impl Filter {
-    /// Carries the covariance over a step; the mean is the caller's.
+/// Covariance of (q, q̇) after `dt` s of a white acceleration of this intensity, (m/s²)² s, from rest.
+#[inline]
+pub fn white_acceleration(intensity: f64, dt: f64) -> Matrix<2> {
+    let (variance, cross) = (intensity * dt * dt * dt / 3.0, intensity * dt * dt / 2.0);
+    [[variance, cross], [cross, intensity * dt]]
+}
+
+/// A x.
+#[inline]
+pub fn times<const N: usize>(matrix: &Matrix<N>, vector: [f64; N]) -> [f64; N] {
+    matrix.map(|row| row.iter().zip(vector).map(|(entry, other)| entry * other).sum())
+}
+
+impl<const N: usize> Default for Filter<N> {
+    fn default() -> Filter<N> {
+        Filter { mean: [0.0; N], covariance: [[0.0; N]; N] }
+    }
+}
+
+impl<const N: usize> Filter<N> {
+    /// Knows of each state its mean and variance.
+    pub fn begin(mean: [f64; N], variances: [f64; N]) -> Filter<N> {
+        let mut filter = Filter { mean, ..Filter::default() };
+        variances.iter().enumerate().for_each(|(index, variance)| filter.covariance[index][index] = *variance);
+        filter
+    }
+
+    /// The mean of q and q̇.
     #[inline]
-    pub fn predict(&mut self, step: &Linearized, dt: f64, process: f64) {
-        let [[a, b], [c, d]] = step.transition;
-        let [qq, qv, vv] = self.covariance;
-        let (first_q, first_v) = (a * qq + b * qv, a * qv + b * vv);
-        let (second_q, second_v) = (c * qq + d * qv, c * qv + d * vv);
-        self.covariance = [
-            first_q * a + first_v * b + process * dt * dt * dt / 3.0,
-            first_q * c + first_v * d + process * dt * dt / 2.0,
-            second_q * c + second_v * d + process * dt,
-        ];
+    pub fn state(&self) -> State {
+        State { q: self.mean[0], qd: self.mean[1] }
+    }
+
+    /// Puts the mean of q and q̇ elsewhere.
+    #[inline]
+    pub fn set_state(&mut self, state: State) {
+        (self.mean[0], self.mean[1]) = (state.q, state.qd);
+    }
+
+    /// Carries the covariance over an interval: `map` is what the interval makes of a small change of the states, and
+    /// `noise` what it adds. The mean is the caller's.
+    #[inline]
+    pub fn predict(&mut self, map: impl Fn([f64; N]) -> [f64; N], noise: &Matrix<N>) {
+        carry(self.covariance.as_flattened_mut(), &mut [[0.0; N]; N], map, &[], noise);
     }
 
     /// What the measurement would leave, and the variance of that.
     #[inline]
     pub fn residual(&self, channel: Channel, measured: f64, variance: f64) -> (f64, f64) {
-        match channel {
-            Channel::Q => (measured - self.state.q, self.covariance[0] + variance),
-            Channel::Qd => (measured - self.state.qd, self.covariance[2] + variance),
-        }
+        let place = channel as usize;
+        (measured - self.mean[place], self.covariance[place][place] + variance)
     }
 
     /// Takes one measurement with this noise variance.
     #[inline]
-    pub fn update(&mut self, channel: Channel, measured: f64, variance: f64) -> Innovation {
-        let [qq, qv, vv] = self.covariance;
-        let (expected, column) = match channel {
-            Channel::Q => (self.state.q, [qq, qv]),
-            Channel::Qd => (self.state.qd, [qv, vv]),
-        };
-        let total = column[channel as usize] + variance;
-        let precision = total.recip();
-        let gain = [column[0] * precision, column[1] * precision];
-        let residual = measured - expected;
-        self.state.q += gain[0] * residual;
-        self.state.qd += gain[1] * residual;
-        self.covariance = match channel {
-            Channel::Q => [gain[0] * variance, gain[1] * variance, (vv - gain[1] * qv).max(0.0)],
-            Channel::Qd => [(qq - gain[0] * qv).max(0.0), gain[0] * variance, gain[1] * variance],
-        };
+    pub fn update(&mut self, channel: Channel, measured: f64, variance: f64) -> Innovation<N> {
+        let (residual, total) = self.residual(channel, measured, variance);
+        let (column, precision) = (self.covariance[channel as usize], total.recip());
+        let gain = column.map(|entry| entry * precision);
+        self.mean.iter_mut().zip(gain).for_each(|(mean, gain)| *mean += gain * residual);
+        correct(self.covariance.as_flattened_mut(), &column, &gain, channel as usize, variance);
         Innovation { residual, variance: total, precision, gain }
     }
 }

@@ -1,10 +1,8 @@
 //! Fisher information and score of the coefficients, and what follows from them.
 
 use super::symmetric::{Lane, System, WIDTH};
+use crate::limits::ROUNDING;
 use serde::{Deserialize, Serialize};
-
-/// Relative size below which a pivot is rounding: the data say nothing on the unknown beside the others.
-const TOLERANCE: f64 = 1e-12;
 
 /// Sums Σ ψψᵀ/s and Σ ψε/s over innovations ε with sensitivity ψ = −∂ε/∂θ and variance s.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -73,18 +71,67 @@ impl Information {
     #[inline]
     pub fn add_pair(&mut self, sensitivities: [&[Lane]; 2], residuals: [f64; 2], weights: [f64; 2]) {
         let [first, second] = sensitivities;
-        let lanes = first.len();
-        let pairs = first.as_flattened().iter().zip(second.as_flattened());
-        for (row, ((a, b), score)) in pairs.zip(&mut self.score).enumerate() {
+        for block in 0..first.len() {
+            let (first, second) = (&first[block..], &second[block..]);
+            // loops of a length that the compiler knows have neither counters nor checks
+            match first.len() {
+                1 => self.add_lanes::<1>(block, [first, second], residuals, weights),
+                2 => self.add_lanes::<2>(block, [first, second], residuals, weights),
+                3 => self.add_lanes::<3>(block, [first, second], residuals, weights),
+                _ => self.add_rows(block, [first, second], residuals, weights),
+            }
+        }
+    }
+
+    #[inline]
+    fn add_lanes<const L: usize>(
+        &mut self,
+        block: usize,
+        [first, second]: [&[Lane]; 2],
+        residuals: [f64; 2],
+        weights: [f64; 2],
+    ) {
+        if let (Some(first), Some(second)) = (first.first_chunk::<L>(), second.first_chunk::<L>()) {
+            self.add_rows(block, [first, second], residuals, weights);
+        }
+    }
+
+    /// The rows of one lane, from the lane on the diagonal.
+    #[inline(always)]
+    fn add_rows(&mut self, block: usize, [first, second]: [&[Lane]; 2], residuals: [f64; 2], weights: [f64; 2]) {
+        let (n, from) = (self.n, WIDTH * block);
+        let pairs = first[0].iter().zip(second[0]).zip(&mut self.score[from..]);
+        for (((a, b), score), row) in pairs.zip(from..) {
             let (a, b) = (a * weights[0], b * weights[1]);
             *score += a * residuals[0] + b * residuals[1];
-            let lane = row / WIDTH;
-            let entries = &mut self.matrix[row * self.n + WIDTH * lane..row * self.n + WIDTH * lanes];
-            let columns = first[lane..].iter().zip(&second[lane..]);
+            let entries = &mut self.matrix[row * n + from..][..WIDTH * first.len()];
+            let columns = first.iter().zip(second);
             for (entries, (first, second)) in entries.as_chunks_mut::<WIDTH>().0.iter_mut().zip(columns) {
                 *entries = std::array::from_fn(|column| entries[column] + (a * first[column] + b * second[column]));
             }
         }
+    }
+
+    /// What is known of one unknown before the data: its precision, and that times how far it is expected away.
+    pub fn add_prior(&mut self, index: usize, precision: f64, score: f64) {
+        *self.entry_mut(index, index) += precision;
+        self.score[index] += score;
+    }
+
+    /// An entry of the symmetric matrix.
+    pub fn entry(&self, row: usize, column: usize) -> f64 {
+        self.matrix[row.min(column) * self.n + row.max(column)]
+    }
+
+    /// The same, to be changed.
+    pub fn entry_mut(&mut self, row: usize, column: usize) -> &mut f64 {
+        &mut self.matrix[row.min(column) * self.n + row.max(column)]
+    }
+
+    /// Whether all sums are finite numbers.
+    pub fn is_finite(&self) -> bool {
+        let rows = (0..self.n).flat_map(|row| &self.matrix[row * self.n + row..(row + 1) * self.n]);
+        rows.chain(&self.score).all(|value| value.is_finite())
     }
 
     /// Moves the point about which the score is taken by `step`: score − matrix · step.
@@ -131,7 +178,7 @@ impl Solution {
     pub fn solve(&mut self, information: &Information, active: &[bool]) {
         let n = information.n;
         self.equilibrate(information, active);
-        self.system.eliminate(TOLERANCE);
+        self.system.eliminate(ROUNDING);
         self.system.solve(&mut self.step);
         self.system.invert(&mut self.covariance);
         for row in 0..n {

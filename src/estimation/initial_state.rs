@@ -1,13 +1,13 @@
 //! Where a filter run begins.
 
 use super::filter::{Filter, Noise};
-use crate::law::State;
 
-/// Variance of a displacement that nobody measures: with a law of motion nothing tells where it began.
+/// Variance of a displacement that nobody measures, m²: with a law of motion nothing tells where it began, and any
+/// number serves that is no zero.
 const UNMEASURED: f64 = 1.0;
 
 /// How many times its own square, and that of what noise alone makes of it, the variance of a slope between two samples
-/// is.
+/// is: three stds, so that the start binds nothing.
 const SLOPE: f64 = 10.0;
 
 /// The state at the first sample from that sample and the next alone: `measured` holds both by channel, `None` where a
@@ -15,18 +15,16 @@ const SLOPE: f64 = 10.0;
 pub fn initial_state(measured: [Option<[f64; 2]>; 2], dt: f64, noise: &Noise) -> Filter {
     let [q, qd] = noise.sensor;
     match measured {
-        [Some([displacement, _]), Some([velocity, _])] => {
-            Filter { state: State { q: displacement, qd: velocity }, covariance: [q, 0.0, qd] }
-        }
+        [Some([displacement, _]), Some([velocity, _])] => Filter::begin([displacement, velocity], [q, qd]),
         [Some([first, second]), None] => {
             let dt = dt.max(f64::MIN_POSITIVE);
             let slope = (second - first) / dt;
             let spread = SLOPE * (slope * slope + q / (dt * dt));
-            Filter { state: State { q: first, qd: slope }, covariance: [q, 0.0, spread] }
+            Filter::begin([first, slope], [q, spread])
         }
         [None, velocity] => {
             let first = velocity.map_or(0.0, |[first, _]| first);
-            Filter { state: State { q: 0.0, qd: first }, covariance: [UNMEASURED, 0.0, qd] }
+            Filter::begin([0.0, first], [UNMEASURED, qd])
         }
     }
 }

@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 /// A reading this many stds off is far off: by chance one in five hundred million is.
 pub const OUTLYING: f64 = 6.0;
 
-/// Readings far off that are no outliers, of a sensor that is not known for them and of one that is …
+/// Readings far off that are no outliers, of a sensor that is not known for them and of one that is: false alarms among
+/// 0.5 % and 2 % of outliers were counted (docs/decisions/sensor-faults.md) …
 const LASTS: [u32; 2] = [3, 4];
 
 /// … among so many: another inertia under a rough excitation leaves residuals of either sign, large and small.
@@ -15,7 +16,7 @@ const AMONG: u32 = 8;
 /// Where a motion leaves the law each residual is larger than the one before, by half at least.
 const GROWS: f64 = 1.5;
 
-/// Two in a row this many stds off are beyond what a sensor scatters.
+/// Two in a row this many stds off are beyond what a sensor scatters: five times as far as one that is far off.
 const BEYOND: f64 = 30.0;
 
 /// A reading that does not count speaks of another law as one this many stds off does, from a sensor known for
@@ -64,8 +65,8 @@ mod tests {
     use super::*;
 
     fn admitted(residuals: &[f64]) -> Vec<bool> {
-        let mut guard = InnovationGate::default();
-        residuals.iter().map(|residual| guard.admits(Channel::Qd, *residual, 1.0)).collect()
+        let mut gate = InnovationGate::default();
+        residuals.iter().map(|residual| gate.admits(Channel::Qd, *residual, 1.0)).collect()
     }
 
     #[test]
@@ -92,12 +93,12 @@ mod tests {
         let readings = [&[40.0][..], &quiet, &[35.0, 60.0, 1.0, 9.0]].concat();
         assert_eq!(admitted(&readings)[9..], [false, false, true, false]);
         assert_eq!(admitted(&[&readings[..], &[9.0]].concat())[13..], [true]);
-        let mut guard = InnovationGate::default();
-        assert_eq!(guard.precision(Channel::Qd, 60.0), (OUTLYING / 60.0).powi(2));
+        let mut gate = InnovationGate::default();
+        assert_eq!(gate.precision(Channel::Qd, 60.0), (OUTLYING / 60.0).powi(2));
         readings
             .iter()
-            .for_each(|residual| assert!(guard.admits(Channel::Qd, *residual, 1.0) == (residual.abs() < OUTLYING)));
-        assert_eq!(guard.precision(Channel::Qd, 60.0), (DOUBTFUL / 60.0).powi(2));
+            .for_each(|residual| assert!(gate.admits(Channel::Qd, *residual, 1.0) == (residual.abs() < OUTLYING)));
+        assert_eq!(gate.precision(Channel::Qd, 60.0), (DOUBTFUL / 60.0).powi(2));
     }
 
     #[test]

@@ -8,7 +8,8 @@
 //! equation error.
 //!
 //! - [`DifferenceNoise`]: the sensors' noise before any law;
-//! - [`Filter`]: the state and its covariance, from sample to sample, begun by [`initial_state`];
+//! - [`Filter`]: N states and their covariance, from sample to sample, begun by [`initial_state`]; [`Rivals`]: under
+//!   other process noise; [`smooth`]: the motion as all samples tell it;
 //! - [`InnovationGate`]: readings that are no part of the motion;
 //! - [`Pass`]: one run over a record: likelihood, score and Fisher information of the coefficients;
 //! - [`AugmentedFilter`]: the state together with coefficients that may wander;
@@ -18,23 +19,31 @@
 //!   solves them.
 
 mod augmented_filter;
+mod covariance;
 mod difference_noise;
 mod filter;
 mod information;
 mod initial_state;
 mod innovation_gate;
 mod pass;
+mod rivals;
 mod score_test;
+mod smoother;
 mod symmetric;
 mod term_selection;
+mod track;
 
 pub use augmented_filter::{AugmentedFilter, Start, Unknowns};
+pub use covariance::Matrix;
 pub use difference_noise::DifferenceNoise;
-pub use filter::{Channel, Filter, Innovation, Noise};
+pub use filter::{Channel, Filter, Innovation, Noise, times, white_acceleration};
 pub use information::{Information, Solution};
 pub use initial_state::initial_state;
 pub use innovation_gate::{InnovationGate, OUTLYING};
-pub use pass::{IntervalMap, Observation, Pass, RIVALS, Track, gains};
+pub use pass::{IntervalMap, Observation, Pass, gains};
+pub use rivals::{RIVALS, Rivals};
 pub use score_test::{Missing, ScoreTest};
+pub use smoother::{Smoothable, smooth};
 pub use symmetric::{Lane, LogSum, System, WIDTH};
-pub use term_selection::TermSelection;
+pub use term_selection::{TermSelection, price_of_a_term};
+pub use track::Track;

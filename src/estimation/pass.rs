@@ -1,14 +1,14 @@
 //! One run of the filter over a record: likelihood, score and information of the coefficients.
 
-use super::filter::{Channel, Filter, Innovation, Noise};
+use super::covariance::Matrix;
+use super::filter::{Channel, Filter, Innovation, Noise, times, white_acceleration};
 use super::information::Information;
 use super::innovation_gate::InnovationGate;
-use super::symmetric::{Lane, LogSum, WIDTH};
-use crate::law::{Compiled, Drive, Linearized, Motion, State, Term};
+use super::rivals::{RIVALS, Rivals};
+use super::symmetric::{Lane, WIDTH};
+use super::track::Track;
+use crate::law::{Compiled, Drive, Linearized, Motion, Term};
 use serde::{Deserialize, Serialize};
-
-/// Ratios by which the process noise of the two rival filters differs from the one in use, unless told otherwise.
-pub const RIVALS: [f64; 2] = [1.0 / 30.0, 6.0];
 
 /// Most parts into which an interval between two samples is cut.
 const MAX_PARTS: usize = 8;
@@ -35,62 +35,11 @@ pub struct Observation {
     pub unseen: f64,
 }
 
-/// Sums that make up a likelihood.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Track {
-    /// Number of innovations by channel.
-    pub count: [f64; 2],
-    /// Σ ε²/s by channel.
-    pub squares: [f64; 2],
-    /// Σ ln s by channel.
-    log_variance: [LogSum; 2],
-}
-
-impl Track {
-    /// Adds an innovation of the channel.
-    #[inline]
-    pub fn add(&mut self, channel: Channel, innovation: &Innovation) {
-        self.count[channel as usize] += 1.0;
-        self.squares[channel as usize] += innovation.residual * innovation.residual * innovation.precision;
-        self.log_variance[channel as usize].add(innovation.variance);
-    }
-
-    /// Mean of ε²/s in the channel: by how much its stated variance is too small; 1 where nothing was measured.
-    pub fn scale(&self, channel: Channel) -> f64 {
-        let count = self.count[channel as usize];
-        if count > 0.0 { self.squares[channel as usize] / count } else { 1.0 }
-    }
-
-    /// Log-likelihood with each channel's scale at its own maximum, up to a constant.
-    pub fn log_likelihood(&self) -> f64 {
-        let profile = Channel::ALL.map(|channel| self.count[channel as usize] * self.scale(channel).max(1e-300).ln());
-        let [q, qd] = &self.log_variance;
-        -0.5 * (q.total() + qd.total() + profile[0] + profile[1])
-    }
-
-    /// Log-likelihood with the variances as they were stated, up to the same constant.
-    pub fn stated_log_likelihood(&self) -> f64 {
-        let [q, qd] = &self.log_variance;
-        -0.5 * (q.total() + qd.total() + self.squares[0] + self.squares[1])
-    }
-
-    /// Geometric mean of s in the channel; 0 where nothing was measured.
-    pub fn variance(&self, channel: Channel) -> f64 {
-        let count = self.count[channel as usize];
-        if count > 0.0 { (self.log_variance[channel as usize].total() / count).exp() } else { 0.0 }
-    }
-
-    /// Number of scalar measurements.
-    pub fn total(&self) -> f64 {
-        self.count[0] + self.count[1]
-    }
-}
-
 /// δx⁺ = A δx + B δθ over an interval between two samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct IntervalMap {
     /// A.
-    pub transition: [[f64; 2]; 2],
+    pub transition: Matrix<2>,
     /// B, one column of (q, q̇) for each free coefficient.
     pub input: Vec<[f64; 2]>,
     /// What an acceleration of 1 over the whole interval does to (q, q̇).
@@ -132,10 +81,8 @@ pub struct Pass {
     pub filter: Filter,
     /// Its likelihood.
     pub track: Track,
-    /// Likelihoods under the process noise times `ratios`.
-    pub rivals: [Track; 2],
-    /// Ratios of the rivals' process noise to the one in use; [`RIVALS`] at first.
-    pub ratios: [f64; 2],
+    /// Its rivals of less and of more process noise.
+    pub rivals: Rivals,
     /// What the record says on the free coefficients.
     pub information: Information,
     /// ∂(q, q̇)/∂θ of the filtered state.
@@ -147,12 +94,11 @@ pub struct Pass {
     /// Parts into which an interval is cut: what the fastest motion asks for, of the run before at first, then of this
     /// one too.
     pub parts: usize,
-    rival_filters: [Filter; 2],
     fastest: f64,
     /// `fastest` ÷ the square of the interval: how fast the motion turns, rad²/s².
     quickest: f64,
     /// Keeps outliers out, where wanted.
-    guard: Option<InnovationGate>,
+    gate: Option<InnovationGate>,
     compiled: Compiled,
     /// Whether the free terms of this run are known.
     seeking: bool,
@@ -170,21 +116,18 @@ impl Pass {
     /// A run that has not begun, on `n` free coefficients.
     pub fn new(n: usize) -> Pass {
         let lanes = || vec![[0.0; WIDTH]; n.div_ceil(WIDTH)];
-        let filter = Filter { state: State::default(), covariance: [0.0; 3] };
         Pass {
-            filter,
+            filter: Filter::default(),
             track: Track::default(),
-            rivals: [Track::default(); 2],
-            ratios: RIVALS,
+            rivals: Rivals::new(RIVALS),
             information: Information::none(n),
             sensitivity: vec![[0.0; 2]; n],
             map: IntervalMap { transition: [[0.0; 2]; 2], input: vec![[0.0; 2]; n], push: [0.0; 2] },
             set_aside: [None; 2],
             parts: 1,
-            rival_filters: [filter; 2],
             fastest: 0.0,
             quickest: 0.0,
-            guard: None,
+            gate: None,
             compiled: Compiled::default(),
             seeking: false,
             slopes: vec![0.0; n],
@@ -193,17 +136,16 @@ impl Pass {
     }
 
     /// The same run, which leaves outliers out.
-    pub fn guarded(self) -> Pass {
-        Pass { guard: Some(InnovationGate::default()), ..self }
+    pub fn gated(self) -> Pass {
+        Pass { gate: Some(InnovationGate::default()), ..self }
     }
 
     /// Begins at a state that does not depend on the coefficients.
     pub fn begin(&mut self, filter: Filter) {
         self.filter = filter;
-        self.rival_filters = [filter; 2];
+        self.rivals.begin(filter);
         self.track = Track::default();
-        self.rivals = [Track::default(); 2];
-        self.guard = self.guard.map(|_| InnovationGate::default());
+        self.gate = self.gate.map(|_| InnovationGate::default());
         self.information.clear();
         self.sensitivity.fill([0.0; 2]);
         self.parts = parts_for(self.fastest);
@@ -230,11 +172,13 @@ impl Pass {
             return self.resume(noise, observation);
         }
         let unseen = match observation.unseen > 0.0 {
-            true => observation.unseen / motion.mass(self.filter.state.q).powi(2),
+            true => observation.unseen / motion.mass(self.filter.mean[0]).powi(2),
             false => 0.0,
         };
         self.advance(noise.process, unseen, observation);
-        let innovations = Channel::ALL.map(|channel| self.correct(channel, noise, observation));
+        // one after the other, each with its channel known to the compiler
+        let displacement = self.correct(Channel::Q, noise, observation);
+        let innovations = [displacement, self.correct(Channel::Qd, noise, observation)];
         self.inform(&innovations);
         innovations
     }
@@ -248,10 +192,9 @@ impl Pass {
     /// per unit of it, over that interval and through its measurements. Returns that of the expected measurements by
     /// channel, and the state's.
     #[inline]
-    pub fn carry(&self, [q, qd]: [f64; 2], acceleration: f64, gains: [[f64; 2]; 2]) -> ([f64; 2], [f64; 2]) {
-        let [[a, b], [c, d]] = self.map.transition;
-        let [to_q, to_qd] = self.map.push;
-        measured([a * q + b * qd + to_q * acceleration, c * q + d * qd + to_qd * acceleration], gains)
+    pub fn carry(&self, state: [f64; 2], acceleration: f64, gains: &[[f64; 2]; 2]) -> ([f64; 2], [f64; 2]) {
+        let moved = sum(times(&self.map.transition, state), self.map.push.map(|push| push * acceleration));
+        measured(moved, gains)
     }
 
     /// With process noise of intensity `process`, and `unseen` besides.
@@ -261,20 +204,18 @@ impl Pass {
         let mut first = true;
         for part in 0..parts {
             let excitation = observation.drive.part(part, parts);
-            let Pass { compiled, slopes, map, rival_filters, ratios, filter, fastest, .. } = self;
-            compiled.steps(filter.state, dt, excitation, slopes, |step, dt, slopes| {
+            let Pass { compiled, slopes, map, rivals, filter, fastest, .. } = self;
+            compiled.steps(filter.state(), dt, excitation, slopes, |step, dt, slopes| {
                 match first {
                     true => map.set(step, slopes),
                     false => map.append(step, slopes),
                 }
                 first = false;
                 *fastest = fastest.max(step.rate * (parts * parts) as f64);
-                for (rival, ratio) in rival_filters.iter_mut().zip(*ratios) {
-                    rival.state = beside(step, filter.state, rival.state);
-                    rival.predict(step, dt, process * ratio + unseen);
-                }
-                filter.state = step.state;
-                filter.predict(step, dt, process + unseen);
+                let noise = |ratio: f64| white_acceleration(process * ratio + unseen, dt);
+                rivals.predict(filter.mean, [step.state.q, step.state.qd], &step.transition, noise);
+                filter.set_state(step.state);
+                filter.predict(|change| times(&step.transition, change), &noise(1.0));
             });
         }
         self.parts = self.parts.max(parts_for(self.fastest));
@@ -284,17 +225,19 @@ impl Pass {
     /// After an outage in which the motion has turned too far to be followed its state is what is measured next, and
     /// nothing that was known of it before says anything of it.
     fn resume(&mut self, noise: &Noise, observation: &Observation) -> [Option<Innovation>; 2] {
-        let Filter { state, .. } = self.filter;
-        let [q, qd] = observation.measured;
-        let [q_noise, qd_noise] = noise.sensor;
         let unknown = |value: f64, noise: f64| UNKNOWN * (value * value + noise);
-        let covariance = [
-            if q.is_some() { q_noise } else { unknown(state.q, q_noise) },
-            0.0,
-            if qd.is_some() { qd_noise } else { unknown(state.qd, qd_noise) },
-        ];
-        self.filter = Filter { state: State { q: q.unwrap_or(state.q), qd: qd.unwrap_or(state.qd) }, covariance };
-        self.rival_filters = [self.filter; 2];
+        let mut filter = self.filter;
+        filter.covariance = [[0.0; 2]; 2];
+        for channel in Channel::ALL {
+            let (place, noise) = (channel as usize, noise.sensor[channel as usize]);
+            let (mean, variance) = match observation.measured[place] {
+                Some(value) => (value, noise),
+                None => (filter.mean[place], unknown(filter.mean[place], noise)),
+            };
+            (filter.mean[place], filter.covariance[place][place]) = (mean, variance);
+        }
+        self.filter = filter;
+        self.rivals.resume(filter);
         self.sensitivity.fill([0.0; 2]);
         self.map.transition = [[0.0; 2]; 2];
         self.map.push = [0.0; 2];
@@ -304,23 +247,21 @@ impl Pass {
         [None; 2]
     }
 
-    #[inline]
+    #[inline(always)]
     fn correct(&mut self, channel: Channel, noise: &Noise, observation: &Observation) -> Option<Innovation> {
         let measured = observation.measured[channel as usize]?;
         let variance = noise.sensor[channel as usize];
         self.set_aside[channel as usize] = None;
-        if let Some(guard) = &mut self.guard {
+        if let Some(gate) = &mut self.gate {
             let (residual, total) = self.filter.residual(channel, measured, variance);
-            if !guard.admits(channel, residual, total) {
-                let precision = guard.precision(channel, residual);
+            if !gate.admits(channel, residual, total) {
+                let precision = gate.precision(channel, residual);
                 let innovation = Innovation { residual, variance: precision.recip(), precision, gain: [0.0; 2] };
                 self.set_aside[channel as usize] = Some(innovation);
                 return None;
             }
         }
-        for (rival, track) in self.rival_filters.iter_mut().zip(&mut self.rivals) {
-            track.add(channel, &rival.update(channel, measured, variance));
-        }
+        self.rivals.update(channel, measured, variance);
         let innovation = self.filter.update(channel, measured, variance);
         self.track.add(channel, &innovation);
         Some(innovation)
@@ -330,13 +271,11 @@ impl Pass {
     #[inline]
     fn inform(&mut self, innovations: &[Option<Innovation>; 2]) {
         let gains = gains(innovations);
-        let [[a, b], [c, d]] = self.map.transition;
         let [q_row, qd_row] = &mut self.rows;
         let rows = q_row.as_flattened_mut().iter_mut().zip(qd_row.as_flattened_mut());
         for ((state, input), (q_row, qd_row)) in self.sensitivity.iter_mut().zip(&self.map.input).zip(rows) {
-            let [q, qd] = *state;
-            let moved = [a * q + b * qd + input[0], c * q + d * qd + input[1]];
-            ([*q_row, *qd_row], *state) = measured(moved, gains);
+            let moved = sum(times(&self.map.transition, *state), *input);
+            ([*q_row, *qd_row], *state) = measured(moved, &gains);
         }
         let residuals = innovations.map(|innovation| innovation.map_or(0.0, |innovation| innovation.residual));
         let weights = innovations.map(|innovation| innovation.map_or(0.0, |innovation| innovation.precision));
@@ -344,26 +283,27 @@ impl Pass {
     }
 }
 
-/// How much of each channel's residual goes into the state; nothing where it was not measured.
+/// How much of each channel's residual goes into the states; nothing where it was not measured.
 #[inline]
-pub fn gains(innovations: &[Option<Innovation>; 2]) -> [[f64; 2]; 2] {
-    innovations.map(|innovation| innovation.map_or([0.0; 2], |innovation| innovation.gain))
+pub fn gains<const N: usize>(innovations: &[Option<Innovation<N>>; 2]) -> [[f64; N]; 2] {
+    innovations.map(|innovation| innovation.map_or([0.0; N], |innovation| innovation.gain))
 }
 
-/// A sensitivity of the state through the measurements of both channels: what it is of the expected ones, and what is
+/// A sensitivity of the states through the measurements of both channels: what it is of the expected ones, and what is
 /// left of it.
 #[inline]
-fn measured([q, qd]: [f64; 2], [first, second]: [[f64; 2]; 2]) -> ([f64; 2], [f64; 2]) {
-    let row = q;
-    let (q, qd) = (q - first[0] * q, qd - first[1] * q);
-    ([row, qd], [q - second[0] * qd, qd - second[1] * qd])
+fn measured<const N: usize>(mut state: [f64; N], gains: &[[f64; N]; 2]) -> ([f64; 2], [f64; N]) {
+    let mut rows = [0.0; 2];
+    for (channel, gain) in gains.iter().enumerate() {
+        rows[channel] = state[channel];
+        state.iter_mut().zip(gain).for_each(|(entry, gain)| *entry -= gain * rows[channel]);
+    }
+    (rows, state)
 }
 
-/// Where a state near the one that was integrated ends: it is carried by the linearised step.
-fn beside(step: &Linearized, from: State, state: State) -> State {
-    let [[a, b], [c, d]] = step.transition;
-    let (dq, dqd) = (state.q - from.q, state.qd - from.qd);
-    State { q: step.state.q + a * dq + b * dqd, qd: step.state.qd + c * dq + d * dqd }
+#[inline]
+fn sum(first: [f64; 2], second: [f64; 2]) -> [f64; 2] {
+    [first[0] + second[0], first[1] + second[1]]
 }
 
 #[cfg(test)]
@@ -380,7 +320,7 @@ mod tests {
         let at = |t: f64| [(omega * t).cos(), -omega * (omega * t).sin()];
         let mut pass = Pass::new(1);
         let mut squares = || {
-            pass.begin(Filter { state: State { q: 1.0, qd: 0.0 }, covariance: [1e-8, 0.0, 1e-8 * omega * omega] });
+            pass.begin(Filter::begin([1.0, 0.0], [1e-8, 1e-8 * omega * omega]));
             for k in 1..400 {
                 let measured = at(f64::from(k) * dt).map(Some);
                 let observation = Observation { dt, drive: Drive::Held(0.0), measured, unseen: 0.0 };

@@ -11,14 +11,16 @@ use super::pass::{Observation, Pass, gains};
 use crate::law::{Catalogue, Effect, Motion, State, Term};
 use serde::{Deserialize, Serialize};
 
-/// Evidence, nats, from which an effect is named.
+/// Evidence, nats, from which an effect is named: odds of 22 000 to one after the price of the number of candidates.
 const NAMED: f64 = 10.0;
 
-/// Share of a candidate's information that must be its own.
+/// Share of a candidate's information that must be its own: of less, rounding (1e-12 of the whole) is more than a
+/// millionth.
 const OWN: f64 = 1e-6;
 
-/// Inner parameters of candidates, as parts of the largest motion.
+/// Inner parameters of candidates, as parts of the largest motion: a gap that half of the motion is in …
 const GAP: f64 = 0.5;
+/// … and a Stribeck speed that most of it exceeds. The test is for what a law lacks, the diagnosis refines both.
 const SPEED: f64 = 0.1;
 
 /// The effect that a law lacks most.
@@ -105,7 +107,7 @@ impl ScoreTest {
         observation: &Observation,
         innovations: &[Option<Innovation>; 2],
     ) {
-        let state = pass.filter.state;
+        let state = pass.filter.state();
         let inverse_mass = motion.mass(state.q).recip();
         let acceleration = (state.qd - self.before.qd) / observation.dt;
         let [from, _, to] = observation.drive.part(0, 1);
@@ -114,7 +116,7 @@ impl ScoreTest {
             let term = candidate.term;
             let force = 0.5 * (term.force(self.before.q, self.before.qd, from) + term.force(state.q, state.qd, to));
             let push = -(force + term.mass(state.q) * acceleration) * inverse_mass;
-            (candidate.rows, candidate.sensitivity) = pass.carry(candidate.sensitivity, push, gains);
+            (candidate.rows, candidate.sensitivity) = pass.carry(candidate.sensitivity, push, &gains);
         }
         self.before = state;
         self.sum(pass, innovations);

@@ -10,10 +10,11 @@ use serde::{Deserialize, Serialize};
 /// Four neighbours in a row.
 pub type Lane = [f64; WIDTH];
 
-/// Numbers in a lane.
+/// Numbers in a lane: two registers of SSE2, one of AVX.
 pub const WIDTH: usize = 4;
 
-/// Bounds between which a product of pivots or variances is kept before its logarithm is taken.
+/// Bounds between which a product of pivots or variances is kept before its logarithm is taken: with one more factor
+/// above 1e-200 it is still a normal number.
 const PRODUCT: std::ops::Range<f64> = 1e-100..1e100;
 
 /// Σ ln x over many x > 0 with few logarithms.
@@ -42,15 +43,38 @@ impl LogSum {
         }
     }
 
-    /// Adds a logarithm.
-    pub fn add_logarithm(&mut self, logarithm: f64) {
-        self.sum += logarithm;
-    }
-
     /// Σ ln x.
     pub fn total(&self) -> f64 {
         self.sum + self.product.ln()
     }
+}
+
+/// row − factor · above, which have as many lanes.
+///
+/// Loops of a length that the compiler knows have neither counters nor checks; of a factor 0 nothing is taken: unknowns
+/// that are not in a law have no other.
+#[inline]
+fn subtract(row: &mut [Lane], factor: f64, above: &[Lane]) {
+    match row.len() {
+        _ if factor == 0.0 => {}
+        1 => subtract_lanes::<1>(row, factor, above),
+        2 => subtract_lanes::<2>(row, factor, above),
+        3 => subtract_lanes::<3>(row, factor, above),
+        4 => subtract_lanes::<4>(row, factor, above),
+        _ => row.iter_mut().zip(above).for_each(|(lane, above)| *lane = difference(lane, factor, above)),
+    }
+}
+
+#[inline]
+fn subtract_lanes<const L: usize>(row: &mut [Lane], factor: f64, above: &[Lane]) {
+    if let (Some(row), Some(above)) = (row.first_chunk_mut::<L>(), above.first_chunk::<L>()) {
+        row.iter_mut().zip(above).for_each(|(lane, above)| *lane = difference(lane, factor, above));
+    }
+}
+
+#[inline]
+fn difference(lane: &Lane, factor: f64, above: &Lane) -> Lane {
+    std::array::from_fn(|index| lane[index] - factor * above[index])
 }
 
 /// A system of n equations under elimination.
@@ -119,10 +143,10 @@ impl System {
     /// Eliminates. A pivot that falls below `tolerance` times its diagonal entry is not positive for what rounding
     /// leaves: its unknown is then fixed to 0.
     pub fn eliminate(&mut self, tolerance: f64) {
-        let lanes = self.lanes;
         for (row, slot) in self.inverse_pivots.iter_mut().enumerate() {
-            *slot = tolerance * self.rows[row * lanes + row / WIDTH][row % WIDTH];
+            *slot = tolerance * self.rows[row * self.lanes + row / WIDTH][row % WIDTH];
         }
+        let lanes = self.lanes;
         for k in 0..self.n {
             let (head, tail) = self.rows.split_at_mut((k + 1) * lanes);
             let above = &head[k * lanes..];
@@ -132,10 +156,7 @@ impl System {
             self.inverse_pivots[k] = inverse;
             for (below, row) in tail.chunks_exact_mut(lanes).zip(k + 1..) {
                 let first = row / WIDTH;
-                let factor = above[first][row % WIDTH] * inverse;
-                for (entries, above) in below[first..].iter_mut().zip(&above[first..]) {
-                    *entries = std::array::from_fn(|lane| entries[lane] - factor * above[lane]);
-                }
+                subtract(&mut below[first..], above[first][row % WIDTH] * inverse, &above[first..]);
             }
         }
     }
@@ -148,10 +169,7 @@ impl System {
             let (head, tail) = columns.split_at_mut((k + 1) * width);
             let (above, row) = (&head[k * width..], self.rows[k * self.lanes..(k + 1) * self.lanes].as_flattened());
             for (below, entry) in tail.chunks_exact_mut(width).zip(&row[k + 1..]) {
-                let factor = entry * self.inverse_pivots[k];
-                for (entries, above) in below.iter_mut().zip(above) {
-                    *entries = std::array::from_fn(|lane| entries[lane] - factor * above[lane]);
-                }
+                subtract(below, entry * self.inverse_pivots[k], above);
             }
         }
     }

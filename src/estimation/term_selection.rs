@@ -3,17 +3,18 @@
 //! At the maximum of the likelihood, dropping a term of coefficient θ_j with variance v_j costs θ_j²/v_j in twice the
 //! log-likelihood. The cheapest term goes while that is below its price, 2 ln N for N scalar measurements; the rest is
 //! solved anew. After a switch the old structure is the likelier one: a term that the old law had is cheaper by
-//! [`LOYALTY`], one that it had not dearer. Where the information is too near to singular for that, the search starts
+//! [`PRIOR_LOG_ODDS`], one that it had not dearer. Where the information is too near to singular for that, the search starts
 //! from the terms of the law as it is, and adds before it drops.
 
 use super::information::{Information, Solution};
 use serde::{Deserialize, Serialize};
 
-/// What the old law's structure counts for, in twice nats.
-const LOYALTY: f64 = 20.0;
+/// Prior log-odds of a term that the law before had, in twice nats: a switch that changes the structure is one in e¹⁰
+/// for each term (docs/decisions/structure.md).
+const PRIOR_LOG_ODDS: f64 = 20.0;
 
 /// Smallest share of its own that a term must have beside the others, for the information to be trusted with all of
-/// them.
+/// them: a thousand times what rounding leaves of a pivot.
 const CLEAR: f64 = 1e-9;
 
 /// The terms of the law as it was, once there was one.
@@ -65,13 +66,13 @@ impl TermSelection {
         self.surcharge
             .iter()
             .zip(active)
-            .all(|(surcharge, active)| *surcharge == if *active { -LOYALTY } else { LOYALTY })
+            .all(|(surcharge, active)| *surcharge == if *active { -PRIOR_LOG_ODDS } else { PRIOR_LOG_ODDS })
     }
 
     /// The structure is likely to be that of a law with these terms.
     pub fn remember(&mut self, active: &[bool]) {
         for (surcharge, active) in self.surcharge.iter_mut().zip(active) {
-            *surcharge = if *active { -LOYALTY } else { LOYALTY };
+            *surcharge = if *active { -PRIOR_LOG_ODDS } else { PRIOR_LOG_ODDS };
         }
     }
 
@@ -86,7 +87,7 @@ impl TermSelection {
         active: &mut [bool],
         solution: &mut Solution,
     ) {
-        let price = 2.0 * measurements.max(2.0).ln();
+        let price = price_of_a_term(measurements);
         let present = self.present.clone_from_flags(active);
         active.fill(true);
         self.solve(information, coefficients, active, solution);
@@ -183,6 +184,12 @@ impl TermSelection {
         let candidates = (0..active.len()).filter(|index| maybe[*index] && active[*index]);
         candidates.map(|index| (index, cost(index) - self.surcharge[index])).min_by(|a, b| a.1.total_cmp(&b.1))
     }
+}
+
+/// What a term must add to twice the log-likelihood of N scalar measurements, 2 ln N: twice Schwarz's price (Annals of
+/// Statistics 6 (1978), 461), for the one that is asked about is the cheapest of several.
+pub fn price_of_a_term(measurements: f64) -> f64 {
+    2.0 * measurements.max(2.0).ln()
 }
 
 /// tr Cov ÷ Σθ²; infinite where a coefficient is not determined.

@@ -1,6 +1,6 @@
 //! A recording: what was measured, sample by sample.
 
-use super::sample::Sample;
+use super::sample::{GAP, Sample};
 use super::settings::{Channels, Settings};
 use std::ops::Range;
 use thiserror::Error;
@@ -92,9 +92,6 @@ pub enum RecordingError {
         value: f64,
     },
 }
-
-/// How many usual distances of two samples make a gap.
-const GAP: f64 = 4.5;
 
 impl Recording {
     /// Fewest samples of a recording.

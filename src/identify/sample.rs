@@ -3,6 +3,9 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+/// Samples further apart than so many usual distances have a gap between them: four lost ones in a row are still bridged.
+pub const GAP: f64 = 4.5;
+
 /// One measurement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample {

@@ -8,7 +8,7 @@ use crate::estimation::{Filter, Noise, Observation, initial_state};
 use crate::law::{BandLimited, Drive, Hold, REACH, look_ahead};
 use serde::{Deserialize, Serialize};
 
-/// An interval this many times as long as the usual one lacks samples …
+/// An interval this many times as long as the usual one lacks samples, half way between none and one …
 const GAP: f64 = 1.5;
 
 /// … unless more than so many in a row are.
@@ -17,10 +17,10 @@ const PATIENCE: u32 = 3;
 /// An interval this many times as long as the usual one is an outage.
 const OUTAGE: f64 = 50.0;
 
-/// Share of a sample in the usual interval.
+/// Share of a sample in the usual interval: it follows another rate of sampling within 20.
 const ADAPTION: f64 = 0.05;
 
-/// Samples that count for how rough the excitation is.
+/// Samples that count for how rough the excitation is: its mean square is then known to 2 %.
 const MEMORY: f64 = 4000.0;
 
 /// Accepted samples by number; the first of all is number 0.

@@ -55,6 +55,7 @@ pub use motion::{Motion, State};
 pub use named_laws::NamedLaw;
 pub(crate) use quadrature::GAUSS;
 pub use series::{Trajectory, term_series};
+pub(crate) use term::raised;
 pub use term::{Monomial, Term, TermError};
 pub use text::equation;
 pub use unit::{Channel, Quantity, Unit};

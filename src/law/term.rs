@@ -155,7 +155,7 @@ impl Term {
             Term::Inertia => 0.0,
             Term::Effect(effect) => effect.force(q, qd, excitation),
             Term::Expression(_) => f64::NAN,
-            Term::Monomial(p) => power(q, p.q) * power(qd, p.qd) * power(excitation, p.excitation),
+            Term::Monomial(p) => raised(q, p.q) * raised(qd, p.qd) * raised(excitation, p.excitation),
         }
     }
 
@@ -167,8 +167,11 @@ impl Term {
             Term::Effect(effect) => effect.gradient(q, qd),
             Term::Expression(_) => (f64::NAN, f64::NAN),
             Term::Monomial(p) => {
-                let scale = power(excitation, p.excitation);
-                (scale * power_derivative(q, p.q) * power(qd, p.qd), scale * power(q, p.q) * power_derivative(qd, p.qd))
+                let scale = raised(excitation, p.excitation);
+                (
+                    scale * power_derivative(q, p.q) * raised(qd, p.qd),
+                    scale * raised(q, p.q) * power_derivative(qd, p.qd),
+                )
             }
         }
     }
@@ -243,8 +246,9 @@ impl std::fmt::Display for Term {
     }
 }
 
+/// base^exponent; the powers of usual laws without a loop.
 #[inline]
-fn power(base: f64, exponent: u8) -> f64 {
+pub(crate) fn raised(base: f64, exponent: u8) -> f64 {
     match exponent {
         0 => 1.0,
         1 => base,
@@ -258,7 +262,7 @@ fn power(base: f64, exponent: u8) -> f64 {
 fn power_derivative(base: f64, exponent: u8) -> f64 {
     match exponent {
         0 => 0.0,
-        n => f64::from(n) * power(base, n - 1),
+        n => f64::from(n) * raised(base, n - 1),
     }
 }
 

@@ -13,9 +13,9 @@ pub const SETTLED_ERROR: f64 = 0.05 * 0.05;
 /// Part by which the record grows between two looks for the shortest one: as exactly is its length told.
 pub(super) const GROWTH: f64 = 0.01;
 
-/// Eigenvalue of the information, scaled to a unit diagonal, below which it is rounding: a sum of
-/// 10⁴ products is exact to some 10⁻¹². Nothing is known in that direction.
-const TOLERANCE: f64 = 1e-12;
+/// Eigenvalue, or pivot, of an information matrix scaled to a unit diagonal below which it is rounding: a sum of 10⁴
+/// products is exact to some 10⁻¹². Nothing is known in that direction.
+pub const ROUNDING: f64 = 1e-12;
 
 /// Part in such a direction from which a coefficient counts as touched by it.
 const TOUCHED: f64 = 1e-3;
@@ -98,7 +98,7 @@ impl Directions {
             return None;
         }
         let eigen = eigen(scaled);
-        let (open, known) = (0..n).partition(|direction| eigen.eigenvalues[*direction] < TOLERANCE);
+        let (open, known) = (0..n).partition(|direction| eigen.eigenvalues[*direction] < ROUNDING);
         Some(Directions { scale, eigen, open, known })
     }
 

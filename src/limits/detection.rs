@@ -11,7 +11,7 @@ use super::law::Law;
 /// Instants at which the switch is tried: enough for a median, whose own scatter is then 1.25 ÷ √200 of theirs.
 pub(super) const STARTS: usize = 200;
 
-/// Share of the record over which these lie: what follows is left for seeing the switch.
+/// Share of the record over which these lie: what follows, as much again, is left for seeing the switch.
 pub(super) const SHARE: f64 = 0.5;
 
 /// Delays of a change, s; `None` where the record ends before it is seen.

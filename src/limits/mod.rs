@@ -11,8 +11,7 @@
 //!   switch known ([`detection()`]).
 //!
 //! Of a law that gives F for a motion that a machine imposes ([`force_bound`], [`force_detection`]) the readings of F
-//! are its force plus noise, and
-//! the motion counts as known: what the sensors of q and q̇ leave open can only add.
+//! are its force plus noise, and the motion counts as known: what the sensors of q and q̇ leave open can only add.
 
 mod bound;
 mod course;
@@ -23,7 +22,9 @@ mod law;
 mod marginal;
 mod sensitivity;
 
+pub(crate) use bound::ROUNDING;
 pub use bound::{Bound, SETTLED_ERROR, bound};
+pub(crate) use course::TURN;
 pub use course::{Course, Sensors};
 pub use detection::{Detection, detection, level};
 pub use error::LimitsError;

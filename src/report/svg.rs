@@ -14,6 +14,10 @@ const PANEL: u32 = 180;
 const BAR: u32 = 44;
 const AROUND: u32 = 70;
 const TITLE: u32 = 30;
+
+/// Numbers at a logarithmic axis below bars, at most.
+const LABELS: usize = 4;
+
 const LINE: u32 = 18;
 
 /// Characters of a caption's line.
@@ -211,11 +215,12 @@ fn tick(value: f64, range: f64, axis: &Axis) -> String {
         return format!("{value}");
     }
     if !(1e-3..1e5).contains(&size) || value.abs() >= 1e6 {
-        return format!("{value:.2e}");
+        return if axis.log { format!("{value:.0e}") } else { format!("{value:.2e}") };
     }
     let decimals = (2.0 - size.log10().floor()).clamp(0.0, 6.0) as usize;
     let text = format!("{value:.decimals$}");
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".into() } else { text.into() }
 }
 
 /// Named bars with their values, on a logarithmic axis or not; marks are lines through all of them.
@@ -243,8 +248,10 @@ where
         .y_label_area_size(220)
         .build_cartesian_2d(x, 0.0..count)
         .map_err(said)?;
-    let mesh = &mut chart.configure_mesh();
+    let formatted = |value: &f64| tick(*value, *value, &panel.x);
+    let mut mesh = chart.configure_mesh();
     mesh.disable_y_mesh().disable_y_axis().y_labels(0).x_desc(&panel.x.label).light_line_style(TRANSPARENT);
+    mesh.x_labels(LABELS).x_label_formatter(&formatted);
     mesh.draw().map_err(said)?;
     let boxes = bars.iter().enumerate().map(|(index, (_, value, _))| {
         let top = count - index as f64;

@@ -6,7 +6,7 @@
 //! stages, trapezoidal in time, and therefore a law that holds at the samples holds between the integrals. (Saha and Rao, *Identification of
 //! Continuous Dynamical Systems: the Poisson Moment Functional Approach*, 1983; Garnier, Mensler and Richard, Int. J. Control 76, 2003.)
 
-use crate::law::{Monomial, Term};
+use crate::law::{Monomial, Term, raised};
 use serde::{Deserialize, Serialize};
 
 /// Stages behind the two that differentiate.
@@ -83,8 +83,8 @@ pub fn signal(term: Term, q: f64, qd: f64, excitation: f64, by_parts: bool) -> [
         Term::Inertia if by_parts => [0.0, 0.0, q],
         Term::Inertia => [0.0, qd, 0.0],
         Term::Monomial(Monomial { q: power, qd: 1, excitation: 0 }) if by_parts => {
-            let next = i32::from(power) + 1;
-            [0.0, q.powi(next) / f64::from(next), 0.0]
+            let next = power + 1;
+            [0.0, raised(q, next) / f64::from(next), 0.0]
         }
         // q² q̈ + q q̇² = (q² q̇)' − q q̇²
         Term::Effect(_) if term.mass(1.0) != 0.0 => {

@@ -1,7 +1,7 @@
 //! One weak equation from one interval of samples.
 
 use super::Variation;
-use crate::law::{GAUSS, Hold, Monomial, Term};
+use crate::law::{GAUSS, Hold, Monomial, Term, raised};
 use serde::{Deserialize, Serialize};
 
 /// Samples of one interval [T₁, T₂]; all slices are of one length ≥ 3.
@@ -119,14 +119,15 @@ fn half_widths(t: &[f64], k: usize) -> f64 {
 }
 
 /// The term's integrand at sample k; `phi` is the weighted variation with its derivatives.
+#[inline]
 fn integrand(term: Term, section: &Section, k: usize, phi: [f64; 3]) -> f64 {
     let (q, qd) = (section.q[k], section.qd[k]);
     match term {
         Term::Inertia if section.qd_measured => -qd * phi[1],
         Term::Inertia => q * phi[2],
         Term::Monomial(Monomial { q: power, qd: 1, excitation: 0 }) => {
-            let next = i32::from(power) + 1;
-            -q.powi(next) / f64::from(next) * phi[1]
+            let next = power + 1;
+            -raised(q, next) / f64::from(next) * phi[1]
         }
         // (q² q̇)' − q q̇² : the first part is integrated by parts
         Term::Effect(_) if term.mass(1.0) != 0.0 => {
@@ -137,12 +138,13 @@ fn integrand(term: Term, section: &Section, k: usize, phi: [f64; 3]) -> f64 {
 }
 
 /// The integrand's derivatives by the measured (q, q̇) of sample k; an estimated velocity counts as exact.
+#[inline]
 fn sensitivity(term: Term, section: &Section, k: usize, phi: [f64; 3]) -> [f64; 2] {
     let (q, qd) = (section.q[k], section.qd[k]);
     match term {
         Term::Inertia if section.qd_measured => [0.0, phi[1]],
         Term::Inertia => [phi[2], 0.0],
-        Term::Monomial(Monomial { q: power, qd: 1, excitation: 0 }) => [q.powi(i32::from(power)) * phi[1], 0.0],
+        Term::Monomial(Monomial { q: power, qd: 1, excitation: 0 }) => [raised(q, power) * phi[1], 0.0],
         _ => {
             let (by_q, by_qd) = term.gradient(q, qd, section.excitation[k]);
             [by_q * phi[0], if section.qd_measured { by_qd * phi[0] } else { 0.0 }]
@@ -160,7 +162,7 @@ fn held_excitation(section: &Section, variation: Variation, start: f64, length: 
                 Hold::Zero => force[0],
                 _ => force[0] + x * (force[1] - force[0]),
             };
-            weight * at * variation.at((t[0] + x * dt - start) / length)[0]
+            weight * at * variation.value((t[0] + x * dt - start) / length)
         });
         dt * points.iter().sum::<f64>()
     });

@@ -25,6 +25,17 @@ pub enum Variation {
 }
 
 impl Variation {
+    /// φ at 0 ≤ s ≤ 1, the first of [`Variation::at`].
+    #[inline]
+    pub fn value(self, s: f64) -> f64 {
+        match self {
+            Variation::Polynomial { power } => polynomial_value(s, i32::from(power)),
+            Variation::Sine { mode: 1 } => (PI * s).sin().powi(2),
+            Variation::Sine { mode } => Variation::Sine { mode: 1 }.value(s) * (f64::from(mode) * PI * s).sin(),
+            Variation::SmoothSine { mode } => polynomial_value(s, 6) * (f64::from(mode) * PI * s).sin(),
+        }
+    }
+
     /// [φ, dφ/ds, d²φ/ds²] at 0 ≤ s ≤ 1, all without unit.
     pub fn at(self, s: f64) -> [f64; 3] {
         match self {
@@ -39,10 +50,27 @@ impl Variation {
     }
 }
 
+#[inline]
+fn polynomial_value(s: f64, p: i32) -> f64 {
+    let base = 4.0 * s * (1.0 - s);
+    low_power(base, p) * base * base
+}
+
+/// xᵖ⁻²; the powers that are in use without a loop.
+#[inline]
+fn low_power(x: f64, p: i32) -> f64 {
+    match p {
+        4 => x * x,
+        6 => (x * x) * (x * x),
+        _ => x.powi(p - 2),
+    }
+}
+
+#[inline]
 fn polynomial(s: f64, p: i32) -> [f64; 3] {
     let (base, slope) = (4.0 * s * (1.0 - s), 4.0 * (1.0 - 2.0 * s));
     let order = f64::from(p);
-    let low = base.powi(p - 2);
+    let low = low_power(base, p);
     [low * base * base, order * low * base * slope, order * low * ((order - 1.0) * slope * slope - 8.0 * base)]
 }
 
@@ -61,8 +89,10 @@ fn product(f: [f64; 3], g: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    const FAMILIES: [Variation; 6] = [
+    const FAMILIES: [Variation; 8] = [
         Variation::Polynomial { power: 2 },
+        Variation::Polynomial { power: 4 },
+        Variation::Polynomial { power: 6 },
         Variation::Polynomial { power: 5 },
         Variation::Sine { mode: 1 },
         Variation::Sine { mode: 2 },
@@ -85,6 +115,7 @@ mod tests {
         let h = 1e-5;
         for variation in FAMILIES {
             for s in [0.13, 0.5, 0.71] {
+                assert_eq!(variation.value(s), variation.at(s)[0], "{variation:?} at {s}");
                 let [below, at, above] = [s - h, s, s + h].map(|s| variation.at(s));
                 let scale = at[2].abs().max(1.0);
                 assert!(((above[0] - below[0]) / (2.0 * h) - at[1]).abs() < 1e-7 * scale, "{variation:?} at {s}");

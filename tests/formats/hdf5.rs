@@ -33,7 +33,9 @@ fn what_is_no_signal_is_named() {
         refuses(FILE, &columns, &[&format!("\"{variable}\""), words]);
     }
     refuses(FILE, "t = \"time\"\nq = \"none\"", &["\"none\" is empty"]);
-    refuses(FILE, "", &["no variable \"t\"", "\"position_mm\"", "[columns] t"]);
+    refuses(FILE, "t = \"tick\"", &["no variable \"tick\"", "\"position_mm\"", "[columns] t"]);
+    let guessed = open_recording(FILE, &model("")).unwrap().guessed.unwrap();
+    assert!(guessed.contains("q = \"position_mm\" (by its name)"), "{guessed}");
 }
 
 #[test]

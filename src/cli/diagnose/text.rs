@@ -3,7 +3,7 @@
 use super::super::input::Input;
 use super::found::Found;
 use crate::cli::words::{chance, effect_of, number, percent};
-use crate::diagnose::{Candidate, Clock, Diagnosis, Doubt, Finding, Law, StageDiagnosis};
+use crate::diagnose::{Candidate, Clock, Diagnosis, Doubt, Finding, Law, StageDiagnosis, WORTH};
 use crate::law::{Catalogue, SiUnit, Units, equation};
 use std::fmt::Write;
 
@@ -89,7 +89,7 @@ fn what(diagnosis: &Diagnosis, input: &Input) -> String {
 
 /// The best candidate that the law's own terms nearly are, where it would lower the error.
 fn trapped(diagnosis: &Diagnosis) -> Option<&Candidate> {
-    let would = |candidate: &&Candidate| candidate.doubt == Some(Doubt::Trap) && candidate.error().ratio() < 0.95;
+    let would = |candidate: &&Candidate| candidate.doubt == Some(Doubt::Trap) && candidate.error().ratio() < WORTH;
     diagnosis.candidates.iter().find(would)
 }
 

@@ -136,7 +136,7 @@ impl Side {
     pub fn spectrum(&self, period: f64) -> Vec<[f64; 3]> {
         let Some(found) = spectrum(&self.left, period) else { return Vec::new() };
         let energies = found.bins.energy.iter().zip(&found.bins.baseline).enumerate();
-        energies.map(|(bin, (energy, force))| [(bin + 1) as f64 * found.width, *energy, *force]).collect()
+        energies.map(|(bin, (energy, force))| [(bin + 1) as f64 * found.width, *energy, *force - found.even]).collect()
     }
 }
 

@@ -7,6 +7,7 @@ use super::memory_run::MemoryRun;
 use super::rows::Prepared;
 use crate::estimation::Observation;
 use crate::law::{Compiled, Expression, Motion, State};
+use crate::limits::TURN;
 use std::ops::Range;
 
 /// Gauss–Newton steps at most.
@@ -20,9 +21,6 @@ const DIVERGED: f64 = 100.0;
 
 /// Sensitivity of a state to itself.
 const IDENTITY: [[f64; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
-
-/// How far the state may turn within one part of an interval between samples, rad.
-const TURN: f64 = 0.2;
 
 /// Squared distance of a prediction from the readings by channel, q and q̇.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -7,15 +7,11 @@
 use super::series::{Series, doubt, jumped, series};
 use super::trajectory::Trajectory;
 use crate::diagnose::piece::Piece;
-use crate::law::{Expression, Hold, Term};
+use crate::law::{Expression, GAUSS, Hold, Term};
 use crate::weak::Variation;
 
 /// The variation: 4 s (1 − s) to the power 4.
 const VARIATION: Variation = Variation::Polynomial { power: 4 };
-
-/// Gauss–Legendre points on 0 ≤ x ≤ 1, exact for polynomials of degree 5.
-const GAUSS: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 4.0 / 9.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
 /// Share of a sample's distance by which a window's times may differ from another's and still share its weights.
 const SAME_TIMES: f64 = 1e-4;

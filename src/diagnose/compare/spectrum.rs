@@ -28,6 +28,8 @@ pub struct Spectrum {
     pub bins: Bins,
     /// Width of a bin, Hz; bin k is centred on (k + 1) widths.
     pub width: f64,
+    /// What of the force's energy in a bin is the even share.
+    pub even: f64,
 }
 
 /// The spectrum of all pieces whose places lie as close as the first one's; none where they are too short.
@@ -47,7 +49,7 @@ pub fn spectrum(left: &[Left], period: f64) -> Option<Spectrum> {
     }
     let floor = EVEN * bins.baseline.iter().sum::<f64>() / bins.baseline.len() as f64;
     bins.baseline.iter_mut().for_each(|force| *force += floor);
-    Some(Spectrum { bins, width: 1.0 / (interval * length as f64) })
+    Some(Spectrum { bins, width: 1.0 / (interval * length as f64), even: floor })
 }
 
 fn add(segment: &[Place], bins: &mut Bins) {

@@ -1,17 +1,16 @@
 //! Gauss–Newton steps on the innovations' likelihood, and the noise that follows them.
 
-use super::beside::Beside;
+use super::exogenous::Exogenous;
 use super::form::{Fit, Form, Parts};
 use super::inner_slopes::{self, Sought};
-use super::levels::{self, GAIN, Signals};
-use super::outcome::{Law, Outcome, Place, Sums};
+use super::noise_covariance::{self, GAIN, Signals};
+use super::outcome::{self, Law, Outcome};
 use super::run;
-use super::smooth::smooth;
 use super::solve::{Solved, solve, solve_damped};
 use super::start;
 use crate::diagnose::piece::Piece;
 use crate::diagnose::scale::Scale;
-use crate::estimation::{Noise, Pass, RIVALS};
+use crate::estimation::{Information, Noise, Pass, RIVALS, smooth};
 use crate::law::{Effect, State, Term};
 use nalgebra::{DMatrix, DVector};
 
@@ -62,7 +61,6 @@ const DELAYED: f64 = 0.2;
 pub(super) struct Descent<'a> {
     form: Form,
     pieces: &'a [Piece],
-    places: Vec<Place>,
     signals: Signals,
     parts: Parts,
     inner: Vec<Sought>,
@@ -73,7 +71,7 @@ pub(super) struct Descent<'a> {
     /// The rivals' process noise, relative to it.
     ratios: [f64; 2],
     /// The series.
-    beside: Beside,
+    exogenous: Exogenous,
 }
 
 impl<'a> Descent<'a> {
@@ -81,11 +79,10 @@ impl<'a> Descent<'a> {
     pub(super) fn new(form: &Form, pieces: &'a [Piece], coefficients: &[f64], noise: Noise) -> Option<Descent<'a>> {
         let parts = Parts::of(form);
         let inner = inner_slopes::sought(form);
-        let beside = Beside::none(form, &parts, &inner, pieces);
+        let exogenous = Exogenous::none(form, &parts, &inner, pieces);
         Some(Descent {
             form: form.clone(),
             pieces,
-            places: Place::of(pieces),
             signals: Signals { largest: start::largest(pieces), sample_time: pieces.first()?.observations.first()?.dt },
             parts,
             inner,
@@ -93,7 +90,7 @@ impl<'a> Descent<'a> {
             coefficients: coefficients.to_vec(),
             noise,
             ratios: RIVALS,
-            beside,
+            exogenous,
         })
     }
 
@@ -113,8 +110,9 @@ impl<'a> Descent<'a> {
         let (mut calm, mut damping, mut idle, mut still) = (0, 0.0, 0, 0);
         for _ in 0..PASSES {
             let outcomes = self.run(pass);
-            let mut sums = total(&outcomes);
-            let log_likelihood = self.log_likelihood(&outcomes, &sums);
+            let mut information = total(&outcomes);
+            let measurements: f64 = outcomes.iter().flat_map(|outcome| outcome.count).sum();
+            let log_likelihood = self.log_likelihood(&outcomes, &information);
             let reached = best.as_ref().map_or(f64::NEG_INFINITY, |(best, ..)| best.log_likelihood);
             let gained = log_likelihood > reached + PROGRESS;
             idle = if gained { 0 } else { idle + 1 };
@@ -132,20 +130,21 @@ impl<'a> Descent<'a> {
                 }
                 continue;
             }
-            self.add_priors(&mut sums);
-            let solved = self.solved(&mut sums, damping)?;
+            self.add_priors(&mut information);
+            let solved = self.solved(&mut information, damping)?;
             damping = if needed.is_finite() { relaxed(damping) } else { damping };
-            let decrement = solved.step.dot(&sums.score) / solved.step.len().max(1) as f64;
+            let descended: f64 = solved.step.iter().zip(&information.score).map(|(step, score)| step * score).sum();
+            let decrement = descended / solved.step.len().max(1) as f64;
             let followed = self.is_followed(needed, log_likelihood);
             let reached = (log_likelihood >= reached).then(|| {
-                let mut fit = self.summary(log_likelihood, solved.covariance, sums.measurements());
-                fit.noise = levels::calibrated(&self.noise, &outcomes);
+                let mut fit = self.summary(log_likelihood, solved.covariance, measurements);
+                fit.noise = noise_covariance::calibrated(&self.noise, &outcomes);
                 (fit, self.clone())
             });
-            let steady = levels::follow(&mut self.noise, &mut self.ratios, &outcomes, self.signals);
+            let steady = noise_covariance::follow(&mut self.noise, &mut self.ratios, &outcomes, self.signals);
             let level = (log_likelihood - needed).abs() < GAIN;
             let steady = (steady || level) && followed;
-            calm = if steady && decrement < SETTLED.max(1e-9 * sums.measurements()) { calm + 1 } else { 0 };
+            calm = if steady && decrement < SETTLED.max(1e-9 * measurements) { calm + 1 } else { 0 };
             if calm < 2 {
                 (last, needed) = (Some(self.clone()), log_likelihood);
                 self.take(&solved.step);
@@ -159,13 +158,12 @@ impl<'a> Descent<'a> {
         let (mut fit, point, outcomes) = best?;
         *self = point;
         fit.states = self.smoothed(&outcomes);
-        fit.by_stretch = by_stretch(&outcomes);
         Some(fit)
     }
 
     /// The step, without inner parameters that it would carry out of what the motion can tell.
-    fn solved(&self, sums: &mut Sums, damping: f64) -> Option<Solved> {
-        let solved = solve_damped(&sums.information, &sums.score, damping)?;
+    fn solved(&self, information: &mut Information, damping: f64) -> Option<Solved> {
+        let solved = solve_damped(information, damping)?;
         let first = self.parts.unknowns.len();
         let steps = &solved.step.as_slice()[first..first + self.inner.len()];
         let held = inner_slopes::outward(&self.form, &self.inner, &self.limits, steps);
@@ -173,10 +171,11 @@ impl<'a> Descent<'a> {
             return Some(solved);
         }
         for row in held.iter().map(|position| first + position) {
-            sums.information[(row, row)] = HELD_FAST * sums.information[(row, row)].max(f64::MIN_POSITIVE);
-            sums.score[row] = 0.0;
+            let own = information.entry_mut(row, row);
+            *own = HELD_FAST * own.max(f64::MIN_POSITIVE);
+            information.score[row] = 0.0;
         }
-        solve_damped(&sums.information, &sums.score, damping)
+        solve_damped(information, damping)
     }
 
     /// Back to where the last step began; where that bore no motion either, with more process noise to hold it.
@@ -190,7 +189,7 @@ impl<'a> Descent<'a> {
 
     /// Log-likelihood under no process noise, the sensors' noise taking all error, coefficients moving along; ends where it is largest.
     /// Gives up where it will not come near `loud`.
-    pub(super) fn quieten(&mut self, pass: &mut Pass, loud: f64) -> f64 {
+    pub(super) fn fit_output_error(&mut self, pass: &mut Pass, loud: f64) -> f64 {
         let mut best: Option<(f64, Descent<'a>)> = None;
         self.ratios = RIVALS;
         for _ in 0..QUIET_PASSES {
@@ -200,15 +199,15 @@ impl<'a> Descent<'a> {
             if outcomes.iter().any(|outcome| !outcome.finite) {
                 break;
             }
-            let mut sums = total(&outcomes);
-            let log_likelihood = self.log_likelihood(&outcomes, &sums);
-            self.add_priors(&mut sums);
+            let mut information = total(&outcomes);
+            let log_likelihood = self.log_likelihood(&outcomes, &information);
+            self.add_priors(&mut information);
             let gained = log_likelihood - reached;
             if gained > 0.0 {
                 best = Some((log_likelihood, self.clone()));
             }
-            let Some(solved) = solve(&sums.information, &sums.score) else { break };
-            levels::follow(&mut self.noise, &mut self.ratios, &outcomes, self.signals);
+            let Some(solved) = solve(&information) else { break };
+            noise_covariance::follow(&mut self.noise, &mut self.ratios, &outcomes, self.signals);
             if gained.abs() < GAIN || loud - reached.max(log_likelihood) > HOPELESS * gained {
                 break;
             }
@@ -222,14 +221,14 @@ impl<'a> Descent<'a> {
     pub(super) fn run(&self, pass: &mut Pass) -> Vec<Outcome> {
         let terms: Vec<Term> = self.parts.of_state.iter().map(|index| self.form.terms[*index]).collect();
         let coefficients: Vec<f64> = self.parts.of_state.iter().map(|index| self.coefficients[*index]).collect();
-        pass.ratios = self.ratios;
-        let pieces = self.pieces.iter().zip(self.beside.rows.iter()).zip(&self.places).enumerate();
-        let outcome = |(number, ((piece, rows), place)): (usize, ((&Piece, &Vec<_>), &Place))| {
-            let series = self.beside.weights(&self.parts, &self.coefficients, number);
+        pass.rivals.ratios = self.ratios;
+        let pieces = self.pieces.iter().zip(self.exogenous.rows.iter()).enumerate();
+        let outcome = |(number, (piece, rows)): (usize, (&Piece, &Vec<_>))| {
+            let series = self.exogenous.weights(&self.parts, &self.coefficients, number);
             let (free, noise) = (&self.parts.free, self.noise);
-            let tangents = &self.beside.tangents[number];
+            let tangents = &self.exogenous.tangents[number];
             let law = Law { terms: &terms, coefficients: &coefficients, free, series: &series, tangents, noise };
-            run::run(&law, piece, pass, rows, *place).among(self.beside.span(&self.parts, number))
+            run::run(&law, piece, pass, rows).among(self.exogenous.span(&self.parts, number))
         };
         pieces.map(outcome).collect()
     }
@@ -275,25 +274,27 @@ impl<'a> Descent<'a> {
     fn take_series(&mut self, outcomes: &[Outcome]) {
         if self.has_series() {
             let states = self.smoothed(outcomes);
-            let beginnings = self.beside.beginnings(&self.form, &self.parts);
+            let beginnings = self.exogenous.beginnings(&self.form, &self.parts);
             if self.limits.is_empty() {
                 self.limits = inner_slopes::limits(&self.form, &self.inner, &Scale::of(self.pieces, &states));
             }
             let law = (&self.form, self.coefficients.as_slice());
-            self.beside = Beside::along(law, &self.inner, self.pieces, &states, &beginnings);
+            self.exogenous = Exogenous::along(law, &self.inner, self.pieces, &states, &beginnings);
         }
     }
 
-    /// Of all pieces, the price of unknown beginnings taken off; `sums` without their prior.
-    pub(super) fn log_likelihood(&self, outcomes: &[Outcome], sums: &Sums) -> f64 {
+    /// Of all pieces, the price of unknown beginnings taken off; `information` without their prior.
+    pub(super) fn log_likelihood(&self, outcomes: &[Outcome], information: &Information) -> f64 {
         let unlikely: f64 = self.delays().map(|(_, value)| 0.5 * ((value - 1.0) / DELAYED).powi(2)).sum();
-        outcomes.iter().map(|outcome| outcome.log_likelihood).sum::<f64>() - self.beside.price(sums) - unlikely
+        outcomes.iter().map(|outcome| outcome.log_likelihood).sum::<f64>()
+            - self.exogenous.price(information)
+            - unlikely
     }
 
     fn smoothed(&self, outcomes: &[Outcome]) -> Vec<Vec<State>> {
         let of = |outcome: &Outcome| match &outcome.smoothed {
             Some(states) => states.clone(),
-            None => smooth(&outcome.first, &outcome.steps),
+            None => outcome::states(&smooth(&outcome.first, &outcome.steps)),
         };
         outcomes.iter().map(of).collect()
     }
@@ -308,9 +309,8 @@ impl<'a> Descent<'a> {
             log_likelihood,
             log_likelihood_if_right: f64::NEG_INFINITY,
             measurements,
-            by_stretch: Vec::new(),
             states: Vec::new(),
-            beginnings: self.beside.beginnings(&self.form, &self.parts),
+            beginnings: self.exogenous.beginnings(&self.form, &self.parts),
         }
     }
 
@@ -324,7 +324,7 @@ impl<'a> Descent<'a> {
             self.coefficients[*index] += fraction * change;
         }
         inner_slopes::take(&mut self.form, &self.inner, &self.limits, inner, fraction);
-        self.beside.take(step.as_slice(), fraction);
+        self.exogenous.take(step.as_slice(), fraction);
     }
 
     /// The part of a step that the inertia allows.
@@ -339,12 +339,11 @@ impl<'a> Descent<'a> {
     }
 
     /// Adds what is known before the record speaks: where memories begin, and that a delayed excitation takes the place of the excitation.
-    pub(super) fn add_priors(&self, sums: &mut Sums) {
+    pub(super) fn add_priors(&self, information: &mut Information) {
         for (row, value) in self.delays() {
-            sums.information[(row, row)] += DELAYED.powi(-2);
-            sums.score[row] -= (value - 1.0) * DELAYED.powi(-2);
+            information.add_prior(row, DELAYED.powi(-2), (1.0 - value) * DELAYED.powi(-2));
         }
-        self.beside.add_prior(sums);
+        self.exogenous.add_prior(information);
     }
 
     /// Row and coefficient of every delayed excitation.
@@ -355,23 +354,10 @@ impl<'a> Descent<'a> {
     }
 }
 
-pub(super) fn total(outcomes: &[Outcome]) -> Sums {
-    let mut all = outcomes.iter().flat_map(|outcome| &outcome.sums);
-    let mut sums = all.next().cloned().unwrap_or_else(|| Sums::none(0));
-    all.for_each(|other| sums.merge(other));
-    sums
-}
-
-/// Sums by stretch of the record over all pieces, scaled as the innovations say.
-fn by_stretch(outcomes: &[Outcome]) -> Vec<Sums> {
-    let [first, others @ ..] = outcomes else { return Vec::new() };
-    let mut all = first.sums.clone();
-    for outcome in others {
-        all.iter_mut().zip(&outcome.sums).for_each(|(sum, other)| sum.merge(other));
-    }
-    let scale = levels::scale(outcomes);
-    all.iter_mut().for_each(|sums| sums.rescale(scale));
-    all
+pub(super) fn total(outcomes: &[Outcome]) -> Information {
+    let mut information = Information::none(outcomes.first().map_or(0, |outcome| outcome.information.n));
+    outcomes.iter().for_each(|outcome| information.merge(&outcome.information));
+    information
 }
 
 fn relaxed(damping: f64) -> f64 {

@@ -3,6 +3,7 @@
 use super::form::{Fit, Form};
 use super::refit::{fit, refit};
 use crate::diagnose::piece::Piece;
+use crate::estimation::price_of_a_term;
 use crate::identify::Recording;
 use crate::law::{Given, Hold, Model, Term};
 
@@ -52,9 +53,9 @@ pub fn best_as_given(model: &Model, evidence: &Evidence) -> Option<Fit> {
     Some(fitted)
 }
 
-/// The fit without its least significant "maybe" term, where that is worth less than ln N.
+/// The fit without its least significant "maybe" term, where that is worth less than its price.
 fn without_weakest(fitted: &Fit, maybe: &[Term], pieces: &[Piece]) -> Option<Fit> {
-    let price = (2.0 * fitted.measurements.max(2.0).ln()).sqrt();
+    let price = price_of_a_term(fitted.measurements).sqrt();
     let worth = |index: usize| fitted.coefficients[index].abs() / fitted.std(index);
     let open = (0..fitted.form.terms.len()).filter(|index| maybe.contains(&fitted.form.terms[*index]));
     let weakest = open.map(|index| (index, worth(index))).min_by(|a, b| a.1.total_cmp(&b.1))?;

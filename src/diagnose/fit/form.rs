@@ -1,7 +1,6 @@
 //! A form of law, and what a fit of it is.
 
 use super::means::is_series;
-use super::outcome::Sums;
 use crate::estimation::Noise;
 use crate::law::{Expression, State, Term};
 use nalgebra::DMatrix;
@@ -37,8 +36,6 @@ pub struct Fit {
     pub log_likelihood_if_right: f64,
     /// Number of scalar measurements.
     pub measurements: f64,
-    /// What each stretch of the record says, under variances that its innovations have; coefficients before all else.
-    pub by_stretch: Vec<Sums>,
     /// Smoothed states at every sample, one list per piece.
     pub states: Vec<Vec<State>>,
     /// How far from rest the memories of its effects began, piece by piece.

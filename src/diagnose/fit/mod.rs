@@ -2,19 +2,18 @@
 //!
 //! It sharpens what the judge has named, and says what a law's motion and noise are; it decides nothing.
 
-mod beside;
 mod course;
 mod descent;
 mod evidence;
+mod exogenous;
 mod form;
 mod inner_slopes;
-mod levels;
 mod loop_run;
 mod means;
+mod noise_covariance;
 mod outcome;
 mod refit;
 mod run;
-mod smooth;
 mod solve;
 mod start;
 

@@ -1,9 +1,8 @@
 //! What a run of the filter over a piece needs and leaves.
 
 use crate::diagnose::piece::Piece;
-use crate::estimation::{Channel, Filter, Innovation, LogSum, Noise, Observation, initial_state};
+use crate::estimation::{Filter, Information, Noise, Observation, Smoothable, initial_state};
 use crate::law::{Drive, Line, NODES, State, Term};
-use nalgebra::{DMatrix, DVector};
 
 /// The law that runs: terms of the state, and series beside them.
 #[derive(Clone, Copy, Debug)]
@@ -37,72 +36,15 @@ pub struct Tangent {
     pub ends: [f64; 2],
 }
 
-/// Sums over a stretch of samples: what it says on the unknowns (free terms, then series).
-#[derive(Clone, Debug)]
-pub struct Sums {
-    /// Σ ψψᵀ/s of the unknowns, P × P.
-    pub information: DMatrix<f64>,
-    /// Σ ψε/s, P.
-    pub score: DVector<f64>,
-    /// Σ ε²/s by channel.
-    pub energy: [f64; 2],
-    /// Σ ln s.
-    pub log_variance: LogSum,
-    /// Number of innovations by channel.
-    pub count: [f64; 2],
-}
-
-/// A sample as the filter saw it, for the smoother.
-#[derive(Clone, Copy, Debug)]
-pub struct Step {
-    /// What the measurements said that the filter did not expect, by channel.
-    pub innovations: [Option<Innovation>; 2],
-    /// After them.
-    pub filtered: Filter,
-    /// ∂x⁺/∂x of the interval before.
-    pub transition: [[f64; 2]; 2],
-}
-
-/// Stretches into which a record is cut.
-pub const STRETCHES: usize = 24;
-
-/// Where a piece lies in its record.
-#[derive(Clone, Copy, Debug)]
-pub struct Place {
-    /// Intervals of the pieces before it.
-    before: usize,
-    /// Intervals of all pieces.
-    all: usize,
-}
-
-impl Place {
-    /// Of every piece.
-    pub fn of(pieces: &[Piece]) -> Vec<Place> {
-        let all = pieces.iter().map(|piece| piece.len() - 1).sum::<usize>().max(1);
-        let mut before = 0;
-        let place = |piece: &Piece| {
-            let place = Place { before, all };
-            before += piece.len() - 1;
-            place
-        };
-        pieces.iter().map(place).collect()
-    }
-
-    /// The stretch that the piece's interval of that number belongs to.
-    pub fn stretch(self, interval: usize) -> usize {
-        ((self.before + interval) * STRETCHES / self.all).min(STRETCHES - 1)
-    }
-}
-
-/// What a run leaves beside its sums.
+/// What a run leaves.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// One per stretch of the record.
-    pub sums: Vec<Sums>,
+    /// What the piece says on the unknowns: free terms, then series.
+    pub information: Information,
     /// At the first sample.
     pub first: Filter,
     /// One per sample after it.
-    pub steps: Vec<Step>,
+    pub steps: Vec<Smoothable>,
     /// Log-likelihood, and what the rival levels of process noise would make of it.
     pub log_likelihood: f64,
     /// Under the process noise times the pass's ratios.
@@ -135,78 +77,6 @@ impl Span {
     }
 }
 
-impl Sums {
-    /// Nothing seen of `unknowns`.
-    pub fn none(unknowns: usize) -> Sums {
-        Sums {
-            information: DMatrix::zeros(unknowns, unknowns),
-            score: DVector::zeros(unknowns),
-            energy: [0.0; 2],
-            log_variance: LogSum::default(),
-            count: [0.0; 2],
-        }
-    }
-
-    /// The same sums among the unknowns of all pieces.
-    fn among(self, span: Span) -> Sums {
-        let own = self.score.len();
-        if own == span.shared + span.all {
-            return self;
-        }
-        let mut all = Sums::none(span.shared + span.all);
-        for row in 0..own {
-            all.score[span.place(row)] = self.score[row];
-            for column in 0..own {
-                all.information[(span.place(row), span.place(column))] = self.information[(row, column)];
-            }
-        }
-        Sums { information: all.information, score: all.score, ..self }
-    }
-
-    /// Adds another stretch's.
-    pub fn merge(&mut self, other: &Sums) {
-        self.information += &other.information;
-        self.score += &other.score;
-        self.log_variance.add_logarithm(other.log_variance.total());
-        for channel in 0..2 {
-            self.energy[channel] += other.energy[channel];
-            self.count[channel] += other.count[channel];
-        }
-    }
-
-    /// Number of innovations.
-    pub fn measurements(&self) -> f64 {
-        self.count[0] + self.count[1]
-    }
-
-    /// Log-likelihood, up to a constant.
-    pub fn log_likelihood(&self) -> f64 {
-        -0.5 * (self.log_variance.total() + self.energy[0] + self.energy[1])
-    }
-
-    /// Says energies and log-likelihood under variances that are these times as large, by channel.
-    pub fn rescale(&mut self, scale: [f64; 2]) {
-        for ((energy, count), scale) in self.energy.iter_mut().zip(self.count).zip(scale) {
-            *energy /= scale;
-            self.log_variance.add_logarithm(count * scale.ln());
-        }
-    }
-
-    pub(super) fn add(&mut self, unknowns: &[f64], channel: Channel, innovation: &Innovation) {
-        let (weight, residual) = (innovation.precision, innovation.residual);
-        self.energy[channel as usize] += residual * residual * weight;
-        self.log_variance.add(innovation.variance);
-        self.count[channel as usize] += 1.0;
-        for (column, psi) in unknowns.iter().enumerate() {
-            let scaled = psi * weight;
-            self.score[column] += scaled * residual;
-            for (entry, other) in self.information.column_mut(column).iter_mut().zip(unknowns) {
-                *entry += scaled * other;
-            }
-        }
-    }
-}
-
 impl Law<'_> {
     /// Terms and coefficients; where a series has tangents, with a linear stiffness at the end that they set.
     pub(super) fn bent(&self) -> (Vec<Term>, Vec<f64>) {
@@ -220,15 +90,25 @@ impl Law<'_> {
 }
 
 impl Outcome {
-    /// The same with its sums among the unknowns of all pieces.
-    pub fn among(mut self, span: Span) -> Outcome {
-        self.sums = self.sums.into_iter().map(|sums| sums.among(span)).collect();
-        self
+    /// The same with its information among that on the unknowns of all pieces.
+    pub fn among(self, span: Span) -> Outcome {
+        let own = self.information.n;
+        if own == span.shared + span.all {
+            return self;
+        }
+        let mut information = Information::none(span.shared + span.all);
+        for row in 0..own {
+            information.score[span.place(row)] = self.information.score[row];
+            for column in row..own {
+                *information.entry_mut(span.place(row), span.place(column)) = self.information.entry(row, column);
+            }
+        }
+        Outcome { information, ..self }
     }
 
     pub(super) fn none(first: Filter, unknowns: usize, samples: usize) -> Outcome {
         Outcome {
-            sums: vec![Sums::none(unknowns); STRETCHES],
+            information: Information::none(unknowns),
             first,
             steps: Vec::with_capacity(samples),
             log_likelihood: 0.0,
@@ -242,7 +122,7 @@ impl Outcome {
 }
 
 /// The observation with the series' forces, and a force beside them, taken off its excitation.
-pub(super) fn beside(observation: &Observation, coefficients: &[f64], forces: &[Line], besides: Line) -> Observation {
+pub(super) fn relieved(observation: &Observation, coefficients: &[f64], forces: &[Line], besides: Line) -> Observation {
     let sum = |end: usize| {
         let forces = coefficients.iter().zip(forces).map(|(coefficient, line)| coefficient * line[end]);
         forces.sum::<f64>() + besides[end]
@@ -263,4 +143,9 @@ pub(super) fn beside(observation: &Observation, coefficients: &[f64], forces: &[
 pub(super) fn first_state(piece: &Piece, noise: &Noise) -> Filter {
     let measured = piece.measured().map(|channel| channel.map(|values| [values[0], values[1]]));
     initial_state(measured, piece.t[1] - piece.t[0], noise)
+}
+
+/// q and q̇ of smoothed means.
+pub(super) fn states<const N: usize>(means: &[[f64; N]]) -> Vec<State> {
+    means.iter().map(|mean| State { q: mean[0], qd: mean[1] }).collect()
 }

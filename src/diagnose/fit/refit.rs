@@ -54,7 +54,7 @@ pub(super) fn best_of(mut descent: Descent, mut pass: Pass) -> Option<Fit> {
         loud.log_likelihood_if_right = loud.log_likelihood;
         return Some(loud);
     }
-    loud.log_likelihood_if_right = descent.quieten(&mut pass, loud.log_likelihood);
+    loud.log_likelihood_if_right = descent.fit_output_error(&mut pass, loud.log_likelihood);
     if loud.log_likelihood_if_right <= loud.log_likelihood {
         return Some(loud);
     }

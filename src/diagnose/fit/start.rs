@@ -2,6 +2,7 @@
 
 use super::form::{Form, Parts};
 use super::means::is_series;
+use crate::diagnose::motion::sensor_noise;
 use crate::diagnose::piece::Piece;
 use crate::estimation::Noise;
 use crate::law::Term;
@@ -24,7 +25,7 @@ pub(super) struct Start {
 /// Guesses from rows of every length, the best first: those of positive inertia, then by the part of the force that their rows leave
 /// unexplained. None without rows enough.
 pub(super) fn starts(form: &Form, pieces: &[Piece]) -> Vec<Start> {
-    let sensor = sensor_noise(pieces);
+    let sensor = sensor_noise(pieces).map(|std| std * std + f64::MIN_POSITIVE);
     let position = form.terms.iter().position(|term| *term == Term::Inertia);
     let inertia = |coefficients: &[f64]| position.map_or(1.0, |index| coefficients[index]);
     let mut guesses: Vec<_> = LENGTHS.iter().filter_map(|length| guess(form, pieces, *length)).collect();
@@ -93,18 +94,6 @@ fn guess(form: &Form, pieces: &[Piece], length: usize) -> Option<(f64, Vec<f64>,
         coefficients,
         fit.residual * fit.residual,
     ))
-}
-
-/// Variances of the sensors' noise from fourth differences, which a smooth motion leaves small: an upper bound.
-fn sensor_noise(pieces: &[Piece]) -> [f64; 2] {
-    [0, 1].map(|channel| {
-        let differences =
-            pieces.iter().filter_map(|piece| piece.measured()[channel]).flat_map(|signal| signal.windows(5));
-        let (sum, count) = differences.fold((0.0, 0.0), |(sum, count), w| {
-            (sum + (w[0] - 4.0 * w[1] + 6.0 * w[2] - 4.0 * w[3] + w[4]).powi(2), count + 1.0)
-        });
-        sum / (70.0 * f64::max(count, 1.0)) + f64::MIN_POSITIVE
-    })
 }
 
 /// The largest value measured by channel.

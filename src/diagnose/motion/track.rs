@@ -2,9 +2,7 @@
 
 use super::spline::{Sensors, Spline, States};
 use crate::diagnose::Piece;
-
-/// Distance from the smoothed motion, in robust std, beyond which a single reading is a wild one (one in 10⁹ were the noise Gaussian).
-const WILD: f64 = 6.0;
+use crate::estimation::OUTLYING;
 
 /// Factor on the variance of a reading that is not to be taken.
 pub(super) const UNREAD: f64 = 1e12;
@@ -59,9 +57,9 @@ fn doubt(piece: &Piece, track: &Track, sensors: Sensors, channel: usize) -> Vec<
     let middle = sorted.len() / 2;
     let usual = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745;
     let usual = usual.max(sensors.noise[channel] / sensors.unit(channel).abs());
-    if distances.iter().all(|distance| *distance <= WILD * usual) {
+    if distances.iter().all(|distance| *distance <= OUTLYING * usual) {
         return Vec::new();
     }
-    let factor = |distance: &f64| if *distance > WILD * usual { (distance / usual).powi(2) } else { 1.0 };
+    let factor = |distance: &f64| if *distance > OUTLYING * usual { (distance / usual).powi(2) } else { 1.0 };
     distances.iter().map(factor).collect()
 }

@@ -3,8 +3,11 @@
 //! No law is needed for it, and nothing is changed: a remark says what was seen, how much of it, and what it does to a law.
 
 mod readings;
+mod remark;
 mod sampling;
 mod velocity;
+
+pub use remark::Remark;
 
 use super::motion::{Motion, period};
 use crate::identify::Recording;
@@ -12,23 +15,6 @@ use crate::law::Hold;
 
 /// Samples from which the motion is estimated: some thousand natural periods of a well sampled one, a second's work.
 const LOOKED_AT: usize = 20_000;
-
-/// Something to be said of a recording.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Remark {
-    /// Of what: `t`, `q`, `qd` or `F`.
-    pub channel: &'static str,
-    /// What kind of thing, one word: `wild`, `late`.
-    pub kind: &'static str,
-    /// What was seen, and what it does, without its channel.
-    pub sentence: String,
-}
-
-impl Remark {
-    fn new(channel: &'static str, kind: &'static str, sentence: String) -> Remark {
-        Remark { channel, kind, sentence }
-    }
-}
 
 /// Everything that is to be said of a recording; nothing where all is as it should be.
 pub fn remarks(recording: &Recording) -> Vec<Remark> {

@@ -1,6 +1,6 @@
 //! One channel by itself: wild readings, stuck stretches, coarse steps, clipping, an offset.
 
-use super::Remark;
+use super::remark::Remark;
 use crate::identify::Recording;
 
 /// Robust std by which a reading stands off the middle of its neighbours before it is wild: noise alone never does, and the neighbours'
@@ -80,29 +80,23 @@ fn smallest_step(values: &[f64]) -> f64 {
 }
 
 /// The runs of equal readings, as positions of their first and last.
-fn runs(values: &[f64]) -> Vec<(usize, usize)> {
-    let mut runs = Vec::new();
-    let mut start = 0;
-    for at in 1..=values.len() {
-        if at == values.len() || values[at] != values[start] {
-            runs.push((start, at - 1));
-            start = at;
-        }
-    }
-    runs
+fn runs(values: &[f64]) -> impl Iterator<Item = (usize, usize)> {
+    let begins = move |at: &usize| *at == 0 || values[*at] != values[at - 1];
+    let starts = (0..values.len()).filter(begins);
+    let ends = (0..values.len()).filter(move |at| at + 1 == values.len() || begins(&(at + 1)));
+    starts.zip(ends)
 }
 
 /// The longest run of equal readings, where chance does not explain it and another channel goes on meanwhile as it does elsewhere.
 fn stuck(t: &[f64], values: &[f64], others: &[&[f64]]) -> Option<String> {
-    let runs = runs(values);
-    let (start, end) = *runs.iter().max_by_key(|(start, end)| end - start)?;
+    let (start, end) = runs(values).max_by_key(|(start, end)| end - start)?;
     let length = end - start;
-    let repeats = values.len() - runs.len() - length;
+    let repeats = values.len() - runs(values).count() - length;
     let rate = (repeats as f64 + 1.0) / (values.len() - length).max(2) as f64;
     let goes_on = |other: &&[f64]| {
         let part = &other[start..=end];
         let [low, high] = ends(part);
-        spread(other) > 0.0 && high - low > spread(other) && runs_of(part) > part.len() / 2
+        spread(other) > 0.0 && high - low > spread(other) && runs(part).count() > part.len() / 2
     };
     if length as f64 * -rate.ln() < STUCK || others.is_empty() || !others.iter().any(goes_on) {
         return None;
@@ -114,10 +108,6 @@ fn stuck(t: &[f64], values: &[f64], others: &[&[f64]]) -> Option<String> {
         t[end],
         length + 1
     ))
-}
-
-fn runs_of(values: &[f64]) -> usize {
-    runs(values).len()
 }
 
 fn ends(values: &[f64]) -> [f64; 2] {
@@ -138,8 +128,7 @@ fn spread(values: &[f64]) -> f64 {
 fn clipped(values: &[f64]) -> Option<String> {
     let [low, high] = ends(values);
     let at_end = |end: f64, inwards: f64| {
-        let stretches =
-            runs(values).into_iter().filter(|(from, to)| values[*from] == end && to - from + 1 >= STRETCHES);
+        let stretches = runs(values).filter(|(from, to)| values[*from] == end && to - from + 1 >= STRETCHES);
         let lengths: Vec<usize> = stretches.map(|(from, to)| to - from + 1).collect();
         let distance = |value: &f64| (value - end) * inwards;
         let nearest = values.iter().map(distance).filter(|distance| *distance > 0.0).fold(f64::INFINITY, f64::min);

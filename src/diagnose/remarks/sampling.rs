@@ -1,6 +1,6 @@
 //! The clock: even or not, samples lost, and how many of them a period has.
 
-use super::Remark;
+use super::remark::Remark;
 use crate::identify::Recording;
 
 /// Share of the usual distance of two samples by which distances differ before a clock is called uneven: times that are rounded to a

@@ -1,6 +1,6 @@
 //! Whether q̇ is the derivative of q: sign, scale, lag, and whether it is a measurement of its own.
 
-use super::Remark;
+use super::remark::Remark;
 use crate::diagnose::motion::{Kinematics, Motion};
 
 /// Std that a lag or a scale must be away from what it should be to be said.

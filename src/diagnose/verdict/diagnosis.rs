@@ -17,7 +17,7 @@ use crate::law::{Catalogue, Effect, Inner, Term};
 pub const LEVEL: f64 = 0.01;
 
 /// Mean ratio of errors that is worth the word: 5 %.
-const WORTH: f64 = 0.95;
+pub const WORTH: f64 = 0.95;
 
 /// Ratio of errors in every window that needs no test: a third of the error's energy.
 pub(super) const LARGE: f64 = 0.816;

@@ -14,7 +14,7 @@ mod sharpen;
 mod stages;
 mod timing;
 
-pub use diagnosis::{Candidate, Diagnosis, Doubt, Finding, LEVEL};
+pub use diagnosis::{Candidate, Diagnosis, Doubt, Finding, LEVEL, WORTH};
 pub use errors::{ADEQUATE, WindowError, are_adequate};
 pub use improve::{Addition, Improvement, Step};
 pub use law::Law;

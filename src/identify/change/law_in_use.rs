@@ -61,7 +61,7 @@ impl LawInUse {
     pub fn new(problem: &Problem) -> LawInUse {
         let n = problem.n();
         LawInUse {
-            run: Pass::new(n).guarded(),
+            run: Pass::new(n).gated(),
             all: problem.known.clone(),
             active: vec![true; n],
             noise: Noise { sensor: [1.0; 2], process: 1.0 },

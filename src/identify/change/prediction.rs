@@ -79,7 +79,7 @@ impl Prediction {
         let [from, _, to] = observation.drive.part(0, 1);
         self.state = motion.step_linear(self.state, observation.dt, from, to);
         if !self.state.is_finite() {
-            self.restart(law.run.filter.state, sample.t);
+            self.restart(law.run.filter.state(), sample.t);
         }
         let weight = |measured: bool, weight: f64| if measured { weight } else { 0.0 };
         let difference = weight(problem.channels.q, settings.weight_q) * (self.state.q - sample.q).abs()
@@ -91,7 +91,7 @@ impl Prediction {
         self.shown_deviation = self.deviation.mean();
         self.shown_threshold = self.threshold(settings, law);
         if sample.t - self.since > settings.deviation_interval {
-            self.restart(law.run.filter.state, sample.t);
+            self.restart(law.run.filter.state(), sample.t);
             self.usual += SHARE * (self.shown_deviation - self.usual);
         }
     }

@@ -17,7 +17,7 @@ use crate::identify::window::Window;
 use serde::{Deserialize, Serialize};
 
 /// Std of the wandering over a natural period relative to the reach, of the coefficients and of the inertia. The last
-/// is too fast for a drift.
+/// is too fast for a drift; with a slower one than the first, 0.3 %, std came out too small (docs/decisions/drift.md).
 const INTENSITIES: [[f64; 2]; 5] = [[0.01, 0.0], [0.03, 0.0], [0.01, 0.01], [0.03, 0.03], [0.1, 0.1]];
 
 /// How many of them are a drift.
@@ -29,35 +29,38 @@ const CONSTANT: usize = 5;
 /// Place of the first filter whose coefficients switch once, at one of several samples.
 const SWITCHED: usize = 6;
 
-/// How many of them there are.
+/// How many of them there are: with three 9 of 432 switches were missed, with five 5 (docs/decisions/drift.md).
 pub const INSTANTS: usize = 5;
 
 /// Filters.
 const RIVALS: usize = SWITCHED + INSTANTS;
 
-/// A switch moves a coefficient by this part of its reach, as a std, and so much is open at the beginning.
+/// A switch moves a coefficient by this part of its reach, as a std, and so much is open at the beginning: the width of
+/// a switch for the hypotheses too.
 const WIDTH: f64 = 0.3;
 
-/// Samples that every filter takes in a step, until all are taken.
+/// Samples that every filter takes in a step, until all are taken: 11 filters of 4 samples bound the step's work.
 const BUDGET: usize = 4;
 
-/// What decides a trial, nats …
+/// What decides a trial, nats (odds of 160 000 to one) …
 const DECIDED: f64 = 12.0;
 
 /// … that has lasted this many natural periods.
 const LASTING: f64 = 0.25;
 
-/// For how many natural periods a trial goes on: as long as a switch explains the record as well, and at most.
+/// For how many natural periods a trial goes on: as long as a switch explains the record as well, and at most. With
+/// sixteen the next switch came within the trial (docs/decisions/drift.md).
 const PATIENCE: [f64; 2] = [3.0, 6.0];
 
-/// For how many natural periods what a walk predicted counts in its weight.
+/// For how many natural periods what a walk predicted counts in its weight: longer than [`REST`], so that a rest is not
+/// forgotten before it is told.
 const MEMORY: f64 = 4.0;
 
-/// Log-likelihood by which coefficients that wander are told from ones that rest, nats.
+/// Log-likelihood by which coefficients that wander are told from ones that rest, nats: odds of 150 to one.
 const WANDERED: f64 = 5.0;
 
 /// Coefficients that may have been at rest for this many natural periods are; a constant law that has explained as many
-/// is the law.
+/// is the law. Without a least length ramps of four periods were never said (docs/decisions/drift.md).
 const REST: f64 = 2.0;
 
 /// How far the trial of a drift, or its following, has come.
@@ -100,7 +103,7 @@ pub struct AugmentedDrift {
     parts: usize,
     period: f64,
     switch: [u64; INSTANTS],
-    guard: InnovationGate,
+    gate: InnovationGate,
     next: u64,
     /// Since which sample the trial speaks for a drift.
     leading_since: Option<u64>,
@@ -124,7 +127,7 @@ impl AugmentedDrift {
             parts: 1,
             period: 1.0,
             switch: [0; INSTANTS],
-            guard: InnovationGate::default(),
+            gate: InnovationGate::default(),
             next: 0,
             leading_since: None,
             rest: (0, 0),
@@ -163,14 +166,13 @@ impl AugmentedDrift {
             self.reach[index] = before.all[problem.inertia];
         }
         let first = window.initial_state(before.start, &before.noise);
-        let [q, _, qd] = first.covariance;
-        let start = Start { all: before.all, reach: &self.reach, width: WIDTH, state: first.state, variances: [q, qd] };
+        let start = Start { all: before.all, reach: &self.reach, width: WIDTH, first };
         self.rivals.iter_mut().for_each(|rival| rival.begin(&unknowns, &start));
         self.sound.fill(true);
         self.weights.fill(0.0);
         (self.noise, self.parts, self.period) = (before.noise, before.parts, before.period);
         (self.switch, self.next) = (before.switch, before.start + 1);
-        (self.course, self.leading_since, self.guard) = (Course::Trial, None, InnovationGate::default());
+        (self.course, self.leading_since, self.gate) = (Course::Trial, None, InnovationGate::default());
     }
 
     /// Takes what is new in the window, a bounded number of samples; returns whether the law is new.
@@ -215,7 +217,7 @@ impl AugmentedDrift {
             let Some(measured) = observation.measured[channel as usize] else { continue };
             let variance = self.noise.sensor[channel as usize];
             let (residual, total) = self.rivals[SLOW - 1].residual(channel, measured, variance);
-            if !self.guard.admits(channel, residual, total) {
+            if !self.gate.admits(channel, residual, total) {
                 continue;
             }
             let sound = self.rivals[..count].iter_mut().zip(&self.sound).filter(|(_, sound)| **sound);

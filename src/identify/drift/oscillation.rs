@@ -2,10 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Samples that its mean and its size are taken over.
+/// Samples that its mean and its size are taken over: four periods of the slowest motion that a variation of 2048
+/// samples is half of.
 const MEMORY: f64 = 16_384.0;
 
-/// A side is reached beyond this part of the RMS: noise about the mean does not count.
+/// A side is reached beyond this part of the RMS: noise about the mean does not count, a sine is beyond it for two
+/// thirds of the time.
 const BEYOND: f64 = 0.5;
 
 /// Running count of sides.

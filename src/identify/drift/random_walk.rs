@@ -11,7 +11,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// No coefficient is looked for beyond this many times its reach.
+/// No coefficient is looked for beyond this many times its reach, as a std: the other terms would have to cancel what
+/// its force exceeds the right side by.
 const WIDEST: f64 = 3.0;
 
 /// One weak row h·θ = r.

@@ -20,10 +20,11 @@ const INERTIA_WANDERS: [bool; 2] = [false, true];
 /// How large the law's own error is, relative to a row.
 const ERRORS: [f64; 2] = [0.01, 0.1];
 
-/// For how many variations a row counts in the weights of the walks.
+/// For how many variations a row counts in the weights of the walks: twice as many as a constant law is waited for.
 const MEMORY: f64 = 16.0;
 
-/// No walk is less probable than e to the minus this: what was wrong may become right.
+/// No walk is less probable than e to the minus this: what was wrong may become right, and comes back within a few
+/// rows.
 const FAINTEST: f64 = 20.0;
 
 /// A bank of walks.

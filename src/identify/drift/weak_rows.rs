@@ -19,7 +19,7 @@ use crate::identify::window::Window;
 use crate::weak::{Row, Variation};
 use serde::{Deserialize, Serialize};
 
-/// Samples in the shortest variation.
+/// Samples in the shortest variation: its second sine still has 32 a period.
 const SHORTEST: usize = 64;
 
 /// Odd about its middle, so that its integral is zero; smooth enough to keep faster modes out.
@@ -28,16 +28,18 @@ const VARIATION: Variation = Variation::SmoothSine { mode: 2 };
 /// For how many of the longest variations a row counts in the choice of the length.
 const MEMORY: f64 = 16.0;
 
-/// Evidence for any law at all from which on one is shown, nats.
+/// Evidence for any law at all from which on one is shown, nats: e²⁰ to one against a row that nothing predicts.
 const SEEN: f64 = 20.0;
 
-/// Evidence of wandering, nats, that must have lasted …
+/// Evidence of wandering, nats (odds of 400 to one), that must have lasted …
 const MOVING: f64 = 6.0;
 
 /// … for this many rows: a jump is far from every constant law for the length of a variation.
 const LASTING: u32 = 2 * OVERLAP as u32;
 
-/// Rows that must speak against wandering before it has come to an end.
+/// Rows that must speak against wandering before it has come to an end: 16 variations. Sought as soon as wandering is
+/// unlikely, a constant law was validated in a dwell of DROPBEAR and kept when the roller moved
+/// (docs/decisions/drift-without-a-law.md).
 const QUIET: u32 = 16 * OVERLAP as u32;
 
 /// For how many variations a constant law is waited for.

@@ -3,7 +3,7 @@
 
 use super::hypothesis::{Expected, Hypothesis, Kind, Value};
 use crate::estimation::{Channel, Filter};
-use crate::law::{Drive, State};
+use crate::law::Drive;
 use serde::{Deserialize, Serialize};
 
 /// An offset not found within this time after the outage is none that it brought, s.
@@ -45,7 +45,7 @@ impl AfterOutage {
     /// An outage ends: the state is any that the motion may have.
     pub fn begin(&mut self, law: &Expected) {
         let [q, qd] = law.size;
-        let filter = Filter { state: State::default(), covariance: [q * q, 0.0, qd * qd] };
+        let filter = Filter::begin([0.0; 2], [q * q, qd * qd]);
         self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.begin(&filter, law, 0.0, 0.0));
         self.since = Some(0.0);
     }

@@ -126,9 +126,9 @@ impl Hypothesis {
 
     /// Begins at the state before the first reading that is held; `dt` is the time between two samples.
     pub fn begin(&mut self, filter: &Filter, law: &Expected, dt: f64, log: f64) {
-        let [qq, qv, vv] = filter.covariance;
-        self.mean = [filter.state.q, filter.state.qd, 0.0, 0.0];
-        self.covariance = [[qq, qv, 0.0, 0.0], [qv, vv, 0.0, 0.0], [0.0; 4], [0.0; 4]];
+        let ([q, qd], [[qq, qv], [vq, vv]]) = (filter.mean, filter.covariance);
+        self.mean = [q, qd, 0.0, 0.0];
+        self.covariance = [[qq, qv, 0.0, 0.0], [vq, vv, 0.0, 0.0], [0.0; 4], [0.0; 4]];
         (self.log, self.age) = (log, 0);
         self.bursts = [Burst::default(); 2];
         self.forget_held();
@@ -180,8 +180,8 @@ impl Hypothesis {
 
     /// The filter of (q, q̇) after the last reading.
     pub fn filter(&self) -> Filter {
-        let [first, second, ..] = self.covariance;
-        Filter { state: self.state(), covariance: [first[0], first[1], second[1]] }
+        let ([q, qd, ..], [first, second, ..]) = (self.mean, self.covariance);
+        Filter { mean: [q, qd], covariance: [[first[0], first[1]], [second[0], second[1]]] }
     }
 
     /// The state at a sample held.

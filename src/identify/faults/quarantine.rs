@@ -128,7 +128,7 @@ impl Quarantine {
         let arrival = before.map(|before| self.arrival(reading, &before, measured, hold));
         match (law, arrival) {
             (Some((law, filter)), Some(arrival)) if arrival.dt < OUTAGE * pace => {
-                let law = Expected { noise: law.noise_with(reading.unseen, filter.state.q), ..law };
+                let law = Expected { noise: law.noise_with(reading.unseen, filter.mean[0]), ..law };
                 self.weigh(&arrival, &law, &filter);
             }
             _ => {

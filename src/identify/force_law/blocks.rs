@@ -20,7 +20,7 @@ const FEWEST: usize = 8;
 const SHORTEST: f64 = 8.0;
 
 /// Std by which the scores may exceed what white noise gives: one chance in a thousand.
-const SURPRISE: f64 = 3.1;
+pub const SURPRISE: f64 = 3.1;
 
 /// The record cut into blocks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -24,7 +24,8 @@ const LOOKS: usize = 4;
 /// Force of a switch ÷ RMS of the law's own force, for each coefficient (the width of the tracker of motion).
 const WIDTH: f64 = 0.3;
 
-/// Share of the posterior by which an instant is too late to be the switch.
+/// Share of the posterior by which an instant is too late to be the switch: one chance in a thousand that it came
+/// later.
 const TOO_LATE: f64 = 0.999;
 
 /// One hypothesis.

@@ -4,6 +4,7 @@ use super::features::expect;
 use super::noise::ChannelNoise;
 use super::segment::Segment;
 use super::smoother::{Instant, LONGEST, Smoother};
+use crate::estimation::Channel;
 use crate::identify::check::BuildError;
 use crate::identify::check::check;
 use crate::identify::problem::Problem;
@@ -11,7 +12,8 @@ use crate::identify::recording::{Recording, settings_for};
 use crate::identify::settings::Settings;
 use crate::law::{Model, State};
 
-/// Times that the weights of the samples are renewed with the law that they gave.
+/// Times that the weights of the samples are renewed with the law that they gave: each changes them by the square of
+/// what the one before did.
 const ROUNDS: usize = 3;
 
 /// A force law with numbers, and the motion that it was found on.
@@ -59,7 +61,7 @@ pub fn fit_force_law(model: &Model, recording: &Recording) -> Result<Option<Forc
 /// The motion of every piece between gaps.
 fn believed(problem: &Problem, settings: &Settings, recording: &Recording) -> Vec<Instant> {
     let measured = [problem.channels.q, problem.channels.qd];
-    let mut noises = [0, 1].map(|channel| ChannelNoise::new(channel, settings.sample_time));
+    let mut noises = Channel::ALL.map(|channel| ChannelNoise::new(channel, settings.sample_time));
     let mut instants = Vec::with_capacity(recording.count());
     for piece in recording.pieces() {
         noises.iter_mut().for_each(ChannelNoise::interrupt);

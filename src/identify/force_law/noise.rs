@@ -1,20 +1,20 @@
 //! How smooth a measured motion is and how noisy its sensor: the largest likelihood of (R, Q) over a grid of Q ÷ R.
 //!
 //! Both variances scale with R, so that for each ratio R = mean e²/s is the maximum in closed form (concentrated
-//! likelihood, Harvey,
-//! *Forecasting, Structural Time Series Models and the Kalman Filter*, 1989, 3.4.1).
+//! likelihood, Harvey, *Forecasting, Structural Time Series Models and the Kalman Filter*, 1989, 3.4.1).
 
-use super::kinematics::Kinematics;
-use crate::estimation::LogSum;
+use super::kinematics::{Kinematics, advance, begin};
+use crate::estimation::{Channel, LogSum};
 use serde::{Deserialize, Serialize};
 
-/// Ratios that are tried: the filter's corner frequency ω from a hundredth of a radian per sample, by factors of √10 …
-/// to beyond Nyquist.
+/// Ratios that are tried: of the filter's corner frequency from 0.003 rad per sample on …
 const RATIOS: usize = 12;
+/// … the lowest, a period of 2000 samples …
 const LOWEST: f64 = 3e-3;
+/// … by factors of √√10, up to 1.7 rad, beyond half of Nyquist's π.
 const FACTOR: f64 = 1.778_279_410_038_922_8;
 
-/// Readings that only say where the motion begins.
+/// Readings that only say where the motion begins: more than twice the three unknowns of the state.
 const SETTLING: u32 = 8;
 
 /// Noise ÷ RMS of the readings below which it is rounding.
@@ -37,7 +37,7 @@ struct Rival {
 /// The noise of one channel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChannelNoise {
-    channel: usize,
+    channel: Channel,
     rivals: Vec<Rival>,
     /// Readings since the motion began, those that count, and those since the last interruption.
     begun: u32,
@@ -58,8 +58,8 @@ pub struct Smoothness {
 }
 
 impl ChannelNoise {
-    /// For a channel (0: q, 1: q̇) read about every `sample_time` s.
-    pub fn new(channel: usize, sample_time: f64) -> ChannelNoise {
+    /// For a channel read about every `sample_time` s.
+    pub fn new(channel: Channel, sample_time: f64) -> ChannelNoise {
         let rival = |index: i32| {
             let corner = LOWEST * FACTOR.powi(index) / sample_time;
             let ratio = corner.powi(6 - 2 * channel as i32) * sample_time;
@@ -85,7 +85,7 @@ impl ChannelNoise {
         for rival in &mut self.rivals {
             match self.since {
                 1 => {}
-                2 => rival.filter = Kinematics::begin(channel, [last, value], dt, 1.0),
+                2 => rival.filter = begin(channel, [last, value], dt, 1.0),
                 since => rival.add(dt, channel, value, since > SETTLING),
             }
         }
@@ -115,12 +115,12 @@ impl ChannelNoise {
 }
 
 impl Rival {
-    fn add(&mut self, dt: f64, channel: usize, value: f64, counts: bool) {
-        self.filter.advance(dt, self.ratio);
-        let reading = self.filter.measure(channel, value, 1.0);
+    fn add(&mut self, dt: f64, channel: Channel, value: f64, counts: bool) {
+        advance(&mut self.filter, dt, self.ratio);
+        let innovation = self.filter.update(channel, value, 1.0);
         if counts {
-            self.squares += reading.innovation * reading.innovation / reading.variance;
-            self.logarithms.add(reading.variance);
+            self.squares += innovation.residual * innovation.residual * innovation.precision;
+            self.logarithms.add(innovation.variance);
         }
     }
 }

@@ -1,25 +1,18 @@
 //! The regression of one stage: its coefficients, how well they are known, and whether they explain the force.
 
-use super::blocks::Blocks;
+use super::blocks::{Blocks, SURPRISE};
 use super::features::Known;
 use super::smoother::{Instant, LONGEST};
 use super::sums::{Sums, Weight, dot};
-use crate::estimation::System;
+use crate::estimation::{System, price_of_a_term};
 use crate::identify::problem::Problem;
 use crate::identify::report::Coefficient;
 use crate::identify::settings::Settings;
 use crate::identify::validation::VALIDATED;
 use serde::{Deserialize, Serialize};
 
-/// Price of a term in twice the log-likelihood, ÷ ln of the number of samples (Schwarz's is 1; that of the tracker of
-/// motion).
-const PRICE: f64 = 2.0;
-
 /// Part of a term that another one must be for both to count as not told apart.
 const TOUCHED: f64 = 1e-3;
-
-/// Std by which neighbouring residuals may be correlated by chance: one in a thousand.
-const SURPRISE: f64 = 3.1;
 
 /// Largest correlation that is told from 1.
 const MOST_ALIKE: f64 = 1.0 - 1e-6;
@@ -27,10 +20,10 @@ const MOST_ALIKE: f64 = 1.0 - 1e-6;
 /// Samples over which the motion's error is one and the same: as far as the smoother looks.
 pub const COHERENT: f64 = LONGEST as f64;
 
-/// Samples over which mean squares are taken.
+/// Samples over which mean squares are taken: a variance is then known to 2 %.
 const MEMORY: f64 = 4000.0;
 
-/// Std of a mean deviation by which it is out of the ordinary.
+/// Std of a mean deviation by which it is out of the ordinary: by chance one in two million is.
 const UNUSUAL: f64 = 5.0;
 
 /// Samples per unknown, at least, of a law in which a switch can be seen.
@@ -229,7 +222,7 @@ impl Segment {
     fn drop_one(&mut self, problem: &Problem) -> bool {
         let n = self.free.len();
         let scale = self.variance() * self.inflation();
-        let price = PRICE * self.sums.count.max(2.0).ln();
+        let price = price_of_a_term(self.sums.count);
         let worth = |row: &usize| self.free[*row].powi(2) / (scale * self.inverse[row * n + row]);
         let candidates = (0..n).filter(|row| self.active[*row] && problem.maybe[*row]);
         let least = candidates.min_by(|a, b| worth(a).total_cmp(&worth(b)));

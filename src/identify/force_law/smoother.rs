@@ -1,11 +1,11 @@
 //! What a machine's motion was, a few samples ago: (q, q̇) given all readings up to now, with its covariance.
 //!
 //! Fixed-lag smoothing by the covariance of each past state with the present one, M = Cov(x_j, x_k): it travels with
-//! the motion, M ← M Aᵀ, and
-//! every reading corrects x_j by M h e/s (Anderson and Moore, *Optimal Filtering*, 1979, 7.3).
+//! the motion, M ← M Aᵀ, and every reading corrects x_j by M h e/s (Anderson and Moore, *Optimal Filtering*, 1979, 7.3).
 
-use super::kinematics::{Kinematics, Reading, Vector, carried};
+use super::kinematics::{Kinematics, advance, begin, carried};
 use super::noise::Smoothness;
+use crate::estimation::{Channel, Innovation};
 use serde::{Deserialize, Serialize};
 
 /// Longest lag, samples.
@@ -28,7 +28,7 @@ pub struct Instant {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Past {
     instant: Instant,
-    across: [Vector; 2],
+    across: [[f64; 3]; 2],
 }
 
 /// The present state and those of the last samples.
@@ -77,9 +77,9 @@ impl Smoother {
             1 => self.begin_moving(t - self.last.t, readings),
             _ => self.go_on(t - self.last.t, readings),
         }
-        let Kinematics { state, covariance } = self.present;
+        let Kinematics { mean, covariance } = self.present;
         let seen = [covariance[0][0], covariance[0][1], covariance[1][1]];
-        self.last = Instant { t, state: [state[0], state[1]], covariance: seen, force };
+        self.last = Instant { t, state: [mean[0], mean[1]], covariance: seen, force };
         let slot = (self.count % self.past.len() as u64) as usize;
         self.past[slot] = Past { instant: self.last, across: [covariance[0], covariance[1]] };
         self.count += 1;
@@ -96,7 +96,7 @@ impl Smoother {
     fn begin(&mut self, readings: [f64; 2]) {
         for (channel, reading) in readings.into_iter().enumerate() {
             if let Some(noise) = self.noise[channel] {
-                self.present.state[channel] = reading;
+                self.present.mean[channel] = reading;
                 self.present.covariance[channel][channel] = noise;
             }
         }
@@ -106,33 +106,34 @@ impl Smoother {
     fn begin_moving(&mut self, dt: f64, readings: [f64; 2]) {
         match self.noise {
             [Some(noise), of_velocity] => {
-                self.present = Kinematics::begin(0, [self.last.state[0], readings[0]], dt, noise);
-                of_velocity.into_iter().for_each(|noise| self.measure(1, readings[1], noise));
+                self.present = begin(Channel::Q, [self.last.state[0], readings[0]], dt, noise);
+                of_velocity.into_iter().for_each(|noise| self.measure(Channel::Qd, readings[1], noise));
             }
             [None, Some(noise)] => {
-                self.present = Kinematics::begin(1, [self.last.state[1], readings[1]], dt, noise);
+                self.present = begin(Channel::Qd, [self.last.state[1], readings[1]], dt, noise);
             }
             [None, None] => {}
         }
     }
 
     fn go_on(&mut self, dt: f64, readings: [f64; 2]) {
-        self.present.advance(dt, self.intensity);
+        advance(&mut self.present, dt, self.intensity);
         for past in self.held() {
             past.across = past.across.map(|row| carried(row, dt));
         }
-        for (channel, reading) in readings.into_iter().enumerate() {
-            if let Some(noise) = self.noise[channel] {
+        for (channel, reading) in Channel::ALL.into_iter().zip(readings) {
+            if let Some(noise) = self.noise[channel as usize] {
                 self.measure(channel, reading, noise);
             }
         }
     }
 
-    fn measure(&mut self, channel: usize, value: f64, noise: f64) {
-        let Reading { innovation, variance, across: own } = self.present.measure(channel, value, noise);
+    fn measure(&mut self, channel: Channel, value: f64, noise: f64) {
+        let own = self.present.covariance[channel as usize];
+        let Innovation { residual, variance, precision, .. } = self.present.update(channel, value, noise);
         for Past { instant, across } in self.held() {
-            let gain = [0, 1].map(|row| across[row][channel] / variance);
-            (0..2).for_each(|row| instant.state[row] += gain[row] * innovation);
+            let gain = [0, 1].map(|row: usize| across[row][channel as usize] * precision);
+            (0..2).for_each(|row| instant.state[row] += gain[row] * residual);
             let pairs = [(0, 0), (0, 1), (1, 1)];
             for (entry, (row, column)) in instant.covariance.iter_mut().zip(pairs) {
                 *entry -= gain[row] * gain[column] * variance;

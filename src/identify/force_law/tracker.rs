@@ -6,6 +6,7 @@ use super::noise::{ChannelNoise, Smoothness};
 use super::segment::{COHERENT, Segment};
 use super::smoother::{Instant, LONGEST, Smoother};
 use super::sums::dot;
+use crate::estimation::Channel;
 use crate::estimation::OUTLYING;
 use crate::identify::change::SUSPENSE;
 use crate::identify::deviation::Deviation;
@@ -57,7 +58,7 @@ impl ForceTracker {
     pub fn new(problem: &Problem, settings: &Settings) -> ForceTracker {
         let n = problem.n();
         ForceTracker {
-            noises: [0, 1].map(|channel| ChannelNoise::new(channel, settings.sample_time)),
+            noises: Channel::ALL.map(|channel| ChannelNoise::new(channel, settings.sample_time)),
             smoothness: [None; 2],
             smoother: Smoother::new(),
             first: vec![Sample::default(); FIRST],

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Blocks that are kept; then neighbours become one.
+/// Blocks that are kept; then neighbours become one. Their scores tell a variance to √(2 ÷ 16), a third.
 const MOST: usize = 32;
 
 /// Rows in the first blocks: 4 ÷ a, about the length of a variation, since rows are half of 1 ÷ a apart.

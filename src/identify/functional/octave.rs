@@ -3,16 +3,13 @@
 use super::blocks::Blocks;
 use super::regression::{Errors, Estimate, FEWEST, Regression};
 use crate::identify::problem::Problem;
-use crate::identify::sample::Sample;
+use crate::identify::sample::{GAP, Sample};
 use crate::law::Term;
 use crate::weak::{Functional, Pole, signal};
 use serde::{Deserialize, Serialize};
 
 /// Rate a of the variation times the distance of two averaged samples.
 pub(super) const ADVANCE: f64 = 0.5;
-
-/// Samples further apart than so many usual distances have a gap between them, as in recordings.
-const GAP: f64 = 4.5;
 
 /// Rows of one length of variation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

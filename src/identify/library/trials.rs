@@ -11,7 +11,7 @@ use crate::identify::window::Window;
 use crate::law::Motion;
 use serde::{Deserialize, Serialize};
 
-/// The laws are weighed anew when the record has grown by this factor.
+/// The laws are weighed anew when the record has grown by this factor: 14 times in every doubling.
 const GROWTH: f64 = 1.05;
 
 /// Samples without which nothing is weighed.
@@ -20,7 +20,7 @@ const FEWEST: u64 = 4;
 /// Samples after which the trial is over: the stage's own estimate takes over.
 const LONGEST: u64 = 8000;
 
-/// A law this far behind "any law" is out of the trial, nats.
+/// A law this far behind "any law" is out of the trial, nats: nothing that comes makes good so much.
 const HOPELESS: f64 = 1000.0;
 
 /// What the record says on one known law.
@@ -231,7 +231,7 @@ impl Trial {
         let motion = Motion { terms: &problem.terms, coefficients: all };
         while self.next < stop && !self.out {
             self.pass.step(&motion, &problem.free_terms, &self.noise, &window.observation(self.next));
-            self.out = !self.pass.filter.state.is_finite();
+            self.out = !self.pass.filter.state().is_finite();
             self.next += 1;
         }
         (self.next - from) as usize

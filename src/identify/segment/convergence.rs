@@ -15,10 +15,11 @@ use crate::estimation::{Information, Solution};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
-/// Powers of the record's length by which variances fall.
+/// Powers of the record's length by which variances fall: half of what an information of constant rate gives, up to
+/// where a few more samples finish it.
 const POWERS: RangeInclusive<f64> = 0.5..=8.0;
 
-/// Trials that are looked ahead.
+/// Trials that are looked ahead: 40 records longer by a tenth each are one 45 times as long.
 const TRIALS: i32 = 40;
 
 /// How much longer the record has to get, coefficient by coefficient.

@@ -4,10 +4,11 @@ use super::convergence::Record;
 use super::state::Segment;
 use crate::identify::validation::{Evidence, Stability, VALIDATED, is_one_law};
 
-/// Largest Gauss–Newton decrement, in units of the number of coefficients, of an estimate that has settled.
+/// Largest Gauss–Newton decrement, in units of the number of coefficients, of an estimate that has settled: a step of
+/// one std in each of them, which is what the record leaves open.
 pub(super) const SETTLED: f64 = 1.0;
 
-/// Largest gain in log-likelihood that another noise level may still promise, nats.
+/// Largest gain in log-likelihood that another noise level may still promise, nats: odds of twenty to one.
 const GAIN: f64 = 3.0;
 
 /// Runs in a row that may leave what can be integrated: each is repeated with a thousand times the process noise.
@@ -86,7 +87,7 @@ impl Segment {
     }
 
     /// How long the record has to get for the law to be known.
-    pub(super) fn foretell(&mut self) {
+    pub(super) fn forecast_convergence(&mut self) {
         let squares: f64 = self.all.iter().map(|value| value * value).sum();
         let begun = self.stability.checked_at().map_or(self.run.next, |length| self.start + length);
         let record = Record {

@@ -5,7 +5,7 @@ use crate::identify::problem::Problem;
 use crate::law::Motion;
 use serde::{Deserialize, Serialize};
 
-/// Smallest mean square of the law's own acceleration, in terms of the excitation's.
+/// Smallest mean square of the law's own acceleration, in terms of the excitation's: one per cent of its RMS.
 const LEAST: f64 = 1e-4;
 
 /// Mean squares over a pass.
@@ -55,7 +55,7 @@ impl MotionScales {
     /// Takes the interval that the pass has just run over, under the coefficients `all`.
     pub fn add(&mut self, problem: &Problem, all: &[f64], pass: &Pass, observation: &Observation) {
         let motion = Motion { terms: &problem.terms, coefficients: all };
-        let state = pass.filter.state;
+        let state = pass.filter.state();
         for (sum, input) in self.slopes.iter_mut().zip(&pass.map.input) {
             *sum += (input[1] / observation.dt).powi(2);
         }

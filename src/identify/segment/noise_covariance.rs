@@ -6,7 +6,8 @@ use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
 
-/// Variance of an innovation ÷ that of its sensor from which on the law's own error counts.
+/// Variance of an innovation ÷ that of its sensor from which on the law's own error counts: it is then as large as the
+/// sensor's.
 const PROCESS_SHARE: f64 = 2.0;
 
 /// The same where the state is known from the last 30 samples alone: an innovation's variance is its sensor's times 1 +
@@ -17,19 +18,21 @@ const FORGETTING: f64 = 1.0 + 1.0 / 30.0;
 /// samples.
 const LIFETIME: f64 = 1e7;
 
-/// Overdispersion of a record that its law does not explain: chance does not bring it to any of a dozen coefficients.
+/// Overdispersion of a record that its law does not explain: twice what is no chance for one coefficient; chance does
+/// not bring it to any of a dozen.
 const UNEXPLAINED: f64 = 5.0;
 
-/// Overdispersion that is no chance: with 16 blocks it is 1 ± 0.35 for one coefficient of the right law.
+/// Overdispersion that is no chance: with 16 blocks it is 1 ± 0.35 for one coefficient of the right law, so that this
+/// is four stds.
 const LASTING: f64 = 2.5;
 
-/// A law errs where a thirtieth of the process noise would make the record less likely by this, nats.
+/// A law errs where a thirtieth of the process noise would make the record less likely by this, nats: odds of twenty to
+/// one.
 const ERRS: f64 = 3.0;
 
-/// Smallest sensor noise std, relative to the largest value measured: rounding and the integration's own error.
-const NOISE_FLOOR: f64 = 3e-7;
-
-/// Noise levels that move by less than this part have come to rest, whatever a level out of reach promises.
+/// Noise levels that move by less than this part have come to rest, whatever a level out of reach promises: a record of
+/// 1000 samples tells a variance to 4.5 %. On EMPS a level out of reach kept the law from settling
+/// (docs/decisions/prediction-error-method.md).
 const AT_REST: f64 = 0.05;
 
 impl Segment {
@@ -62,7 +65,7 @@ impl Segment {
         let given = [settings.noise_q, settings.noise_qd];
         for channel in Channel::ALL {
             let index = channel as usize;
-            let floor = (NOISE_FLOOR * self.run.largest[index]).powi(2).max(f64::MIN_POSITIVE);
+            let floor = Noise::floor(self.run.largest[index]);
             self.noise.sensor[index] = match given[index] {
                 0.0 => {
                     let (count, known) = (track.count[index], self.known.weight);
@@ -76,7 +79,7 @@ impl Segment {
 
     /// What less and more process noise would add to the log-likelihood.
     fn gains(&self, track: &Track) -> [f64; 2] {
-        self.run.filter_run.rivals.each_ref().map(|rival| rival.log_likelihood() - track.log_likelihood())
+        self.run.filter_run.rivals.log_likelihoods().map(|rival| rival - track.log_likelihood())
     }
 
     /// By which factor the process noise goes where the likelihood wants it.

@@ -17,17 +17,19 @@ use crate::identify::settings::Settings;
 use crate::identify::window::Window;
 use crate::law::Motion;
 
-/// A run that has caught up is closed only when the record has grown by this fraction since the last one …
+/// A run that has caught up is closed only when the record has grown by this fraction since the last one: what it adds
+/// to the information is then about as small …
 pub const GROWTH: f64 = 0.02;
 
 /// … and by this many samples.
 const FRESH: u64 = 8;
 
-/// Effects that the law lacks are looked for again when the record has grown by this factor: most runs are spared the
-/// work.
+/// Effects that the law lacks are looked for again when the record has grown by this factor, twice in every doubling:
+/// most runs are spared the work.
 const LOOK_AGAIN: f64 = 1.4;
 
-/// The record of a segment is folded into a prior when it fills this fraction of the window.
+/// The record of a segment is folded into a prior when it fills this fraction of the window: the run that folds still
+/// has a tenth of it to catch up in.
 const FULL: f64 = 0.9;
 
 impl Segment {
@@ -166,7 +168,7 @@ impl Segment {
         self.runs.calm = if self.is_calm() { self.runs.calm + 1 } else { 0 };
         self.confirm();
         self.compare();
-        self.foretell();
+        self.forecast_convergence();
         self.fold(window);
     }
 
@@ -235,8 +237,8 @@ impl Segment {
             self.run.checkpoint.information.shift(&self.step);
         }
         for (step, sensitivity) in self.step.iter().zip(&self.run.filter_run.sensitivity) {
-            self.run.filter_run.filter.state.q += step * sensitivity[0];
-            self.run.filter_run.filter.state.qd += step * sensitivity[1];
+            self.run.filter_run.filter.mean[0] += step * sensitivity[0];
+            self.run.filter_run.filter.mean[1] += step * sensitivity[1];
         }
     }
 
@@ -258,7 +260,7 @@ impl Segment {
         self.run.next = self.start + 1;
         self.score_test.looking = self.settled() && length >= self.score_test.next_look;
         if self.score_test.looking {
-            self.score_test.candidates.begin(self.run.filter_run.filter.state, self.run.largest);
+            self.score_test.candidates.begin(self.run.filter_run.filter.state(), self.run.largest);
         }
         self.run.scales.clear();
         self.convergence.begin(self.start, length);

@@ -9,7 +9,8 @@ use crate::identify::problem::Problem;
 use crate::identify::validation::{Constancy, SandwichFactor, Stability};
 use serde::{Deserialize, Serialize};
 
-/// For how many samples the sensor noise of the last segment counts in the next one.
+/// For how many samples the sensor noise of the last segment counts in the next one: free to follow the innovations, it
+/// collapses on one channel under white excitation (docs/decisions/prediction-error-method.md).
 pub const NOISE_MEMORY: f64 = 500.0;
 
 /// An estimate of one segment's law.
@@ -164,7 +165,7 @@ impl Segment {
                 weight: 0.0,
             },
             run: Run {
-                filter_run: Pass::new(n).guarded(),
+                filter_run: Pass::new(n).gated(),
                 next: 0,
                 closed_at: 0,
                 largest: [0.0; 2],

@@ -133,13 +133,13 @@ impl Tracker {
         let spread = match returned {
             Some(returned) => returned.filter,
             None => {
-                let [qq, _, vv] = run.filter.covariance;
+                let [[qq, _], [_, vv]] = run.filter.covariance;
                 let [q, qd] = self.monitor.law.noise.sensor;
-                Filter { covariance: [qq.max(q), 0.0, vv.max(qd)], ..run.filter }
+                Filter::begin(run.filter.mean, [qq.max(q), vv.max(qd)])
             }
         };
         run.filter = spread;
-        let state = run.filter.state;
+        let state = run.filter.state();
         self.monitor.prediction.restart(state, self.window.sample(self.window.ready() - 1).t);
     }
 

@@ -41,8 +41,8 @@ impl Tracker {
         let law = &self.monitor.law;
         let motion = Motion { terms: &problem.terms, coefficients: &law.all };
         let dt = reading.sample.t - self.now();
-        let push = reading.unseen * dt / motion.mass(law.run.filter.state.q).powi(2);
-        let scatter = law.noise.sensor[1] + law.run.filter.covariance[2];
+        let push = reading.unseen * dt / motion.mass(law.run.filter.mean[0]).powi(2);
+        let scatter = law.noise.sensor[1] + law.run.filter.covariance[1][1];
         if !law.running || push > TOLD * TOLD * scatter {
             reading.unseen = 0.0;
         }

@@ -163,7 +163,7 @@ impl Tracker {
         if !monitor.law.running && library.trials.has_caught_up(place, window) {
             let law = &library.known.laws()[place];
             monitor.law.adopt_known(problem, law, &mut library.trials, place, &segment.scales, window);
-            monitor.prediction.restart(monitor.law.run.filter.state, window.sample(window.ready() - 1).t);
+            monitor.prediction.restart(monitor.law.run.filter.state(), window.sample(window.ready() - 1).t);
         }
     }
 

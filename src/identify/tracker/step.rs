@@ -81,7 +81,7 @@ impl Tracker {
             let observation = self.window.observation(number);
             let monitor = &mut self.monitor;
             let innovations = monitor.law.step(setup.problem, &observation);
-            if !monitor.law.run.filter.state.is_finite() {
+            if !monitor.law.run.filter.state().is_finite() {
                 self.lose();
                 return;
             }
@@ -202,7 +202,7 @@ impl Tracker {
         let Tracker { monitor, segment, window, .. } = self;
         monitor.law.adopt(segment, window);
         if !was_running {
-            monitor.prediction.restart(monitor.law.run.filter.state, window.sample(window.ready() - 1).t);
+            monitor.prediction.restart(monitor.law.run.filter.state(), window.sample(window.ready() - 1).t);
         }
         monitor.law.proven = proven;
         self.set_spread(problem);

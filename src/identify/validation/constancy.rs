@@ -7,17 +7,17 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Stds by which no coefficient of the same law moves.
+/// Stds by which no coefficient of the same law moves: by chance one in 370 does.
 const FAR: f64 = 3.0;
 
 /// Least variance of a difference, in terms of that of the shorter record's estimate: what the two share is known
-/// roughly.
+/// roughly, and Hausman's difference of variances may be rounding.
 const LEAST: f64 = 0.1;
 
 /// Estimates are kept whose records differ in length by this factor …
 const APART: f64 = 1.25;
 
-/// … so many of them.
+/// … so many of them: five steps of a quarter reach down to a third of the record (docs/decisions/validation.md).
 const KEPT: usize = 5;
 
 /// Estimates of late, and whether they contradict each other.

@@ -13,9 +13,6 @@ const NEAR: [f64; 2] = [1.0 / 1.5, 1.5];
 /// How far a vertex beyond the rivals is followed, in their distances.
 const BEYOND: f64 = 2.5;
 
-/// Smallest sensor noise std, relative to the largest value measured.
-const NOISE_FLOOR: f64 = 1e-7;
-
 /// Relative change of a variance below which it stays.
 const STEADY: f64 = 0.02;
 
@@ -59,7 +56,7 @@ pub(super) fn follow(noise: &mut Noise, ratios: &mut [f64; 2], outcomes: &[Outco
     *noise = calibrated(&old, outcomes);
     noise.process *= towards(outcomes, ratios);
     let measured = [0, 1].map(|channel| outcomes.iter().any(|outcome| outcome.count[channel] > 0.0));
-    let floor = |channel: usize| (NOISE_FLOOR * signals.largest[channel]).powi(2).max(f64::MIN_POSITIVE);
+    let floor = |channel: usize| Noise::floor(signals.largest[channel]);
     let lift = (0..2)
         .filter(|channel| measured[*channel])
         .map(|channel| floor(channel) / noise.sensor[channel])

@@ -7,8 +7,9 @@
 use super::course::Course;
 use super::form::{Form, Parts};
 use super::inner_slopes::{self, Along, Sought};
-use super::outcome::{Span, Sums, Tangent};
+use super::outcome::{Span, Tangent};
 use crate::diagnose::piece::Piece;
+use crate::estimation::Information;
 use crate::law::{Effect, Hold, Line, Model, Motion, State, Term, interval_forces};
 use nalgebra::DMatrix;
 use std::rc::Rc;
@@ -18,7 +19,7 @@ const NUDGE: f64 = 1e-3;
 
 /// The series of a form over all pieces.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Beside {
+pub(super) struct Exogenous {
     /// By piece and interval: the force of every series per unit of its coefficient, of every inner parameter that is sought per unit of its
     /// logarithm, then of every beginning of the piece per unit of it.
     pub(super) rows: Rc<Vec<Vec<Vec<Line>>>>,
@@ -36,19 +37,19 @@ pub(super) struct Beside {
     changes: Vec<f64>,
 }
 
-impl Beside {
+impl Exogenous {
     /// Numbers that say where the memories begin, of all pieces.
     pub(super) fn count(form: &Form, parts: &Parts, pieces: &[Piece]) -> usize {
         effects(form, parts).map(Effect::beginning_length).sum::<usize>() * pieces.len()
     }
 
     /// Forces of 0, as long as there is no motion.
-    pub(super) fn none(form: &Form, parts: &Parts, inner: &[Sought], pieces: &[Piece]) -> Beside {
-        let count = Beside::count(form, parts, pieces);
+    pub(super) fn none(form: &Form, parts: &Parts, inner: &[Sought], pieces: &[Piece]) -> Exogenous {
+        let count = Exogenous::count(form, parts, pieces);
         let own = count / pieces.len().max(1);
         let columns = parts.series.len() + inner.len() + own;
         let rows = |piece: &Piece| vec![vec![[0.0; 2]; columns]; if columns > 0 { piece.len() - 1 } else { 0 }];
-        Beside {
+        Exogenous {
             rows: Rc::new(pieces.iter().map(rows).collect()),
             tangents: Rc::new(vec![Vec::new(); pieces.len()]),
             inner: inner.len(),
@@ -66,9 +67,9 @@ impl Beside {
         pieces: &[Piece],
         states: &[Vec<State>],
         beginnings: &[f64],
-    ) -> Beside {
+    ) -> Exogenous {
         let parts = Parts::of(form);
-        let mut all = Beside::none(form, &parts, inner, pieces);
+        let mut all = Exogenous::none(form, &parts, inner, pieces);
         let rows = Rc::make_mut(&mut all.rows);
         let smooth = Smooth::of(form, &parts, coefficients);
         let mut first = 0;
@@ -142,12 +143,11 @@ impl Beside {
         owners.iter().cycle().zip(values).map(|(effect, value)| effect.possible_beginning(value)).collect()
     }
 
-    /// Adds what the prior says of the beginnings, the last unknowns of the sums.
-    pub(super) fn add_prior(&self, sums: &mut Sums) {
-        let before = sums.score.len() - self.spreads.len();
+    /// Adds what the prior says of the beginnings, the last unknowns.
+    pub(super) fn add_prior(&self, information: &mut Information) {
+        let before = information.n - self.spreads.len();
         for (offset, (weight, score)) in self.prior().enumerate() {
-            sums.information[(before + offset, before + offset)] += weight;
-            sums.score[before + offset] += score;
+            information.add_prior(before + offset, weight, score);
         }
     }
 
@@ -161,11 +161,11 @@ impl Beside {
         self.beginnings.iter().zip(&self.changes).map(|(value, change)| value + change)
     }
 
-    /// What the beginnings cost in log-likelihood; `sums` without their prior.
-    pub(super) fn price(&self, sums: &Sums) -> f64 {
-        let (count, before) = (self.spreads.len(), sums.score.len() - self.spreads.len());
+    /// What the beginnings cost in log-likelihood; `information` without their prior.
+    pub(super) fn price(&self, information: &Information) -> f64 {
+        let (count, before) = (self.spreads.len(), information.n - self.spreads.len());
         let narrowed = DMatrix::from_fn(count, count, |row, column| {
-            let scaled = self.spreads[row] * self.spreads[column] * sums.information[(before + row, before + column)];
+            let scaled = self.spreads[row] * self.spreads[column] * information.entry(before + row, before + column);
             scaled + if row == column { 1.0 } else { 0.0 }
         });
         let distance: f64 = self.present().zip(&self.spreads).map(|(value, spread)| (value / spread).powi(2)).sum();
