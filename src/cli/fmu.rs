@@ -119,11 +119,13 @@ fn with_binaries(mut fmu: Fmu, arguments: &Arguments) -> Result<(Fmu, Vec<&'stat
     Ok((fmu, platforms))
 }
 
-/// The binary in the platform's own folder; in the folder itself lie those of this machine.
+/// The binary in the platform's own folder; in the folder itself lie those of this machine, and those whose ending names the
+/// platform.
 fn binary(folder: &Path, platform: Platform, kind: &str) -> Option<PathBuf> {
     let file = platform.file(&format!("switchid-fmu-{kind}"));
     let own = folder.join(platform.name).join(&file);
-    let beside = Some(folder.join(file)).filter(|_| Platform::of_this_machine() == Some(platform));
+    let named = |_: &PathBuf| platform.extension != "so" || Platform::of_this_machine() == Some(platform);
+    let beside = Some(folder.join(file)).filter(named);
     [Some(own), beside].into_iter().flatten().find(|path| path.is_file())
 }
 

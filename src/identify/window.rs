@@ -26,7 +26,7 @@ const MEMORY: f64 = 4000.0;
 /// Accepted samples by number; the first of all is number 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Window {
-    #[serde(with = "packed")]
+    #[serde(with = "packed::readings")]
     ring: Vec<Reading>,
     count: u64,
     channels: Channels,

@@ -114,9 +114,9 @@ impl Slave for IdentifierSlave {
         let sensors = running.identifier.output().sensors;
         let sample = Sample { t: time, q, qd, excitation };
         let outcome = running.identifier.step(sample);
-        match outcome {
-            Ok(()) => running.publish(&self.output_references, values),
-            Err(skipped) => say_skipped(skipped, log),
+        running.publish(&self.output_references, values);
+        if let Err(skipped) = outcome {
+            say_skipped(skipped, log);
         }
         running.watch.take(&sample, &outcome, log);
         values.put(self.stream, Value::Integer(running.watch.shown()));
@@ -126,6 +126,9 @@ impl Slave for IdentifierSlave {
     }
 }
 
+/// What each sensor measures, and the key of its warnings.
+const SENSORS: [(&str, &str); 3] = [("q", "sensor of q"), ("qd", "sensor of qd"), ("F", "sensor of F")];
+
 impl Running {
     fn publish(&self, references: &[usize], values: &mut Values) {
         for (reference, value) in references.iter().zip(self.outputs.values(&self.identifier)) {
@@ -134,17 +137,17 @@ impl Running {
     }
 
     /// A sensor's fault is said once when it begins and once when it ends.
-    fn say_sensors(&self, time: f64, before: [SensorState; 3], log: &Log) {
-        let (now, at) = (self.identifier.output().sensors, seconds(time));
-        for (channel, (before, now)) in ["q", "qd", "F"].into_iter().zip(before.into_iter().zip(now)) {
+    fn say_sensors(&self, time: f64, before: [SensorState; 3], log: &mut Log) {
+        let now = self.identifier.output().sensors;
+        for (channel, (before, now)) in SENSORS.into_iter().zip(before.into_iter().zip(now)) {
             if before != now {
-                let text = match now {
-                    SensorState::Ok => format!("sensor of {channel}: {} until t = {at} s, ok again", before.id()),
+                let t = seconds(time);
+                log.warn_of_onset(channel.1, || match now {
+                    SensorState::Ok => format!("sensor of {}: {} until t = {t} s, ok again", channel.0, before.id()),
                     fault => {
-                        format!("sensor of {channel}: {} from t = {at} s on, its readings do not count", fault.id())
+                        format!("sensor of {}: {} from t = {t} s on, its readings do not count", channel.0, fault.id())
                     }
-                };
-                log.say(Category::Warning, &text);
+                });
             }
         }
     }
@@ -158,18 +161,15 @@ impl Running {
     }
 }
 
-/// A sample that the identifier did not take; what is thinned is for the [`Watch`] to say.
+/// A sample that the identifier did not take; what comes too soon or after a hole is for the [`Watch`] to say.
 fn say_skipped(skipped: Skipped, log: &mut Log) {
     match skipped {
-        Skipped::TooSoon { .. } => {}
+        Skipped::TooSoon { .. } | Skipped::Ahead { .. } => {}
         Skipped::NotFinite { t, channel } => {
             log.warn_rarely(channel, || Skipped::NotFinite { t: seconds(t), channel }.to_string());
         }
         Skipped::NotLater { t, previous } => {
             log.warn_rarely("time", || Skipped::NotLater { t: seconds(t), previous: seconds(previous) }.to_string())
-        }
-        Skipped::Ahead { t, previous } => {
-            log.warn_rarely("time", || Skipped::Ahead { t: seconds(t), previous: seconds(previous) }.to_string())
         }
     }
 }

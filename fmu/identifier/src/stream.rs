@@ -82,7 +82,11 @@ impl Watch {
         self.forget();
         match outcome {
             Err(Skipped::NotFinite { .. }) => return self.raise(Condition::NotANumber, sample.t, log, String::new),
-            Err(Skipped::NotLater { .. } | Skipped::Ahead { .. }) => return,
+            Err(Skipped::NotLater { .. }) => return,
+            Err(Skipped::Ahead { previous, .. }) => {
+                let missing = seconds(sample.t - previous);
+                return self.raise(Condition::TooFarApart, sample.t, log, || format!("no sample for {missing} s"));
+            }
             Err(Skipped::TooSoon { .. }) => self.raise(Condition::Thinned, sample.t, log, || THINNED.into()),
             Ok(()) => self.take_accepted(sample, log),
         }

@@ -127,7 +127,7 @@ fn a_huge_step_is_taken_and_the_next_sample_is_called_far() {
     run.swing(0, 1000, 1e-2);
     run.feed(1e9, 1e9, motion(0.5));
     run.feed(2e9, 1e-2, motion(0.6));
-    assert_eq!(run.stream(), "too_coarse");
+    assert_eq!(run.stream(), "too_far_apart");
     let coefficients = ["coef.qdd", "coef.qd", "coef.q"].map(|name| run.subject.reference(name));
     assert!(run.instance.reals(&coefficients).unwrap().iter().all(|value| value.is_finite()));
 }
