@@ -39,8 +39,9 @@ impl ExcitationGate {
     /// interval.
     pub fn take(&mut self, sample: Sample) -> Reading {
         let (before, replaced) = (self.last, self.faulty && self.course.is_none());
-        let absurd = self.count > KNOWN && !(sample.excitation.abs() <= ABSURD * self.size());
-        let force = if absurd { before.excitation } else { sample.excitation };
+        let force = sample.excitation;
+        let absurd = self.count > KNOWN && (force.is_nan() || force.abs() > ABSURD * self.size());
+        let force = if absurd { before.excitation } else { force };
         let moved = force - before.excitation;
         let leaves = self.leaves(moved);
         let returned = self.course.filter(|course| leaves && !self.leaves(force - course));
