@@ -91,10 +91,11 @@ impl Clock {
         (self.last, self.stray, self.first, self.steady) = (Some(t), None, 0.0, 0);
     }
 
-    /// Whether the record has had no sample for longer than is usual, at a stamp that was skipped.
+    /// Whether the record has had no sample for longer than is usual, at a stamp that was skipped: it is later than the
+    /// next sample can be, or one of several that came before the last.
     pub fn is_stale(&self, stamp: f64) -> bool {
         let step = self.last.map_or(0.0, |last| stamp + self.shift - last);
-        self.known >= KNOWN && (step.is_nan() || step.abs() > STALE * self.pace) && stamp.is_finite()
+        self.known >= KNOWN && (step > STALE * self.pace || self.steady >= 2)
     }
 }
 
@@ -134,6 +135,19 @@ mod tests {
     fn a_clock_that_was_set_back_goes_on() {
         let seen = times(stamps(3600.0, 50).chain(stamps(0.0, 50)));
         assert!(seen.len() > 85 && seen.is_sorted() && seen[seen.len() - 1] < 3600.2, "{seen:?}");
+    }
+
+    #[test]
+    fn the_record_is_stale_once_samples_are_missing_not_at_one_stamp_from_before() {
+        let mut clock = Clock::default();
+        stamps(0.0, 50).for_each(|stamp| {
+            let t = clock.time(stamp, 1e-3).unwrap();
+            clock.advance(t);
+        });
+        assert!(clock.time(0.01, 1e-3).is_err() && !clock.is_stale(0.01));
+        assert!(!clock.is_stale(0.051) && clock.is_stale(0.0525) && !clock.is_stale(f64::NAN));
+        [0.011, 0.012].into_iter().for_each(|stamp| assert!(clock.time(stamp, 1e-3).is_err()));
+        assert!(clock.is_stale(0.012));
     }
 
     #[test]
