@@ -3,7 +3,7 @@
 use super::error::CommandError;
 use super::output::{self, Targets};
 use crate::data::{self, DataError};
-use crate::fmu::{Fmu, FmuError, identifier_knowing, plant_of_model};
+use crate::fmu::{Fmu, FmuError, Platform, identifier_knowing, plant_of_model};
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,8 @@ The first identifies the model's law in any simulator that imports FMI 2.0 for c
 laws that `switchid identify --save-laws` saved, from its first sample on; the third is a plant with the model's law, whose terms must all have numbers. Ports are in SI units: where the model's [units]
 name a quantity, they declare its SI unit.
 
-The binaries come from `cargo build --release -p switchid-fmu-identifier -p switchid-fmu-plant`."#;
+The binaries come from `cargo build --release -p switchid-fmu-identifier -p switchid-fmu-plant`, for this machine; those of every
+platform, each in a folder of its own, from `cargo xtask fmu --platforms` (then --binaries target/fmu-binaries)."#;
 
 /// Make an FMU: an identifier for a model, or a plant with its law
 #[derive(Args)]
@@ -46,10 +47,6 @@ pub(super) struct Arguments {
     #[arg(long)]
     json: bool,
 }
-
-/// FMI's platforms, with the prefix and the ending of their dynamic libraries.
-const PLATFORMS: [(&str, &str, &str); 3] =
-    [("linux64", "lib", "so"), ("win64", "", "dll"), ("darwin64", "lib", "dylib")];
 
 #[derive(Serialize)]
 struct Report {
@@ -109,20 +106,27 @@ fn with_binaries(mut fmu: Fmu, arguments: &Arguments) -> Result<(Fmu, Vec<&'stat
         None => beside_executable()?,
     };
     let mut platforms = Vec::new();
-    for (platform, prefix, ending) in PLATFORMS {
-        let path = folder.join(format!("{prefix}switchid_fmu_{}.{ending}", kind(arguments)));
-        if !path.is_file() {
-            continue;
-        }
+    for platform in Platform::ALL {
+        let Some(path) = binary(&folder, platform, kind(arguments)) else { continue };
         let read =
             |error: std::io::Error| CommandError::Read { file: path.display().to_string(), reason: error.to_string() };
-        fmu = fmu.with_binary(platform, ending, std::fs::read(&path).map_err(read)?);
-        platforms.push(platform);
+        fmu = fmu.with_binary(platform, std::fs::read(&path).map_err(read)?);
+        platforms.push(platform.name);
     }
     if platforms.is_empty() {
         return Err(CommandError::NoBinary { kind: kind(arguments), folder: folder.display().to_string() });
     }
     Ok((fmu, platforms))
+}
+
+/// The binary in the platform's own folder; in the folder itself lie those of this machine, and those whose ending names the
+/// platform.
+fn binary(folder: &Path, platform: Platform, kind: &str) -> Option<PathBuf> {
+    let file = platform.file(&format!("switchid-fmu-{kind}"));
+    let own = folder.join(platform.name).join(&file);
+    let named = |_: &PathBuf| platform.extension != "so" || Platform::of_this_machine() == Some(platform);
+    let beside = Some(folder.join(file)).filter(named);
+    [Some(own), beside].into_iter().flatten().find(|path| path.is_file())
 }
 
 fn beside_executable() -> Result<PathBuf, CommandError> {

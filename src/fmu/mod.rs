@@ -16,4 +16,4 @@ pub use error::FmuError;
 pub use identifier::{identifier, identifier_description, identifier_knowing};
 pub use plant::{DUFFING, STAGES, VAN_DER_POL, plant, plant_description};
 pub use plant_of_model::plant_of_model;
-pub use switchid_fmu_package::{Fmu, PackageError};
+pub use switchid_fmu_package::{Fmu, PackageError, Platform};

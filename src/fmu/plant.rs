@@ -4,7 +4,7 @@ use super::FmuError;
 use super::description::describe;
 use crate::law::{Catalogue, Entry, InnerParameter, InnerRange, InnerUnit};
 use crate::simulate::{Excitation, ParametricLaw};
-use switchid_fmu_package::variables::{at_least, choice, output, real, variable};
+use switchid_fmu_package::variables::{at_least, choice, input, output, real, variable};
 use switchid_fmu_package::{Fmu, documentation};
 use switchid_fmu_slave::{Description, Enumeration, Kind, Variability, Variable};
 
@@ -30,12 +30,26 @@ pub fn plant(law_file: &str) -> Result<Fmu, FmuError> {
 
 /// A plant of that interface.
 pub(super) fn pack(description: Description, law_file: &str) -> Result<Fmu, FmuError> {
-    let text = "<p>Outputs <code>q</code>, <code>qd</code> carry sensor noise, <code>F</code> is the excitation that is \
+    let start = documentation::quick_start(&[
+        "Connect <code>q</code>, <code>qd</code> and <code>F</code> to an identifier's inputs.",
+        "Set a switch: <code>stage[2].time</code> = 15, and in <code>stage[2].*</code> the coefficients from then on.",
+        "Add sensor noise, <code>noise.q</code>, and run with steps of <code>excitation.sample_time</code>.",
+        "Compare what was identified with <code>true.coef.*</code>.",
+    ]);
+    let law = documentation::escape(&description.description);
+    let text = "<p>With <code>excitation.kind</code> = input the input <code>excitation.F</code> drives the plant, held over each \
+                step: so it stands behind a controller or in place of a plant of yours. Connect an identifier's <code>F</code> to \
+                what drives <code>excitation.F</code>: the plant's own <code>F</code> shows it one step later.</p>\
+                <p>Outputs <code>q</code>, <code>qd</code> carry sensor noise, <code>F</code> is the excitation that is \
                 held from this instant on; <code>true.*</code> is what no estimator may see. A stage begins at \
                 <code>stage[i].time</code>, counted from the start of the simulation; 1e30 = it does not occur. The inner \
                 integration does not depend on the communication step. <code>hidden.*</code> are effects \
                 besides the law's terms, for a model to lack.</p>";
-    let page = documentation::page(&description, text);
+    let picture = documentation::PICTURE;
+    let text = format!(
+        "{picture}\n{start}<h2>The law</h2>\n<p>{law}; the coefficients are those of the present stage.</p>\n{text}"
+    );
+    let page = documentation::page(&description, &text);
     Ok(Fmu::new(description, vec![("plant.toml".into(), law_file.as_bytes().to_vec())], page)?)
 }
 
@@ -43,7 +57,7 @@ pub(super) fn pack(description: Description, law_file: &str) -> Result<Fmu, FmuE
 pub fn plant_description(law: &ParametricLaw) -> Description {
     let stages = (1..=STAGES).flat_map(|number| stage(law, number));
     let hidden = Catalogue::ENTRIES.iter().flat_map(hidden);
-    let variables = general().into_iter().chain(drive()).chain(stages).chain(hidden);
+    let variables = general().into_iter().chain([driver()]).chain(drive()).chain(stages).chain(hidden);
     let variables: Vec<Variable> = variables.chain(measured()).chain(truth(law)).collect();
     describe(&law.name, &law.description, vec![excitations()], variables)
 }
@@ -55,6 +69,7 @@ fn excitations() -> Enumeration {
         ("white", "Gaussian white noise of intensity excitation.intensity"),
         ("multisine", "excitation.count sines with phases drawn from the seed"),
         ("sweep", "A sine whose frequency runs from excitation.from to excitation.to and back"),
+        ("input", "What the input excitation.F brings, held over each step"),
     ];
     let items = items.map(|(name, text)| (name.to_string(), text.to_string()));
     Enumeration { name: "Excitation".into(), items: items.into() }
@@ -76,6 +91,11 @@ fn general() -> Vec<Variable> {
         real("q0", 0.5, None, "Displacement at the start"),
         real("qd0", 0.0, None, "Velocity at the start"),
     ]
+}
+
+fn driver() -> Variable {
+    let text = "Excitation from outside, sampled at the start of every step and held over it; used where excitation.kind = input";
+    input(real("excitation.F", 0.0, None, text))
 }
 
 /// What multisine and sweep are made of.
@@ -154,7 +174,10 @@ fn measured() -> [Variable; 3] {
     [
         continuous(output(real("q", 0.0, None, "Displacement with its sensor noise"), &["noise.q", "seed", "q0"])),
         continuous(output(real("qd", 0.0, None, "Velocity with its sensor noise"), &["noise.qd", "seed", "qd0"])),
-        output(real("F", 0.0, None, "Excitation held from this instant on"), &drive),
+        output(
+            real("F", 0.0, None, "Excitation held from this instant on; of an input the one that was held last"),
+            &drive,
+        ),
     ]
 }
 

@@ -7,7 +7,8 @@ use switchid_fmu_slave::{Description, Unit};
 /// Variables that are a displacement, a velocity, an excitation.
 const DISPLACEMENTS: [&str; 6] = ["q", "noise.q", "q0", "true.q", "prediction.q", "noise_estimate.q"];
 const VELOCITIES: [&str; 6] = ["qd", "noise.qd", "qd0", "true.qd", "prediction.qd", "noise_estimate.qd"];
-const EXCITATIONS: [&str; 6] = ["F", "excitation.rms", "true.F", "noise.F", "prediction.F", "noise_estimate.F"];
+const EXCITATIONS: [&str; 7] =
+    ["F", "excitation.F", "excitation.rms", "true.F", "noise.F", "prediction.F", "noise_estimate.F"];
 
 /// Gives every variable its SI unit, where the units are known; `others` knows those of coefficients.
 pub(super) fn declare(description: &mut Description, units: &Units, others: impl Fn(&str) -> Option<SiUnit>) {

@@ -14,6 +14,7 @@ mod identification;
 mod identifier;
 mod library;
 mod outputs;
+mod packed;
 mod parameters;
 mod problem;
 mod published_method;

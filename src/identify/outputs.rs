@@ -145,7 +145,7 @@ const SCALARS: [Scalar; 21] = [
 
 impl Outputs {
     /// The outputs for these terms, with the names that FMU and trace give them: all `coef.`, all `std.`, all
-    /// `needed.`, the rest.
+    /// `needed.`, all `known.`, the rest.
     pub fn describe(terms: &[Term]) -> Vec<OutputDescription> {
         let real =
             |name: String, description: String| OutputDescription { name, kind: OutputKind::Real(None), description };
@@ -165,10 +165,15 @@ impl Outputs {
                  nothing can be said"
             ),
         });
+        let known = terms.iter().map(|term| OutputDescription {
+            name: format!("known.{}", term.fmu_name()),
+            kind: OutputKind::Flag,
+            description: format!("Whether std.{} is known; plot the two only where it is", term.fmu_name()),
+        });
         let scalars = scalars_of(is_force_law(terms));
         let scalars =
             scalars.map(|(name, kind, text)| OutputDescription { name: name.into(), kind, description: text.into() });
-        coefficients.chain(stds).chain(needed).chain(scalars).collect()
+        coefficients.chain(stds).chain(needed).chain(known).chain(scalars).collect()
     }
 
     /// The outputs of this identifier over these terms.
@@ -185,10 +190,12 @@ impl Outputs {
         let values = self.places.iter().map(move |place| at(place).map_or(0.0, |found| found.value));
         let stds = self.places.iter().map(move |place| at(place).and_then(|found| found.std).unwrap_or(UNKNOWN));
         let needed = self.places.iter().map(move |place| at(place).and_then(|found| found.needed).unwrap_or(UNKNOWN));
+        let known = self.places.iter().map(move |place| at(place).is_some_and(|found| found.std.is_some()));
         let scalars = SCALARS.iter().zip(scalars(identifier)).map(|((name, ..), value)| (*name, value));
         let kept = scalars.filter(|(name, _)| !self.of_force || !PREDICTIONS.contains(name)).map(|(_, value)| value);
         let of_force = of_force(identifier).into_iter().filter(|_| self.of_force);
-        values.chain(stds).chain(needed).map(OutputValue::Real).chain(kept).chain(of_force)
+        let reals = values.chain(stds).chain(needed).map(OutputValue::Real);
+        reals.chain(known.map(OutputValue::Flag)).chain(kept).chain(of_force)
     }
 }
 
@@ -259,5 +266,6 @@ mod tests {
         assert_eq!((at("coef.q_2_qd"), at("std.q_2_qd")), (0.0, UNKNOWN));
         assert_eq!((at("std.qdd"), at("status")), (UNKNOWN, 1.0));
         assert_eq!((at("needed.qdd"), at("switch.time_std")), (UNKNOWN, UNKNOWN));
+        assert_eq!((at("known.qdd"), at("known.q_2_qd")), (0.0, 0.0));
     }
 }

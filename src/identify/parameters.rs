@@ -86,7 +86,8 @@ impl Parameter {
             name: "sample_time",
             unit: Some("s"),
             min: 1e-9,
-            description: "Shortest time between two accepted samples; a faster stream is thinned",
+            description: "Usual time between two samples: with max_window it fixes the memory; a sample sooner than half of it after the \
+                          last one is left out",
             field: |settings| &mut settings.sample_time,
         },
         Parameter {

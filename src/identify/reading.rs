@@ -19,3 +19,9 @@ impl From<Sample> for Reading {
         Reading { sample, faulty: [false; 2], unseen: 0.0 }
     }
 }
+
+impl From<Reading> for Sample {
+    fn from(reading: Reading) -> Sample {
+        reading.sample
+    }
+}

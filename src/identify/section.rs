@@ -1,6 +1,8 @@
 //! A stretch of the window laid out for weak rows, with estimates in place of the channel that is not measured.
 
+use super::packed;
 use super::problem::Problem;
+use super::sample::Sample;
 use super::window::Window;
 use crate::law::Hold;
 use crate::weak::Section;
@@ -16,11 +18,31 @@ pub const OVERLAP: usize = 8;
 
 /// Room for one section.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "PackedSection", into = "PackedSection")]
 pub struct SectionBuffer {
     t: Vec<f64>,
     q: Vec<f64>,
     qd: Vec<f64>,
     excitation: Vec<f64>,
+}
+
+/// A section in a saved state.
+#[derive(Serialize, Deserialize)]
+struct PackedSection(#[serde(with = "packed")] Vec<Sample>);
+
+impl From<SectionBuffer> for PackedSection {
+    fn from(SectionBuffer { t, q, qd, excitation }: SectionBuffer) -> PackedSection {
+        let sample = |slot: usize| Sample { t: t[slot], q: q[slot], qd: qd[slot], excitation: excitation[slot] };
+        PackedSection((0..t.len()).map(sample).collect())
+    }
+}
+
+impl From<PackedSection> for SectionBuffer {
+    fn from(PackedSection(samples): PackedSection) -> SectionBuffer {
+        let column = |value: fn(&Sample) -> f64| samples.iter().map(value).collect();
+        let (t, q) = (column(|sample| sample.t), column(|sample| sample.q));
+        SectionBuffer { t, q, qd: column(|sample| sample.qd), excitation: column(|sample| sample.excitation) }
+    }
 }
 
 impl SectionBuffer {

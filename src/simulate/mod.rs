@@ -2,11 +2,13 @@
 //!
 //! A [`Scenario`] says everything about a plant; [`Plant`] integrates it. The law switches at the start of each
 //! [`Stage`], exactly at the instant given; the excitation is evaluated on a grid `t_k = k · sample_time` and held from
-//! `t_k` to `t_{k+1}`, as in a sampled actuator. What a plant shows at time t is a function of t alone: it does not depend on the
-//! communication steps that led there. Measured values ([`Reading`]) and truth ([`Truth`]) are apart.
+//! `t_k` to `t_{k+1}`, as in a sampled actuator. What a plant shows at time t is a function of t alone: it does not depend on
+//! the communication steps that led there, unless its excitation comes from outside ([`DrivenPlant`]). Measured values
+//! ([`Reading`]) and truth ([`Truth`]) are apart.
 
 mod builtin;
 mod check;
+mod driven;
 mod error;
 mod excitation;
 mod hidden;
@@ -22,6 +24,7 @@ mod scenario_file;
 mod term_names;
 
 pub use builtin::{Builtin, UnknownBuiltin};
+pub use driven::DrivenPlant;
 pub use error::ScenarioError;
 pub use excitation::{Excitation, ExcitationKind};
 pub use hidden::Hidden;

@@ -9,7 +9,7 @@ use super::excitation::ExcitationKind;
 use super::imposed;
 use super::noise::{Stream, standard_normal};
 use super::reading::Reading;
-use super::scenario::Scenario;
+use super::scenario::{Scenario, SensorNoise};
 use crate::law::{Dynamics, Effect, History, MAX_MEMORY, Motion, Phase, State, Term};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -42,12 +42,65 @@ pub enum PlantError {
         /// The time reached, s.
         present: f64,
     },
+    /// A step that would take too long.
+    #[error("from t = {from} s to t = {to} s is too far for one step: take steps of {longest} s or less")]
+    TooFar {
+        /// The time reached, s.
+        from: f64,
+        /// The time asked for, s.
+        to: f64,
+        /// How far a step may go, s.
+        longest: f64,
+    },
+    /// An excitation that is no number.
+    #[error("the excitation from t = {t} s on is {value}: it must be a finite number")]
+    Excitation {
+        /// From when on, s.
+        t: f64,
+        /// Its value.
+        value: f64,
+    },
     /// The motion grew beyond all numbers.
     #[error("the motion diverges before t = {t} s: the law has no bounded motion from this state")]
     Diverged {
         /// A time by which it had, s.
         t: f64,
     },
+}
+
+/// The most inner steps that one call takes, some seconds of computing: whoever asks for more waits in vain.
+const MAX_STEPS: f64 = 1e7;
+
+/// Refuses more inner steps than a caller would wait for.
+pub(super) fn too_far(steps: f64, from: f64, step: f64) -> Result<(), PlantError> {
+    match steps > MAX_STEPS {
+        true => Err(PlantError::TooFar { from, to: from + steps * step, longest: MAX_STEPS * step }),
+        false => Ok(()),
+    }
+}
+
+/// Refuses a state beyond all numbers.
+pub(super) fn diverged(phase: &Phase, t: f64) -> Result<(), PlantError> {
+    if phase.is_finite() { Ok(()) } else { Err(PlantError::Diverged { t }) }
+}
+
+/// The sensors' noise at time t, drawn once per interval of the excitation's grid.
+pub(super) fn sensor_noise(scenario: &Scenario, t: f64) -> SensorNoise {
+    let index = interval(scenario, t);
+    let noise = |std: f64, stream| match std {
+        0.0 => 0.0,
+        std => std * standard_normal(scenario.seed, stream, index),
+    };
+    SensorNoise {
+        q: noise(scenario.noise.q, Stream::Displacement),
+        qd: noise(scenario.noise.qd, Stream::Velocity),
+        force: noise(scenario.noise.force, Stream::Force),
+    }
+}
+
+/// The interval of the excitation's grid to which t belongs.
+fn interval(scenario: &Scenario, t: f64) -> u64 {
+    (t / scenario.excitation.sample_time + Scenario::TIME_JITTER).floor().max(0.0) as u64
 }
 
 /// A plant: its scenario, which does not change, and where it is.
@@ -67,7 +120,7 @@ pub struct Plant {
 
 /// The scenario's terms and the hidden ones, with the coefficients of each stage.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Law {
+pub(super) struct Law {
     terms: Vec<Term>,
     coefficients: Vec<Vec<f64>>,
     /// Whether the state and the excitation alone determine the force, which does not jump.
@@ -75,7 +128,7 @@ struct Law {
 }
 
 impl Law {
-    fn of(scenario: &Scenario) -> Law {
+    pub(super) fn of(scenario: &Scenario) -> Law {
         let Scenario { terms, hidden, stages, .. } = scenario;
         let terms: Vec<Term> = terms.iter().copied().chain(hidden.terms()).collect();
         let all = stages.iter().map(|stage| stage.coefficients.iter().copied().chain(hidden.coefficients()).collect());
@@ -83,8 +136,35 @@ impl Law {
         Law { smooth: terms.iter().all(smooth), coefficients: all.collect(), terms }
     }
 
-    fn motion(&self, stage: usize) -> Motion<'_> {
+    pub(super) fn motion(&self, stage: usize) -> Motion<'_> {
         Motion { terms: &self.terms, coefficients: &self.coefficients[stage] }
+    }
+
+    /// How far back the excitation acts, s.
+    pub(super) fn delay(&self) -> f64 {
+        let delay = |term: &Term| match term {
+            Term::Effect(Effect::ExcitationDelay { delay }) => delay.value(),
+            _ => 0.0,
+        };
+        self.terms.iter().map(delay).fold(0.0, f64::max)
+    }
+
+    /// From one time to another, within which neither law nor excitation changes.
+    pub(super) fn step(
+        &self,
+        scenario: &Scenario,
+        stage: usize,
+        phase: &Phase,
+        [from, to]: [f64; 2],
+        excitation: f64,
+        history: &impl History,
+    ) -> Phase {
+        let motion = self.motion(stage);
+        if self.smooth {
+            return Phase { state: motion.step_held(phase.state, to - from, excitation), ..*phase };
+        }
+        let dynamics = Dynamics::new(motion, scenario.hidden.expressions());
+        dynamics.map_or(NOWHERE, |dynamics| dynamics.step(phase, from, to - from, history))
     }
 }
 
@@ -119,30 +199,26 @@ impl Plant {
         if t < self.t - self.resolution(t) || node < self.node {
             return Err(PlantError::Backwards { t, present: self.t });
         }
+        too_far((node - self.node) as f64, self.t, self.scenario.inner_step)?;
         let mut at_node = self.at_node;
         for passed in self.node..node {
             at_node = self.integrate(at_node, passed, self.node_time(passed + 1));
         }
         let phase = if rest { self.integrate(at_node, node, t) } else { at_node };
-        if !(at_node.is_finite() && phase.is_finite()) {
-            return Err(PlantError::Diverged { t });
-        }
+        diverged(&at_node, t)?;
+        diverged(&phase, t)?;
         (self.node, self.at_node, self.t, self.phase) = (node, at_node, t, phase);
         Ok(())
     }
 
     /// What is measured now. Sensor noise is drawn once per interval of the excitation's grid.
     pub fn reading(&self) -> Reading {
-        let index = self.interval(self.t);
-        let noise = |std: f64, stream| match std {
-            0.0 => 0.0,
-            std => std * standard_normal(self.scenario.seed, stream, index),
-        };
+        let noise = sensor_noise(&self.scenario, self.t);
         Reading {
             t: self.t,
-            q: self.phase.state.q + noise(self.scenario.noise.q, Stream::Displacement),
-            qd: self.phase.state.qd + noise(self.scenario.noise.qd, Stream::Velocity),
-            excitation: self.held(index) + noise(self.scenario.noise.force, Stream::Force),
+            q: self.phase.state.q + noise.q,
+            qd: self.phase.state.qd + noise.qd,
+            excitation: self.held(interval(&self.scenario, self.t)) + noise.force,
         }
     }
 
@@ -176,11 +252,6 @@ impl Plant {
             return (nearest, false);
         }
         (position.floor().max(0.0) as u64, true)
-    }
-
-    /// The interval of the excitation's grid to which t belongs.
-    fn interval(&self, t: f64) -> u64 {
-        (t / self.scenario.excitation.sample_time + Scenario::TIME_JITTER).floor().max(0.0) as u64
     }
 
     /// The excitation that is held over an interval of the grid. Its amplitude and frequency are those of the stage
@@ -218,15 +289,9 @@ impl Plant {
         self.step(stage, &phase, t, end, excitation)
     }
 
-    /// From one time to another, within which neither law nor excitation changes.
     fn step(&self, stage: usize, phase: &Phase, from: f64, to: f64, excitation: f64) -> Phase {
-        let motion = self.law.motion(stage);
-        if self.law.smooth {
-            return Phase { state: motion.step_held(phase.state, to - from, excitation), ..*phase };
-        }
         let held = HeldFrom { plant: self, from, excitation };
-        let dynamics = Dynamics::new(motion, self.scenario.hidden.expressions());
-        dynamics.map_or(NOWHERE, |dynamics| dynamics.step(phase, from, to - from, &held))
+        self.law.step(&self.scenario, stage, phase, [from, to], excitation, &held)
     }
 }
 
@@ -242,9 +307,12 @@ impl History for HeldFrom<'_> {
         if from >= self.from {
             return [self.excitation; 3];
         }
+        if from >= to {
+            return [self.plant.held(interval(&self.plant.scenario, from)); 3];
+        }
         let sample_time = self.plant.scenario.excitation.sample_time;
         let (mut start, mut sum) = (from, 0.0);
-        let mut interval = self.plant.interval(from);
+        let mut interval = interval(&self.plant.scenario, from);
         while start < to {
             let next = ((interval + 1) as f64 * sample_time).min(to).max(start);
             sum += self.plant.held(interval) * (next - start);

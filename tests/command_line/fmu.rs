@@ -25,9 +25,9 @@ fn files(bench: &Bench, name: &str) -> BTreeMap<String, String> {
     let count = archive.len();
     let read = |index| {
         let mut entry = archive.by_index(index).unwrap();
-        let mut text = String::new();
-        entry.read_to_string(&mut text).unwrap();
-        (entry.name().unwrap().into_owned(), text)
+        let mut content = Vec::new();
+        entry.read_to_end(&mut content).unwrap();
+        (entry.name().unwrap().into_owned(), String::from_utf8_lossy(&content).into_owned())
     };
     (0..count).map(read).collect()
 }

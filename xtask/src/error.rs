@@ -102,6 +102,12 @@ pub enum Error {
     /// The table of reference answers cannot be read.
     #[error("xtask/src/real/reference.toml: {0}")]
     Reference(#[from] toml::de::Error),
+    /// A platform's binary gives other values.
+    #[error("{fmu} gives other values under Wine than on Linux")]
+    Platforms {
+        /// The FMU.
+        fmu: String,
+    },
     /// What was measured cannot be written as JSON.
     #[error("no JSON of what was measured: {0}")]
     Json(#[from] serde_json::Error),

@@ -2,37 +2,56 @@
 
 use crate::command::{cargo, root, run};
 use crate::error::Error;
+use crate::{licences, platforms};
 use std::path::{Path, PathBuf};
 use switchid::fmu::{DUFFING, VAN_DER_POL, identifier, plant};
 use switchid::law::Model;
-use switchid_fmu_package::{Fmu, LINUX64};
+use switchid_fmu_package::{Fmu, LINUX64, Platform};
 
 /// Name of the default identifier.
 const IDENTIFIER: &str = "SwitchedIdentifier";
 
-/// `cargo xtask fmu`: what [`build`] does, and the default identifier's `modelDescription.xml` at the root made anew. No
-/// other chore writes that file: the test that finds it stale must see it as it was checked in.
+/// The crates of the two binaries.
+pub const BINARIES: [&str; 2] = ["switchid-fmu-identifier", "switchid-fmu-plant"];
+
+/// `cargo xtask fmu`: the default identifier's `modelDescription.xml` at the root and the list of licences made anew, and the FMUs,
+/// for this machine or for every platform. No other chore writes those files: the tests that find them stale must see them as they
+/// were checked in.
 ///
 /// # Errors
 /// What cargo or the packaging says.
-pub fn renew() -> Result<(), Error> {
+pub fn renew(every_platform: bool) -> Result<(), Error> {
+    write(&licences::file(), licences::text()?.as_bytes())?;
     write(&root().join("modelDescription.xml"), default_identifier()?.xml().as_bytes())?;
-    build()
+    if every_platform { build_everywhere() } else { build() }
 }
 
-/// Builds the binaries, apart from the rest so that no feature of the command line gets in, and writes the three FMUs
-/// into `target/fmu`.
+/// Builds the binaries for this machine, apart from the rest so that no feature of the command line gets in, and writes the
+/// three FMUs into `target/fmu`.
 ///
 /// # Errors
 /// What cargo or the packaging says.
 pub fn build() -> Result<(), Error> {
-    let identifier_binary = build_binary("switchid-fmu-identifier")?;
-    let plant_binary = build_binary("switchid-fmu-plant")?;
-    pack(default_identifier()?.with_binary(LINUX64, "so", identifier_binary))?;
-    for law in [DUFFING, VAN_DER_POL] {
-        pack(plant(law)?.with_binary(LINUX64, "so", plant_binary.clone()))?;
-    }
-    Ok(())
+    let [identifier, plant] = BINARIES.map(|package| build_binary(package).map(|binary| vec![(LINUX64, binary)]));
+    pack_all(&identifier?, &plant?)
+}
+
+/// The same with the binaries of every platform that can be built from Linux.
+///
+/// # Errors
+/// What cargo or the packaging says.
+pub fn build_everywhere() -> Result<(), Error> {
+    platforms::build(&BINARIES)?;
+    let [identifier, plant] = BINARIES.map(platforms::binaries);
+    pack_all(&identifier?, &plant?)
+}
+
+fn pack_all(identifier: &[(Platform, Vec<u8>)], plants: &[(Platform, Vec<u8>)]) -> Result<(), Error> {
+    let with = |fmu: Fmu, binaries: &[(Platform, Vec<u8>)]| {
+        binaries.iter().fold(fmu, |fmu, (platform, binary)| fmu.with_binary(*platform, binary.clone()))
+    };
+    pack(with(default_identifier()?, identifier))?;
+    [DUFFING, VAN_DER_POL].into_iter().try_for_each(|law| pack(with(plant(law)?, plants)))
 }
 
 fn default_identifier() -> Result<Fmu, Error> {
@@ -54,8 +73,12 @@ pub fn build_command() -> Result<(), Error> {
     build_package("switchid-harness-command").map(|_| ())
 }
 
+/// A package's dynamic library without symbols, which would be three quarters of it.
 fn build_binary(package: &str) -> Result<Vec<u8>, Error> {
-    let path = build_package(package)?.join(format!("lib{}.so", package.replace('-', "_")));
+    let arguments = ["rustc", "--quiet", "--release", "--package", package, "--lib", "--crate-type", "cdylib"];
+    let strip = ["--", "-C", "strip=symbols"];
+    run(cargo(&arguments).args(strip), "install Rust from https://rustup.rs")?;
+    let path = root().join("target/release").join(LINUX64.file(package));
     std::fs::read(&path).map_err(file("read", &path))
 }
 
@@ -67,14 +90,19 @@ fn build_package(package: &str) -> Result<PathBuf, Error> {
     Ok(target.join("release"))
 }
 
-fn write(path: &Path, content: &[u8]) -> Result<(), Error> {
+/// Writes a file where its content changes.
+///
+/// # Errors
+/// [`Error::File`].
+pub fn write(path: &Path, content: &[u8]) -> Result<(), Error> {
     if std::fs::read(path).is_ok_and(|present| present == content) {
         return Ok(());
     }
     std::fs::write(path, content).map_err(file("write", path))
 }
 
-fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Error {
+/// The error of an action on a file.
+pub fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Error {
     let path = path.to_path_buf();
     move |source| Error::File { action, path, source }
 }

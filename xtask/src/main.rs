@@ -4,13 +4,17 @@ mod command;
 mod crosscheck;
 mod error;
 mod fmu;
+mod importers;
 mod libclang;
+mod licences;
 mod picture;
+mod platforms;
 mod python;
 mod readme;
 mod real;
 mod steps;
 mod test;
+mod wine;
 
 use error::Error;
 use std::process::ExitCode;
@@ -23,8 +27,11 @@ usage: cargo xtask CHORE
                      a hidden effect, gates the figures,
                      writes target/crosscheck/report.html and report.json
   test               every test, also those of the measuring programs
-  fmu                builds SwitchedIdentifier.fmu, Duffing.fmu, VanDerPol.fmu into target/fmu,
-                     and modelDescription.xml at the root anew
+  fmu [--platforms]  builds SwitchedIdentifier.fmu, Duffing.fmu, VanDerPol.fmu into target/fmu, for this
+                     machine or for Linux (x86-64, ARM) and Windows, and modelDescription.xml at the root
+                     and the list of licences anew
+  wine               steps the Windows binaries that `fmu --platforms` built under Wine, beside the Linux ones
+  importers          plant and identifier in fmpy, fmpy.ssp, ecospy and libcosimpy: equal trajectories
   bench [ARGUMENT..] cost per sample by phase, terms and window; arguments go to the
                      benchmark (--help lists them)
   figures [SEEDS] [SCENARIO] | --against-limits [FIRST..END] [ROW] [--only TEXT] [--threads N]
@@ -65,7 +72,10 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
     match (name.as_str(), rest) {
         ("crosscheck", rest) => crosscheck::crosscheck(rest),
         ("test", []) => test::test(),
-        ("fmu", []) => fmu::renew(),
+        ("fmu", []) => fmu::renew(false),
+        ("fmu", [platforms]) if platforms == "--platforms" => fmu::renew(true),
+        ("wine", []) => wine::compare(),
+        ("importers", []) => importers::importers(),
         ("bench", rest) => cargo(&["bench", "--package", MEASURE, "--bench", "step", "--"], rest),
         (program @ ("figures" | "study" | "effects" | "faults" | "known-laws" | "dropbear"), rest) => {
             cargo(&["run", "--quiet", "--release", "--package", MEASURE, "--bin", program, "--"], rest)

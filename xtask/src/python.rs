@@ -26,6 +26,26 @@ pub fn environment() -> Result<PathBuf, Error> {
     make(&Host::find(program)?, &root().join("target/python"), &root().join("harness/requirements.txt"))
 }
 
+/// The folder of an environment that holds zig and its cargo command, some 300 MB, from `xtask/platforms.txt`.
+///
+/// # Errors
+/// As [`environment`].
+pub fn platforms() -> Result<PathBuf, Error> {
+    let program = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
+    let directory = root().join("target/python-platforms");
+    make(&Host::find(program)?, &directory, &root().join("xtask/platforms.txt"))?;
+    Ok(directory)
+}
+
+/// The interpreter of an environment that holds the importers of `harness/importers.txt`.
+///
+/// # Errors
+/// As [`environment`].
+pub fn importers() -> Result<PathBuf, Error> {
+    let program = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
+    make(&Host::find(program)?, &root().join("target/python-importers"), &root().join("harness/importers.txt"))
+}
+
 fn make(host: &Host, directory: &Path, requirements: &Path) -> Result<PathBuf, Error> {
     let interpreter = directory.join("bin/python");
     let stamp = directory.join("made-from");

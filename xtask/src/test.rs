@@ -4,7 +4,7 @@ use crate::command::{cargo, run};
 use crate::crosscheck::harness;
 use crate::error::Error;
 use crate::steps::Steps;
-use crate::{fmu, libclang, python, readme};
+use crate::{fmu, libclang, licences, python, readme};
 use std::path::Path;
 use std::process::Command;
 
@@ -16,8 +16,9 @@ const CHECK: &str = "switchid-fmu-check";
 /// # Errors
 /// [`Error::Steps`]; [`Error::Data`] when real records are missing in CI.
 pub fn test() -> Result<(), Error> {
-    let mut steps = Steps::new(14);
+    let mut steps = Steps::new(15);
     steps.check("real records", real_records);
+    steps.check("licences of the FMUs' crates", licences::check);
     steps.check("format", || cargo_run(&["fmt", "--all", "--check"]));
     steps.check("clippy", || cargo_run(&clippy(&["--workspace", "--exclude", CHECK, "--all-targets"])));
     steps.check("clippy, heart alone", || cargo_run(&clippy(&["--package", "switchid", "--no-default-features"])));

@@ -6,5 +6,6 @@
 
 mod parameters;
 mod slave;
+mod stream;
 
 switchid_fmu_slave::export!(slave::IdentifierSlave);

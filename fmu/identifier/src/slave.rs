@@ -1,11 +1,12 @@
 //! The identifier behind the slave's trait.
 
 use crate::parameters::{Parameters, position};
+use crate::stream::Watch;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use switchid::identify::{Identifier, OutputValue, Outputs, Sample, SavedLaws, SavedLawsError, SensorState, Skipped};
 use switchid::law::{Model, ModelError, Term};
-use switchid_fmu_slave::{Category, Description, Log, Slave, SlaveError, Value, Values};
+use switchid_fmu_slave::{Category, Description, Log, Slave, SlaveError, Value, Values, seconds};
 use thiserror::Error;
 
 /// The model's file in the resources.
@@ -13,6 +14,9 @@ const MODEL_FILE: &str = "model.toml";
 
 /// The known laws' file in the resources, where there is one.
 const LAWS_FILE: &str = "laws.toml";
+
+/// How much more memory an identifier takes than its record: sensitivities and hypotheses beside it.
+const ROOM: f64 = 2.0;
 
 /// Why the resources are refused.
 #[derive(Debug, Error)]
@@ -33,6 +37,14 @@ pub enum ResourceError {
         /// Why.
         source: ModelError,
     },
+    /// There is not enough memory.
+    #[error(
+        "max_window and sample_time ask for {megabytes:.0} MB, which this process does not get: a shorter max_window takes less"
+    )]
+    Memory {
+        /// How much is needed, MB.
+        megabytes: f64,
+    },
     /// The known laws are refused.
     #[error("{path}: {source}")]
     Laws {
@@ -52,6 +64,8 @@ pub struct IdentifierSlave {
     parameters: Parameters,
     /// Value references in the order of [`Outputs::describe`].
     output_references: Vec<usize>,
+    /// Value reference of `stream`.
+    stream: usize,
     running: Option<Running>,
 }
 
@@ -60,7 +74,7 @@ pub struct IdentifierSlave {
 struct Running {
     identifier: Identifier,
     outputs: Outputs,
-    thinning_said: bool,
+    watch: Watch,
 }
 
 impl Slave for IdentifierSlave {
@@ -73,6 +87,7 @@ impl Slave for IdentifierSlave {
             inputs: [find("q")?, find("qd")?, find("F")?],
             parameters: Parameters::find(description)?,
             output_references,
+            stream: find("stream")?,
             library,
             known: read_laws(&resources.join(LAWS_FILE))?,
             running: None,
@@ -81,9 +96,12 @@ impl Slave for IdentifierSlave {
 
     fn start(&mut self, _time: f64, values: &mut Values, _log: &mut Log) -> Result<(), SlaveError> {
         let model = self.parameters.model(&self.library, values)?;
-        let identifier = Identifier::new(&model, self.parameters.settings(values))?.with_known_laws(&self.known)?;
+        let settings = self.parameters.settings(values);
+        settings.check()?;
+        probe(settings.max_window / settings.sample_time)?;
+        let identifier = Identifier::new(&model, settings)?.with_known_laws(&self.known)?;
         let outputs = Outputs::new(&terms(&self.library), &identifier);
-        let running = Running { identifier, outputs, thinning_said: false };
+        let running = Running { identifier, outputs, watch: Watch::default() };
         running.publish(&self.output_references, values);
         self.running = Some(running);
         Ok(())
@@ -94,15 +112,22 @@ impl Slave for IdentifierSlave {
         let [q, qd, excitation] = self.inputs.map(|reference| values.real(reference));
         let before = running.identifier.output().switch_count;
         let sensors = running.identifier.output().sensors;
-        match running.identifier.step(Sample { t: time, q, qd, excitation }) {
-            Ok(()) => running.publish(&self.output_references, values),
-            Err(skipped) => running.say_skipped(skipped, log),
+        let sample = Sample { t: time, q, qd, excitation };
+        let outcome = running.identifier.step(sample);
+        running.publish(&self.output_references, values);
+        if let Err(skipped) = outcome {
+            say_skipped(skipped, log);
         }
+        running.watch.take(&sample, &outcome, log);
+        values.put(self.stream, Value::Integer(running.watch.shown()));
         running.say_switch(before, log);
         running.say_sensors(time, sensors, log);
         Ok(())
     }
 }
+
+/// What each sensor measures, and the key of its warnings.
+const SENSORS: [(&str, &str); 3] = [("q", "sensor of q"), ("qd", "sensor of qd"), ("F", "sensor of F")];
 
 impl Running {
     fn publish(&self, references: &[usize], values: &mut Values) {
@@ -111,32 +136,18 @@ impl Running {
         }
     }
 
-    fn say_skipped(&mut self, skipped: Skipped, log: &mut Log) {
-        match skipped {
-            Skipped::TooSoon { .. } if self.thinning_said => {}
-            Skipped::TooSoon { .. } => {
-                self.thinning_said = true;
-                let text =
-                    format!("{skipped}; said once. Set sample_time to the step of the simulation to use all samples");
-                log.say(Category::Warning, &text);
-            }
-            Skipped::NotFinite { channel, .. } => log.warn_rarely(channel, || skipped.to_string()),
-            Skipped::NotLater { .. } | Skipped::Ahead { .. } => log.warn_rarely("time", || skipped.to_string()),
-        }
-    }
-
     /// A sensor's fault is said once when it begins and once when it ends.
-    fn say_sensors(&self, time: f64, before: [SensorState; 3], log: &Log) {
+    fn say_sensors(&self, time: f64, before: [SensorState; 3], log: &mut Log) {
         let now = self.identifier.output().sensors;
-        for (channel, (before, now)) in ["q", "qd", "F"].into_iter().zip(before.into_iter().zip(now)) {
+        for (channel, (before, now)) in SENSORS.into_iter().zip(before.into_iter().zip(now)) {
             if before != now {
-                let text = match now {
-                    SensorState::Ok => format!("sensor of {channel}: {} until t = {time} s, ok again", before.id()),
+                let t = seconds(time);
+                log.warn_of_onset(channel.1, || match now {
+                    SensorState::Ok => format!("sensor of {}: {} until t = {t} s, ok again", channel.0, before.id()),
                     fault => {
-                        format!("sensor of {channel}: {} from t = {time} s on, its readings do not count", fault.id())
+                        format!("sensor of {}: {} from t = {t} s on, its readings do not count", channel.0, fault.id())
                     }
-                };
-                log.say(Category::Warning, &text);
+                });
             }
         }
     }
@@ -144,13 +155,30 @@ impl Running {
     fn say_switch(&self, before: u32, log: &Log) {
         let output = self.identifier.output();
         if output.switch_count > before {
-            let at = output.detection_time.unwrap_or_default();
-            log.say(
-                Category::Event,
-                &format!("switch detected at t = {at} s, it happened near {} s", output.switch_time),
-            );
+            let (at, near) = (seconds(output.detection_time.unwrap_or_default()), seconds(output.switch_time));
+            log.say(Category::Event, &format!("switch detected at t = {at} s, it happened near {near} s"));
         }
     }
+}
+
+/// A sample that the identifier did not take; what comes too soon or after a hole is for the [`Watch`] to say.
+fn say_skipped(skipped: Skipped, log: &mut Log) {
+    match skipped {
+        Skipped::TooSoon { .. } | Skipped::Ahead { .. } => {}
+        Skipped::NotFinite { t, channel } => {
+            log.warn_rarely(channel, || Skipped::NotFinite { t: seconds(t), channel }.to_string());
+        }
+        Skipped::NotLater { t, previous } => {
+            log.warn_rarely("time", || Skipped::NotLater { t: seconds(t), previous: seconds(previous) }.to_string())
+        }
+    }
+}
+
+/// Where the record would not fit, says so: an allocation that fails on the way would end the host.
+fn probe(samples: f64) -> Result<(), ResourceError> {
+    let bytes = samples * size_of::<Sample>() as f64 * ROOM;
+    let failed = Vec::<u8>::new().try_reserve_exact(bytes as usize).is_err();
+    if failed { Err(ResourceError::Memory { megabytes: bytes * 1e-6 }) } else { Ok(()) }
 }
 
 fn to_fmi(value: OutputValue) -> Value {
@@ -181,4 +209,15 @@ fn read_laws(path: &Path) -> Result<SavedLaws, ResourceError> {
     let text =
         std::fs::read_to_string(path).map_err(|source| ResourceError::Missing { path: path.to_path_buf(), source })?;
     SavedLaws::from_toml(&text).map_err(|source| ResourceError::Laws { path: path.to_path_buf(), source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::probe;
+
+    #[test]
+    fn memory_that_does_not_exist_is_an_error() {
+        assert!(probe(3e4).is_ok());
+        assert!(probe(1e18).unwrap_err().to_string().contains("max_window"));
+    }
 }

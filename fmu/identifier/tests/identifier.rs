@@ -66,7 +66,9 @@ fn numbers(subject: &Subject, instance: &Instance) -> Vec<f64> {
             "switch.count" | "status" | "missing.effect" | "law.number" | "sensor.q" | "sensor.qd" | "sensor.F" => {
                 f64::from(instance.integer(reference).unwrap())
             }
-            "valid" | "drifting" => f64::from(instance.boolean(reference).unwrap()),
+            name if matches!(name, "valid" | "drifting") || name.starts_with("known.") => {
+                f64::from(instance.boolean(reference).unwrap())
+            }
             _ => instance.reals(&[reference]).unwrap()[0],
         }
     };
@@ -159,6 +161,7 @@ fn refused_parameters_are_named() {
         ("qdd q^5", "no output coef.q_5"),
         ("qd q", "no inertia"),
         ("qdd q linear_stiffness", "the same term"),
+        ("coef.qdd, q_3; q^3", "\"q_3\" and \"q^3\" are the same term"),
     ] {
         let instance = subject.instance();
         assert_eq!(instance.set_text(subject.reference("terms"), terms), OK);
@@ -169,6 +172,34 @@ fn refused_parameters_are_named() {
     assert_eq!(instance.set_reals(&[subject.reference("max_window")], &[0.01]), OK);
     assert_ne!(instance.initialize(0.0), OK);
     assert!(instance.messages()[0].2.contains("max_window"), "{:?}", instance.messages());
+}
+
+/// Coefficients that are not left out of the model after a second of samples.
+fn fitted(prepare: impl Fn(&Subject, &Instance)) -> Vec<String> {
+    let (subject, readings) = (subject(), readings());
+    let instance = subject.instance();
+    prepare(&subject, &instance);
+    assert_eq!(instance.initialize(0.0), OK, "{:?}", instance.messages());
+    feed(&subject, &instance, &readings[..4000]);
+    let terms = Model::cubic_library().terms.into_iter().map(|entry| entry.term.fmu_name());
+    terms.filter(|term| instance.boolean(subject.reference(&format!("known.{term}"))) == Ok(1)).collect()
+}
+
+#[test]
+fn terms_are_chosen_by_text_or_by_the_name_of_a_law() {
+    let by_text = |text: &'static str| {
+        fitted(move |subject, instance| assert_eq!(instance.set_text(subject.reference("terms"), text), OK))
+    };
+    let duffing = ["qdd", "q", "qd", "q_3"];
+    assert_eq!(by_text("qdd q qd q^3"), duffing);
+    assert_eq!(by_text(" coef.qdd, q_3;qd\tlinear_stiffness "), duffing);
+    let by_name = fitted(|subject, instance| assert_eq!(instance.set_integer(subject.reference("model"), 3), OK));
+    assert_eq!(by_name, duffing);
+    let (subject, both) = (subject(), subject().instance());
+    assert_eq!(both.set_integer(subject.reference("model"), 3), OK);
+    assert_eq!(both.set_text(subject.reference("terms"), TERMS), OK);
+    assert_ne!(both.initialize(0.0), OK);
+    assert!(both.messages()[0].2.contains("terms and model both"), "{:?}", both.messages());
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! An FMU as an archive: the same content gives the same bytes.
 
+use crate::platform::Platform;
+use crate::terminals::terminals;
 use crate::xml::model_description;
 use std::collections::BTreeMap;
 use std::io::{Cursor, Write};
@@ -8,14 +10,17 @@ use thiserror::Error;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// FMI's name of the platform that Linux on x86-64 is.
-pub const LINUX64: &str = "linux64";
-
 /// The licences, shipped with every FMU.
 const LICENCES: [(&str, &str); 2] = [
     ("LICENSE-MIT", include_str!("../../../LICENSE-MIT")),
     ("LICENSE-APACHE", include_str!("../../../LICENSE-APACHE")),
 ];
+
+/// What the crates in the binaries are licensed under; `cargo xtask fmu` renews it.
+const THIRD_PARTY: &str = include_str!("../assets/third-party-licenses.txt");
+
+/// The picture that a simulator shows.
+const ICON: &[u8] = include_bytes!("../assets/model.png");
 
 /// Why an FMU cannot be packed.
 #[derive(Debug, Error)]
@@ -58,21 +63,25 @@ impl Fmu {
     ) -> Result<Fmu, PackageError> {
         let name = check_name(&description.name)?;
         let (xml, guid) = model_description(&description, &resources)?;
-        let interface = Interface { guid: guid.clone(), description };
         let mut files = BTreeMap::new();
-        files.insert(format!("resources/{INTERFACE_FILE}"), serde_json::to_vec_pretty(&interface)?);
         files.extend(resources.into_iter().map(|(name, content)| (format!("resources/{name}"), content)));
         files.insert("documentation/index.html".into(), documentation.into_bytes());
         let licences =
             LICENCES.map(|(name, text)| (format!("documentation/licenses/{name}"), text.as_bytes().to_vec()));
         files.extend(licences);
+        files.insert("documentation/licenses/third-party.txt".into(), THIRD_PARTY.into());
+        files.insert("model.png".into(), ICON.into());
+        files.insert("terminalsAndIcons/icon.png".into(), ICON.into());
+        files.insert("terminalsAndIcons/terminalsAndIcons.xml".into(), terminals(&description)?.into_bytes());
         files.insert("modelDescription.xml".into(), xml.clone().into_bytes());
+        let interface = Interface { guid: guid.clone(), description };
+        files.insert(format!("resources/{INTERFACE_FILE}"), serde_json::to_vec_pretty(&interface)?);
         Ok(Fmu { name, guid, xml, files })
     }
 
-    /// Adds the binary of a platform; `extension` is `so`, `dll` or `dylib`.
-    pub fn with_binary(mut self, platform: &str, extension: &str, binary: Vec<u8>) -> Fmu {
-        self.files.insert(format!("binaries/{platform}/{}.{extension}", self.name), binary);
+    /// Adds the binary of a platform.
+    pub fn with_binary(mut self, platform: Platform, binary: Vec<u8>) -> Fmu {
+        self.files.insert(format!("binaries/{}/{}.{}", platform.name, self.name, platform.extension), binary);
         self
     }
 

@@ -22,8 +22,10 @@ fn row(variable: &Variable) -> String {
         Causality::Parameter => "parameter",
         Causality::Input => "input",
         Causality::Output => "output",
+        Causality::Independent => "time",
     };
-    let start = if variable.causality == Causality::Output { String::new() } else { start_text(&variable.kind) };
+    let has_start = matches!(variable.causality, Causality::Parameter | Causality::Input);
+    let start = if has_start { start_text(&variable.kind) } else { String::new() };
     let unit = match &variable.kind {
         Kind::Real { unit: Some(unit), .. } => unit.as_str(),
         _ => "",
@@ -44,6 +46,15 @@ fn start_text(kind: &Kind) -> String {
         Kind::Boolean { start } => start.to_string(),
         Kind::String { start } => start.clone(),
     }
+}
+
+/// A plant and the identifier as two blocks of a diagram, with what goes from one to the other.
+pub const PICTURE: &str = include_str!("../assets/connection.svg");
+
+/// A numbered list of what to do.
+pub fn quick_start(steps: &[&str]) -> String {
+    let items: String = steps.iter().map(|step| format!("<li>{step}</li>\n")).collect();
+    format!("<h2>Quick start</h2>\n<ol>\n{items}</ol>\n")
 }
 
 /// The text as HTML shows it.

@@ -6,8 +6,11 @@
 
 mod archive;
 pub mod documentation;
+mod platform;
+mod terminals;
 pub mod variables;
 mod xml;
 
-pub use archive::{Fmu, LINUX64, PackageError};
+pub use archive::{Fmu, PackageError};
+pub use platform::{AARCH64_LINUX, DARWIN64, LINUX64, Platform, WIN64};
 pub use xml::model_description;

@@ -3,11 +3,12 @@
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 use sha2::{Digest, Sha256};
+use std::f64::consts::PI;
 use std::io;
 use switchid_fmu_slave::{Category, Causality, Description, Enumeration, Kind, Unit, Variability, Variable};
 
-type Xml = Writer<Vec<u8>>;
-type Attributes = Vec<(&'static str, String)>;
+pub(crate) type Xml = Writer<Vec<u8>>;
+pub(crate) type Attributes = Vec<(&'static str, String)>;
 
 /// The XML and its GUID, which is the hash of the XML without it and of the resources that the binary reads.
 ///
@@ -44,7 +45,7 @@ fn write(description: &Description, guid: &str) -> io::Result<String> {
     String::from_utf8(xml.into_inner()).map(|text| text + "\n").map_err(io::Error::other)
 }
 
-fn element(
+pub(crate) fn element(
     xml: &mut Xml,
     name: &str,
     attributes: Attributes,
@@ -55,7 +56,7 @@ fn element(
     Ok(())
 }
 
-fn empty(xml: &mut Xml, name: &str, attributes: Attributes) -> io::Result<()> {
+pub(crate) fn empty(xml: &mut Xml, name: &str, attributes: Attributes) -> io::Result<()> {
     let attributes = attributes.iter().map(|(name, value)| (*name, value.as_str()));
     xml.create_element(name).with_attributes(attributes).write_empty()?;
     Ok(())
@@ -110,9 +111,26 @@ fn write_units(xml: &mut Xml, units: &[Unit]) -> io::Result<()> {
     }
     element(xml, "UnitDefinitions", vec![], |xml| {
         units.iter().try_for_each(|unit| {
-            element(xml, "Unit", vec![("name", unit.name.clone())], |xml| empty(xml, "BaseUnit", base_unit(unit)))
+            element(xml, "Unit", vec![("name", unit.name.clone())], |xml| {
+                empty(xml, "BaseUnit", base_unit(unit))?;
+                display_units(&unit.name).iter().try_for_each(|(name, factor)| {
+                    empty(xml, "DisplayUnit", vec![("name", (*name).into()), ("factor", number(*factor))])
+                })
+            })
         })
     })
+}
+
+/// What else a quantity may be shown in: name, and how many of it one unit is.
+fn display_units(unit: &str) -> &'static [(&'static str, f64)] {
+    match unit {
+        "s" => &[("ms", 1e3), ("min", 1.0 / 60.0)],
+        "rad/s" => &[("Hz", 0.5 / PI), ("rpm", 30.0 / PI)],
+        "m" => &[("mm", 1e3), ("µm", 1e6)],
+        "m/s" => &[("mm/s", 1e3)],
+        "N" => &[("kN", 1e-3)],
+        _ => &[],
+    }
 }
 
 fn base_unit(unit: &Unit) -> Attributes {
@@ -163,6 +181,7 @@ fn scalar_variable(reference: usize, variable: &Variable) -> Attributes {
         (Causality::Parameter, _) => ("parameter", "fixed", Some("exact")),
         (Causality::Input, Variability::Discrete) => ("input", "discrete", None),
         (Causality::Input, Variability::Continuous) => ("input", "continuous", None),
+        (Causality::Independent, _) => ("independent", "continuous", None),
         (Causality::Output, Variability::Discrete) => ("output", "discrete", Some("calculated")),
         (Causality::Output, Variability::Continuous) => ("output", "continuous", Some("calculated")),
     };
@@ -184,6 +203,7 @@ fn type_element(variable: &Variable) -> (&'static str, Attributes) {
             attributes.extend(unit.clone().map(|unit| ("unit", unit)));
             attributes.extend(min.map(|min| ("min", number(min))));
             attributes.extend(max.map(|max| ("max", number(max))));
+            attributes.extend(nominal(*start).map(|nominal| ("nominal", number(nominal))));
             ("Real", number(*start))
         }
         Kind::Integer { start, min, max } => {
@@ -198,20 +218,26 @@ fn type_element(variable: &Variable) -> (&'static str, Attributes) {
         Kind::Boolean { start } => ("Boolean", start.to_string()),
         Kind::String { start } => ("String", start.clone()),
     };
-    if variable.causality != Causality::Output {
+    if !matches!(variable.causality, Causality::Output | Causality::Independent) {
         attributes.push(("start", start));
     }
     (name, attributes)
 }
 
-/// Outputs after a step do not depend on inputs at the same instant, hence no dependencies; indices count from 1.
+/// The magnitude of a quantity, where its start value tells it; 1 is FMI's own guess.
+fn nominal(start: f64) -> Option<f64> {
+    Some(start.abs()).filter(|size| *size > 0.0 && *size < 1e20 && *size != 1.0)
+}
+
+/// Outputs after a step do not depend on inputs at the same instant, only on the time: an empty list, which says the same, is read by
+/// FMI Library as a missing one, and that means "on everything". Indices count from 1.
 fn write_structure(xml: &mut Xml, description: &Description) -> io::Result<()> {
     let outputs: Vec<(usize, &Variable)> = (1..).zip(&description.variables).filter(is_output).collect();
     if outputs.is_empty() {
         return Ok(());
     }
     element(xml, "Outputs", vec![], |xml| {
-        outputs.iter().try_for_each(|(index, _)| unknown(xml, *index, String::new()))
+        outputs.iter().try_for_each(|(index, _)| unknown(xml, *index, indices(description, &[])))
     })?;
     element(xml, "InitialUnknowns", vec![], |xml| {
         outputs
@@ -230,6 +256,10 @@ fn unknown(xml: &mut Xml, index: usize, dependencies: String) -> io::Result<()> 
 
 fn indices(description: &Description, names: &[String]) -> String {
     let mut positions: Vec<usize> = names.iter().filter_map(|name| description.position(name)).collect();
+    if positions.is_empty() {
+        let is_time = |variable: &Variable| variable.causality == Causality::Independent;
+        positions.extend(description.variables.iter().position(is_time));
+    }
     positions.sort_unstable();
     positions.iter().map(|position| (position + 1).to_string()).collect::<Vec<_>>().join(" ")
 }

@@ -85,7 +85,7 @@ fn a_plant_has_sixteen_stages() {
 
 #[test]
 fn the_archive_holds_what_importers_look_for_and_is_reproducible() {
-    let archive = || plant(DUFFING).unwrap().with_binary(LINUX64, "so", b"binary".to_vec()).to_bytes().unwrap();
+    let archive = || plant(DUFFING).unwrap().with_binary(LINUX64, b"binary".to_vec()).to_bytes().unwrap();
     assert_eq!(archive(), archive());
     let mut zip = zip::ZipArchive::new(Cursor::new(archive())).unwrap();
     let names: Vec<String> = zip.file_names().map(|name| name.unwrap().into_owned()).collect();
@@ -97,6 +97,10 @@ fn the_archive_holds_what_importers_look_for_and_is_reproducible() {
         "documentation/index.html",
         "documentation/licenses/LICENSE-MIT",
         "documentation/licenses/LICENSE-APACHE",
+        "documentation/licenses/third-party.txt",
+        "model.png",
+        "terminalsAndIcons/icon.png",
+        "terminalsAndIcons/terminalsAndIcons.xml",
     ] {
         assert!(names.iter().any(|name| name == path), "{path} is not among {names:?}");
     }

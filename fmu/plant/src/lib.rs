@@ -4,6 +4,7 @@
 //! another file. Time counts from the start of the simulation. What the plant shows at an instant does not depend on the
 //! communication steps that led there.
 
+mod moving;
 mod places;
 mod slave;
 mod specimen;

@@ -25,10 +25,14 @@ pub enum PlaceError {
     Inner(#[from] InnerError),
 }
 
+/// The number of the excitation that comes from outside.
+const INPUT: i32 = 6;
+
 /// Value references of all variables.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Places {
     kind: usize,
+    input: usize,
     intensity: usize,
     sample_time: usize,
     drive: DrivePlaces,
@@ -75,6 +79,7 @@ impl Places {
         let count = (1..).take_while(|number| description.position(&format!("stage[{number}].time")).is_some()).count();
         Ok(Places {
             kind: find("excitation.kind")?,
+            input: find("excitation.F")?,
             intensity: find("excitation.intensity")?,
             sample_time: find("excitation.sample_time")?,
             drive: find_drive(description)?,
@@ -106,11 +111,16 @@ impl Places {
         Ok(scenario)
     }
 
+    /// What drives the plant from outside; `None` where it has an excitation of its own.
+    pub fn input(&self, values: &Values) -> Option<f64> {
+        (values.integer(self.kind) == INPUT).then(|| values.real(self.input))
+    }
+
     fn excitation(&self, values: &Values) -> Excitation {
         let drive = &self.drive;
         Excitation {
             kind: match values.integer(self.kind) {
-                1 => ExcitationKind::None,
+                1 | INPUT => ExcitationKind::None,
                 2 => ExcitationKind::Sine,
                 3 => ExcitationKind::WhiteNoise,
                 4 => ExcitationKind::Multisine,

@@ -1,11 +1,12 @@
 //! The plant behind the slave's trait.
 
+use crate::moving::Moving;
 use crate::places::Places;
 use crate::specimen::SpecimenPlaces;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-use switchid::simulate::{ParametricLaw, ParametricLawError, Plant, Specimen};
-use switchid_fmu_slave::{Category, Description, Log, Slave, SlaveError, Value, Values};
+use switchid::simulate::{ParametricLaw, ParametricLawError, Specimen};
+use switchid_fmu_slave::{Category, Description, Log, Slave, SlaveError, Values, seconds};
 use thiserror::Error;
 
 /// The law's file in the resources.
@@ -44,7 +45,7 @@ pub struct PlantSlave {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 enum Kind {
     /// With inertia: F moves the plant.
-    Plant { places: Box<Places>, plant: Option<Box<Plant>> },
+    Plant { places: Box<Places>, plant: Option<Box<Moving>> },
     /// Without: q and qd are imposed, F answers; the readings so far.
     Specimen { places: SpecimenPlaces, specimen: Option<Box<Specimen>>, readings: u64 },
 }
@@ -67,8 +68,8 @@ impl Slave for PlantSlave {
         self.start_time = time;
         match &mut self.kind {
             Kind::Plant { places, plant } => {
-                let begun = Plant::new(places.scenario(&self.law, values)?)?;
-                show(places, &begun, values);
+                let begun = Moving::new(places.scenario(&self.law, values)?, places.input(values).is_some())?;
+                begun.show(places, values);
                 *plant = Some(Box::new(begun));
             }
             Kind::Specimen { places, specimen, readings } => {
@@ -85,8 +86,14 @@ impl Slave for PlantSlave {
         let [before, after] = match &mut self.kind {
             Kind::Plant { places, plant: Some(plant) } => {
                 let before = plant.truth().stage;
-                plant.advance_to(to)?;
-                show(places, plant, values);
+                let input = places.input(values);
+                if input.is_some_and(|value| !value.is_finite()) {
+                    let text =
+                        || format!("excitation.F is no finite number at t = {} s: the last one acts on", seconds(time));
+                    log.warn_rarely("excitation.F", text);
+                }
+                plant.advance_to(to, input)?;
+                plant.show(places, values);
                 [before, plant.truth().stage]
             }
             Kind::Specimen { places, specimen: Some(specimen), readings } => {
@@ -98,22 +105,10 @@ impl Slave for PlantSlave {
             _ => return Ok(()),
         };
         if after != before {
-            log.say(Category::Event, &format!("stage {} began before t = {} s", after + 1, time + step));
+            log.say(Category::Event, &format!("stage {} began before t = {} s", after + 1, seconds(time + step)));
         }
         Ok(())
     }
-}
-
-fn show(places: &Places, plant: &Plant, values: &mut Values) {
-    let (reading, truth) = (plant.reading(), plant.truth());
-    let motion = [reading.q, reading.qd, reading.excitation, truth.state.q, truth.state.qd];
-    for (reference, value) in places.motion.iter().zip(motion) {
-        values.put(*reference, Value::Real(value));
-    }
-    for (reference, value) in places.coefficients.iter().zip(truth.coefficients) {
-        values.put(*reference, Value::Real(*value));
-    }
-    values.put(places.stage, Value::Integer(truth.stage as i32 + 1));
 }
 
 fn read_law(path: &Path) -> Result<ParametricLaw, ResourceError> {

@@ -139,6 +139,87 @@ fn hidden_effects_give_the_library_s_motion() {
     }
 }
 
+const INPUT: i32 = 6;
+
+/// A plant whose excitation is an input, started.
+fn driven(subject: &Subject, values: &[(&str, f64)]) -> Instance {
+    let instance = subject.instance();
+    set(subject, &instance, values);
+    assert_eq!(instance.set_integer(subject.reference("excitation.kind"), INPUT), OK);
+    assert_eq!(instance.initialize(0.0), OK, "{:?}", instance.messages());
+    instance
+}
+
+/// With the sine that drives the one on its grid fed to the other as an input, step by step.
+#[test]
+fn an_excitation_from_outside_moves_a_plant_as_its_own_does() {
+    let subject = subject(DUFFING);
+    let values = [("stage[2].time", 0.7503), ("stage[2].k3", 5.0), ("noise.q", 0.01), ("q0", 0.2)];
+    let hidden =
+        [("hidden.coulomb_friction", 0.2), ("hidden.excitation_delay", 0.5), ("hidden.excitation_delay.delay", 0.0123)];
+    for values in [&values[..], &[&values[..], &hidden[..]].concat()] {
+        let other = driven(&subject, values);
+        let own = subject.instance();
+        set(&subject, &own, values);
+        assert_eq!(own.initialize(0.0), OK);
+        for k in 0..1500 {
+            let t = f64::from(k) * 1e-3;
+            let force = 2.0 * (1.5 * t).sin();
+            assert_eq!(real(&subject, &own, "F"), force);
+            set(&subject, &other, &[("excitation.F", force)]);
+            assert_eq!(own.step(t, 1e-3).max(other.step(t, 1e-3)), OK, "{:?}", other.messages());
+            assert_eq!(real(&subject, &other, "F"), force);
+            for name in ["q", "qd", "true.q", "true.coef.q_3"] {
+                let (own, other) = (real(&subject, &own, name), real(&subject, &other, name));
+                assert!((own - other).abs() < 1e-9, "{name} at t = {t} s: {own}, {other}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_driven_plant_holds_the_contract() {
+    let subject = subject(VAN_DER_POL);
+    let prepare = |instance: &Instance| {
+        set(&subject, instance, &[("stage[2].time", 0.15), ("noise.q", 0.1)]);
+        assert_eq!(instance.set_integer(subject.reference("excitation.kind"), INPUT), OK);
+        assert_eq!(instance.initialize(0.0), OK, "{:?}", instance.messages());
+    };
+    let step = |instance: &Instance, k: u32| {
+        set(&subject, instance, &[("excitation.F", (0.3 * f64::from(k)).sin())]);
+        assert_eq!(instance.step(f64::from(k) * 1e-3, 1e-3), OK);
+    };
+    contract::check(&subject, &Drive { prepare: &prepare, step: &step, steps: 200 });
+}
+
+#[test]
+fn a_driven_plant_takes_steps_of_any_length_and_no_force_that_is_none() {
+    let subject = subject(DUFFING);
+    let (whole, split) = (driven(&subject, &[]), driven(&subject, &[]));
+    set(&subject, &whole, &[("excitation.F", 3.0)]);
+    set(&subject, &split, &[("excitation.F", 3.0)]);
+    assert_eq!(whole.step(0.0, 0.7).max(split.step(0.0, 0.123456).max(split.step(0.123456, 0.576544))), OK);
+    assert!((real(&subject, &whole, "q") - real(&subject, &split, "q")).abs() < 1e-9);
+    set(&subject, &split, &[("excitation.F", f64::NAN)]);
+    assert_eq!(whole.step(0.7, 0.1).max(split.step(0.7, 0.1)), OK);
+    assert!((real(&subject, &whole, "q") - real(&subject, &split, "q")).abs() < 1e-9);
+    let text = split.messages().last().unwrap().2.clone();
+    assert!(text.contains("excitation.F is no finite number at t = 0.7 s"), "{text}");
+}
+
+#[test]
+fn a_step_that_would_take_too_long_is_refused_and_changes_nothing() {
+    let subject = subject(DUFFING);
+    let own = subject.instance();
+    assert_eq!(own.initialize(0.0), OK);
+    for instance in [own, driven(&subject, &[])] {
+        assert_ne!(instance.step(0.0, 1e9), OK);
+        let text = instance.messages().last().unwrap().2.clone();
+        assert!(text.contains("too far for one step") && text.contains("5000 s or less"), "{text}");
+        assert_eq!(instance.step(0.0, 1.0), OK);
+    }
+}
+
 #[test]
 fn an_impossible_inner_parameter_is_named() {
     let subject = subject(DUFFING);

@@ -66,6 +66,8 @@ pub enum Causality {
     Input,
     /// Written by the slave.
     Output,
+    /// The time up to which the last step went, s.
+    Independent,
 }
 
 /// When an input or output may change; a parameter never does.

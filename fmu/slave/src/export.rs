@@ -10,8 +10,8 @@ macro_rules! export {
             fmi2SetDebugLogging(c: Component, on: Boolean, n: usize, names: *const Text) -> Status
                 = set_debug_logging::<$slave>(c, on, n, names);
             fmi2FreeInstance(c: Component) -> Nothing = free_instance::<$slave>(c);
-            fmi2SetupExperiment(c: Component, _td: Boolean, _t: Real, start: Real, _sd: Boolean, _s: Real) -> Status
-                = setup_experiment::<$slave>(c, start);
+            fmi2SetupExperiment(c: Component, _td: Boolean, _t: Real, start: Real, ends: Boolean, stop: Real) -> Status
+                = setup_experiment::<$slave>(c, start, (ends != 0).then_some(stop));
             fmi2EnterInitializationMode(c: Component) -> Status = enter_initialization_mode::<$slave>(c);
             fmi2ExitInitializationMode(c: Component) -> Status = exit_initialization_mode::<$slave>(c);
             fmi2Terminate(c: Component) -> Status = terminate::<$slave>(c);

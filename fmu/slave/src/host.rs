@@ -17,6 +17,20 @@ macro_rules! function_table {
             $(#[doc = concat!("`", stringify!($symbol), "`.")] pub $field: unsafe extern "C" fn($($argument),*) -> $result,)*
         }
 
+        impl Functions {
+            /// The functions of a dynamic library, which stays loaded.
+            ///
+            /// # Errors
+            /// The library or the function that is missing.
+            pub fn load(path: &std::path::Path) -> Result<Functions, libloading::Error> {
+                // SAFETY: the library is an FMU's, of which FMI says what it exports; it is never unloaded.
+                unsafe {
+                    let library = Box::leak(Box::new(libloading::Library::new(path)?));
+                    Ok(Functions { $($field: *library.get(concat!(stringify!($symbol), "\0").as_bytes())?,)* })
+                }
+            }
+        }
+
         /// The `Functions` that `export!` made in that module, which must be in scope.
         #[macro_export]
         macro_rules! linked_functions {
@@ -86,6 +100,11 @@ pub struct Saved(FmuState);
 impl Saved {
     /// No state.
     pub const NULL: Saved = Saved(null_mut());
+
+    /// What a host passes that confuses pointers: any address.
+    pub fn at(address: usize) -> Saved {
+        Saved(std::ptr::without_provenance_mut(address))
+    }
 }
 
 /// What to instantiate.
@@ -166,6 +185,11 @@ impl Instance {
     /// `fmi2SetupExperiment` alone.
     pub fn setup(&self, start: f64) -> Status {
         self.call(|f, c| unsafe { (f.setup_experiment)(c, 0, 0.0, start, 0, 0.0) })
+    }
+
+    /// `fmi2SetupExperiment` with a stop time.
+    pub fn setup_until(&self, start: f64, stop: f64) -> Status {
+        self.call(|f, c| unsafe { (f.setup_experiment)(c, 0, 0.0, start, 1, stop) })
     }
 
     /// `fmi2EnterInitializationMode`.
@@ -254,6 +278,11 @@ impl Instance {
     pub fn save(&self) -> Result<Saved, Status> {
         let mut state = null_mut();
         ok(self.call(|f, c| unsafe { (f.get_state)(c, &mut state) }), ()).map(|()| Saved(state))
+    }
+
+    /// `fmi2GetFMUstate` into a slot that holds something already.
+    pub fn save_into(&self, state: &mut Saved) -> Status {
+        self.call(|f, c| unsafe { (f.get_state)(c, &mut state.0) })
     }
 
     /// `fmi2SetFMUstate` with a state that [`Instance::save`] or [`Instance::unpack`] gave.

@@ -3,9 +3,11 @@
 //! Invariant: a refused call changes nothing.
 
 use crate::calls::{Call, Phase};
-use crate::description::{Causality, Interface};
-use crate::log::{Category, Log};
+use crate::description::{Causality, Interface, Variable};
+use crate::log::{Category, Log, seconds};
+use crate::seal::{self, SealError};
 use crate::slave::{Slave, SlaveError};
+use crate::states::States;
 use crate::values::{Value, ValueError, Values};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -47,13 +49,49 @@ pub enum CallError {
         /// As given, s.
         time: f64,
     },
-    /// A saved state of something else.
-    #[error("this saved state does not belong to this FMU (GUID {expected}): {found}")]
-    ForeignState {
+    /// A stop time that is none.
+    #[error("stop time {stop} s does not come after start time {start} s")]
+    StopTime {
+        /// As given, s.
+        start: f64,
+        /// As given, s.
+        stop: f64,
+    },
+    /// A step beyond the stop time.
+    #[error(
+        "a step from t = {} s over h = {} s ends after the stop time {stop} s that fmi2SetupExperiment gave: set a later one",
+        seconds(*time), seconds(*step)
+    )]
+    BeyondStop {
+        /// Communication point, s.
+        time: f64,
+        /// Step, s.
+        step: f64,
+        /// Stop time, s.
+        stop: f64,
+    },
+    /// What keeps an instance from being initialised.
+    #[error(
+        "{source}. Not initialised: set it anew and call fmi2ExitInitializationMode again; a simulator that ends here can only call \
+         fmi2Reset, after which all parameters are at their defaults"
+    )]
+    Initialization {
+        /// Why.
+        source: Box<CallError>,
+    },
+    /// A handle that is none.
+    #[error(
+        "this FMUstate is none that this instance holds: it was freed, is another instance's, or its address was passed in its place; to \
+         move a state, serialise it"
+    )]
+    NoSuchState,
+    /// Bytes that are no saved state of this FMU.
+    #[error("no state of this FMU (GUID {guid}): {source}")]
+    Sealed {
         /// GUID of this FMU.
-        expected: String,
+        guid: String,
         /// What was found.
-        found: String,
+        source: SealError,
     },
     /// The bytes are too short for the state.
     #[error("{given} bytes are too few for the state: ask fmi2SerializedFMUstateSize, it needs {needed}")]
@@ -76,6 +114,8 @@ pub enum CallError {
 
 fn mend(call: Call, phase: Phase) -> &'static str {
     match (call, phase) {
+        (Call::GetDirectionalDerivative, _) => ": this FMU has none, as its modelDescription.xml says",
+        (Call::CancelStep, _) => ": every step is finished when fmi2DoStep returns",
         (_, Phase::Failed) => ": call fmi2Reset or set a saved state",
         (Call::DoStep, Phase::Instantiated | Phase::Initialization) => ": initialise first",
         (Call::DoStep, Phase::Terminated) => ": call fmi2Reset first",
@@ -83,12 +123,16 @@ fn mend(call: Call, phase: Phase) -> &'static str {
     }
 }
 
+/// By which share of itself the end of a step may miss the stop time: hosts add steps up, and compare times so.
+const STOP_TOLERANCE: f64 = 1e-9;
+
 /// Everything that a step changes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Snapshot<S> {
     guid: String,
     phase: Phase,
     start_time: f64,
+    stop_time: Option<f64>,
     time: f64,
     /// Whether the outputs hold for the parameters as they are set.
     started: bool,
@@ -96,11 +140,29 @@ pub struct Snapshot<S> {
     slave: S,
 }
 
+impl<S: Slave> Snapshot<S> {
+    fn fresh(interface: &Interface, slave: &S) -> Snapshot<S> {
+        Snapshot {
+            guid: interface.guid.clone(),
+            phase: Phase::Instantiated,
+            start_time: 0.0,
+            stop_time: None,
+            time: 0.0,
+            started: false,
+            values: Values::start(&interface.description),
+            slave: slave.clone(),
+        }
+    }
+}
+
 /// One instance of a slave.
 pub struct Instance<S> {
     interface: Interface,
     fresh: S,
     state: Snapshot<S>,
+    states: States<Snapshot<S>>,
+    /// Value reference of the time.
+    independent: Option<usize>,
     /// Where the host's messages go.
     pub log: Log,
     /// Texts handed to the host; they live until the next call that hands out some.
@@ -110,16 +172,10 @@ pub struct Instance<S> {
 impl<S: Slave> Instance<S> {
     /// An instance of a slave as read from its resources.
     pub fn new(interface: Interface, slave: S, log: Log) -> Instance<S> {
-        let state = Snapshot {
-            guid: interface.guid.clone(),
-            phase: Phase::Instantiated,
-            start_time: 0.0,
-            time: 0.0,
-            started: false,
-            values: Values::start(&interface.description),
-            slave: slave.clone(),
-        };
-        Instance { interface, fresh: slave, state, log, texts: Vec::new() }
+        let state = Snapshot::fresh(&interface, &slave);
+        let is_time = |variable: &Variable| variable.causality == Causality::Independent;
+        let independent = interface.description.variables.iter().position(is_time);
+        Instance { interface, fresh: slave, state, states: States::new(), independent, log, texts: Vec::new() }
     }
 
     /// Refuses what the state machine forbids.
@@ -151,15 +207,26 @@ impl<S: Slave> Instance<S> {
     /// `fmi2SetupExperiment`.
     ///
     /// # Errors
-    /// [`CallError::StartTime`].
-    pub fn setup(&mut self, start_time: f64) -> Result<(), CallError> {
+    /// [`CallError::StartTime`], [`CallError::StopTime`].
+    pub fn setup(&mut self, start_time: f64, stop_time: Option<f64>) -> Result<(), CallError> {
         if !start_time.is_finite() {
             return Err(CallError::StartTime { time: start_time });
         }
+        if let Some(stop) = stop_time.filter(|stop| stop.is_nan() || *stop < start_time) {
+            return Err(CallError::StopTime { start: start_time, stop });
+        }
         self.state.start_time = start_time;
-        self.state.time = start_time;
+        self.state.stop_time = stop_time;
+        self.set_time(start_time);
         self.state.started = false;
         Ok(())
+    }
+
+    fn set_time(&mut self, time: f64) {
+        self.state.time = time;
+        if let Some(reference) = self.independent {
+            self.state.values.put(reference, Value::Real(time));
+        }
     }
 
     /// `fmi2EnterInitializationMode`.
@@ -172,7 +239,7 @@ impl<S: Slave> Instance<S> {
     /// # Errors
     /// A parameter that is refused; the instance stays in initialization, where it can be mended.
     pub fn exit_initialization(&mut self) -> Result<(), CallError> {
-        self.start()?;
+        self.start().map_err(|source| CallError::Initialization { source: source.into() })?;
         self.state.phase = Phase::Step;
         Ok(())
     }
@@ -196,28 +263,29 @@ impl<S: Slave> Instance<S> {
 
     /// `fmi2Reset`: as after `fmi2Instantiate`.
     pub fn reset(&mut self) {
-        self.state = Snapshot {
-            guid: self.interface.guid.clone(),
-            phase: Phase::Instantiated,
-            start_time: 0.0,
-            time: 0.0,
-            started: false,
-            values: Values::start(&self.interface.description),
-            slave: self.fresh.clone(),
-        };
+        let changed = self.state.values.changed_parameters(&self.interface.description);
+        self.state = Snapshot::fresh(&self.interface, &self.fresh);
         self.log.forget();
+        if !changed.is_empty() {
+            let text = format!("reset: {} at the default again, set anew what the next run needs", changed.join(", "));
+            self.log.say(Category::Warning, &text);
+        }
     }
 
     /// `fmi2DoStep`.
     ///
     /// # Errors
-    /// [`CallError::Step`], or what leaves the slave unable to go on.
+    /// [`CallError::Step`], [`CallError::BeyondStop`], or what leaves the slave unable to go on.
     pub fn step(&mut self, time: f64, step: f64) -> Result<(), CallError> {
         if !(time.is_finite() && step.is_finite() && step >= 0.0) {
             return Err(CallError::Step { time, step });
         }
+        let end = time + step;
+        if let Some(stop) = self.state.stop_time.filter(|stop| end > stop + STOP_TOLERANCE * end.abs()) {
+            return Err(CallError::BeyondStop { time, step, stop });
+        }
         self.state.slave.step(time, step, &mut self.state.values, &mut self.log)?;
-        self.state.time = time + step;
+        self.set_time(end);
         Ok(())
     }
 
@@ -256,7 +324,7 @@ impl<S: Slave> Instance<S> {
         let variable = &self.interface.description.variables[reference];
         let name = || variable.name.clone();
         match (variable.causality, self.state.phase) {
-            (Causality::Output, _) => Err(ValueError::Output { name: name() }),
+            (Causality::Output | Causality::Independent, _) => Err(ValueError::Output { name: name() }),
             (Causality::Parameter, Phase::Step) if present != value => Err(ValueError::Fixed { name: name() }),
             _ => Ok(()),
         }
@@ -273,49 +341,76 @@ impl<S: Slave> Instance<S> {
         ValueError::WrongType { name, actual: value.type_name(), asked }
     }
 
-    /// `fmi2GetFMUstate`.
-    pub fn save(&self) -> Snapshot<S> {
-        self.state.clone()
+    /// `fmi2GetFMUstate`: a copy of the state, under the handle given where the host holds one, and that handle.
+    pub fn save(&mut self, handle: usize) -> usize {
+        self.states.keep(handle, self.state.clone())
     }
 
     /// `fmi2SetFMUstate`.
     ///
     /// # Errors
-    /// [`CallError::ForeignState`].
-    pub fn restore(&mut self, saved: &Snapshot<S>) -> Result<(), CallError> {
-        self.check_own(saved)?;
-        self.state = saved.clone();
+    /// [`CallError::NoSuchState`].
+    pub fn restore(&mut self, handle: usize) -> Result<(), CallError> {
+        self.state = self.states.get(handle).ok_or(CallError::NoSuchState)?.clone();
         Ok(())
     }
 
-    fn check_own(&self, saved: &Snapshot<S>) -> Result<(), CallError> {
-        let own = saved.guid == self.interface.guid && saved.values.same_shape(&self.state.values);
-        let foreign = || CallError::ForeignState {
-            expected: self.interface.guid.clone(),
-            found: format!("its GUID is {}", saved.guid),
-        };
-        if own { Ok(()) } else { Err(foreign()) }
-    }
-
-    /// `fmi2SerializeFMUstate`: the state as bytes, every number bit by bit.
+    /// `fmi2FreeFMUstate`.
     ///
     /// # Errors
-    /// [`CallError::Serialise`].
-    pub fn to_bytes(saved: &Snapshot<S>) -> Result<Vec<u8>, CallError> {
-        postcard::to_stdvec(saved).map_err(CallError::Serialise)
+    /// [`CallError::NoSuchState`].
+    pub fn free(&mut self, handle: usize) -> Result<(), CallError> {
+        if self.states.free(handle) { Ok(()) } else { Err(CallError::NoSuchState) }
     }
 
-    /// `fmi2DeSerializeFMUstate`.
+    /// `fmi2SerializedFMUstateSize`.
     ///
     /// # Errors
-    /// [`CallError::ForeignState`] for bytes that are no state of this FMU.
-    pub fn read_bytes(&self, bytes: &[u8]) -> Result<Snapshot<S>, CallError> {
-        let unreadable = |error: postcard::Error| CallError::ForeignState {
-            expected: self.interface.guid.clone(),
-            found: format!("its bytes cannot be read ({error})"),
-        };
-        let saved = postcard::from_bytes(bytes).map_err(unreadable)?;
-        self.check_own(&saved)?;
-        Ok(saved)
+    /// [`CallError::NoSuchState`], [`CallError::Serialise`].
+    pub fn packed_size(&mut self, handle: usize) -> Result<usize, CallError> {
+        let packed = self.states.packed(handle, to_bytes).ok_or(CallError::NoSuchState)??;
+        Ok(packed.as_ref().map_or(0, Vec::len))
     }
+
+    /// `fmi2SerializeFMUstate`: the state as bytes, every number bit by bit, into the host's room.
+    ///
+    /// # Errors
+    /// [`CallError::NoSuchState`], [`CallError::Serialise`], [`CallError::TooFewBytes`].
+    pub fn pack(&mut self, handle: usize, room: &mut [u8]) -> Result<(), CallError> {
+        let packed = self.states.packed(handle, to_bytes).ok_or(CallError::NoSuchState)??;
+        let bytes = packed.as_deref().unwrap_or_default();
+        let too_few = CallError::TooFewBytes { given: room.len(), needed: bytes.len() };
+        room.get_mut(..bytes.len()).ok_or(too_few)?.copy_from_slice(bytes);
+        *packed = None;
+        Ok(())
+    }
+
+    /// `fmi2DeSerializeFMUstate`: as [`Instance::save`], for the state that the bytes hold.
+    ///
+    /// # Errors
+    /// [`CallError::Sealed`] for bytes that are no state of this FMU.
+    pub fn unpack(&mut self, bytes: &[u8], handle: usize) -> Result<usize, CallError> {
+        let state =
+            self.read(bytes).map_err(|source| CallError::Sealed { guid: self.interface.guid.clone(), source })?;
+        Ok(self.states.keep(handle, state))
+    }
+
+    fn read(&self, bytes: &[u8]) -> Result<Snapshot<S>, SealError> {
+        let content = |why: String| SealError::Content { why };
+        let state = seal::open(bytes, &self.interface.guid)?;
+        let state = lz4_flex::decompress_size_prepended(state).map_err(|error| content(error.to_string()))?;
+        let saved: Snapshot<S> = postcard::from_bytes(&state).map_err(|error| content(error.to_string()))?;
+        match saved.values.same_shape(&self.state.values) {
+            true => Ok(saved),
+            false => Err(content("its variables are others".into())),
+        }
+    }
+}
+
+fn to_bytes<S: Slave>(saved: &Snapshot<S>) -> Result<Vec<u8>, CallError> {
+    let state = postcard::to_stdvec(saved).map_err(CallError::Serialise)?;
+    let mut bytes = seal::head(&saved.guid);
+    bytes.extend(lz4_flex::compress_prepend_size(&state));
+    seal::seal(&mut bytes);
+    Ok(bytes)
 }

@@ -2,13 +2,13 @@
 //!
 //! # Safety
 //! All of them trust the host as far as FMI 2.0 asks for: a component is one that `fmi2Instantiate` returned and that
-//! was not freed, a state one that `fmi2GetFMUstate` or `fmi2DeSerializeFMUstate` returned, arrays are as long as said,
-//! texts end with a zero byte. Null pointers are refused. No panic leaves them.
+//! was not freed, arrays are as long as said, texts end with a zero byte. Null pointers are refused, and so are states that
+//! the instance does not hold: a state's handle is never followed. No panic leaves them.
 
 use crate::calls::Call;
 use crate::creation::{Request, read};
 use crate::ctypes::*;
-use crate::instance::{CallError, Instance, Snapshot};
+use crate::instance::{CallError, Instance};
 use crate::log::{Category, Log, c_text};
 use crate::slave::Slave;
 use crate::values::Value;
@@ -139,8 +139,8 @@ pub unsafe fn free_instance<S: Slave>(component: Component) {
     drop(freed);
 }
 
-pub unsafe fn setup_experiment<S: Slave>(c: Component, start_time: Real) -> Status {
-    unsafe { run::<S>(c, Call::SetupExperiment, |instance| instance.setup(start_time)) }
+pub unsafe fn setup_experiment<S: Slave>(c: Component, start_time: Real, stop_time: Option<Real>) -> Status {
+    unsafe { run::<S>(c, Call::SetupExperiment, |instance| instance.setup(start_time, stop_time)) }
 }
 
 pub unsafe fn enter_initialization_mode<S: Slave>(c: Component) -> Status {
@@ -273,45 +273,45 @@ pub unsafe fn set_string<S: Slave>(c: Component, vr: *const ValueReference, n: u
     unsafe { set::<S, _>(c, vr, n, values, |value| text(value, "value").map(Value::Text)) }
 }
 
-unsafe fn saved<'a, S: Slave>(state: FmuState) -> Result<&'a Snapshot<S>, CallError> {
-    // SAFETY: see the module.
-    unsafe { state.cast::<Snapshot<S>>().as_ref() }.ok_or(CallError::Null { what: "FMUstate" })
-}
-
-/// Hands a state to the host; one that it already holds is overwritten, as the standard asks.
-unsafe fn hand_out<S: Slave>(snapshot: Snapshot<S>, slot: *mut FmuState) -> Result<(), CallError> {
-    // SAFETY: see the module.
-    let slot = unsafe { target(slot, "FMUstate") }?;
-    match unsafe { slot.cast::<Snapshot<S>>().as_mut() } {
-        Some(held) => *held = snapshot,
-        None => *slot = Box::into_raw(Box::new(snapshot)).cast(),
-    }
-    Ok(())
-}
-
-pub unsafe fn get_fmu_state<S: Slave>(c: Component, state: *mut FmuState) -> Status {
-    unsafe { run::<S>(c, Call::State, |instance| hand_out(instance.save(), state)) }
-}
-
-pub unsafe fn set_fmu_state<S: Slave>(c: Component, state: FmuState) -> Status {
-    unsafe { run::<S>(c, Call::State, |instance| instance.restore(saved(state)?)) }
-}
-
-pub unsafe fn free_fmu_state<S: Slave>(c: Component, state: *mut FmuState) -> Status {
+/// Runs a call with the handle in the host's slot, and puts the handle that it returns there.
+unsafe fn with_slot<S: Slave>(
+    c: Component,
+    slot: *mut FmuState,
+    body: impl FnOnce(&mut Instance<S>, usize) -> Result<usize, CallError>,
+) -> Status {
     unsafe {
-        run::<S>(c, Call::State, |_| {
-            let Some(slot) = state.as_mut().filter(|slot| !slot.is_null()) else { return Ok(()) };
-            drop(Box::from_raw(slot.cast::<Snapshot<S>>()));
-            *slot = std::ptr::null_mut();
+        run::<S>(c, Call::State, |instance| {
+            let slot = target(slot, "FMUstate")?;
+            *slot = std::ptr::without_provenance_mut(body(instance, slot.addr())?);
             Ok(())
         })
     }
 }
 
+pub unsafe fn get_fmu_state<S: Slave>(c: Component, state: *mut FmuState) -> Status {
+    unsafe { with_slot::<S>(c, state, |instance, handle| Ok(instance.save(handle))) }
+}
+
+pub unsafe fn set_fmu_state<S: Slave>(c: Component, state: FmuState) -> Status {
+    unsafe { run::<S>(c, Call::State, |instance| instance.restore(state.addr())) }
+}
+
+/// A null state is ignored, as the standard asks.
+pub unsafe fn free_fmu_state<S: Slave>(c: Component, state: *mut FmuState) -> Status {
+    if state.is_null() {
+        return unsafe { run::<S>(c, Call::State, |_| Ok(())) };
+    }
+    let free = |instance: &mut Instance<S>, handle| match handle {
+        0 => Ok(0),
+        handle => instance.free(handle).map(|()| 0),
+    };
+    unsafe { with_slot::<S>(c, state, free) }
+}
+
 pub unsafe fn serialized_size<S: Slave>(c: Component, state: FmuState, size: *mut usize) -> Status {
     unsafe {
-        run::<S>(c, Call::State, |_| {
-            *target(size, "size")? = Instance::to_bytes(saved::<S>(state)?)?.len();
+        run::<S>(c, Call::State, |instance| {
+            *target(size, "size")? = instance.packed_size(state.addr())?;
             Ok(())
         })
     }
@@ -319,21 +319,16 @@ pub unsafe fn serialized_size<S: Slave>(c: Component, state: FmuState, size: *mu
 
 pub unsafe fn serialize<S: Slave>(c: Component, state: FmuState, out: *mut Byte, size: usize) -> Status {
     unsafe {
-        run::<S>(c, Call::State, |_| {
-            let written = Instance::to_bytes(saved::<S>(state)?)?;
-            let room = slice_mut(out.cast::<u8>(), size, "serializedState")?;
-            let too_few = CallError::TooFewBytes { given: size, needed: written.len() };
-            room.get_mut(..written.len()).ok_or(too_few)?.copy_from_slice(&written);
-            Ok(())
+        run::<S>(c, Call::State, |instance| {
+            instance.pack(state.addr(), slice_mut(out.cast::<u8>(), size, "serializedState")?)
         })
     }
 }
 
 pub unsafe fn deserialize<S: Slave>(c: Component, bytes: *const Byte, size: usize, state: *mut FmuState) -> Status {
     unsafe {
-        run::<S>(c, Call::State, |instance| {
-            let bytes = slice(bytes.cast::<u8>(), size, "serializedState")?;
-            hand_out(instance.read_bytes(bytes)?, state)
+        with_slot::<S>(c, state, |instance, handle| {
+            instance.unpack(slice(bytes.cast::<u8>(), size, "serializedState")?, handle)
         })
     }
 }

@@ -22,13 +22,15 @@ mod instance;
 pub mod interface;
 mod location;
 mod log;
+mod seal;
 mod slave;
+mod states;
 mod values;
 
 pub use calls::{Call, Phase};
 pub use description::{
     Causality, Description, Enumeration, INTERFACE_FILE, Interface, Kind, Unit, Variability, Variable,
 };
-pub use log::{Category, Log};
+pub use log::{Category, Log, seconds};
 pub use slave::{Slave, SlaveError};
 pub use values::{Value, ValueError, Values};

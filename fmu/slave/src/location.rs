@@ -1,7 +1,7 @@
 //! From `fmuResourceLocation` to a directory, whatever form the host writes it in.
 //!
 //! Seen in the field: `file:///p` percent-encoded, `file:///p/`, `file:////p` with raw spaces and UTF-8, `file:/p`,
-//! `file://localhost/p`, a bare path.
+//! `file://localhost/p`, `FILE:///p`, a bare path.
 
 use std::path::PathBuf;
 
@@ -12,11 +12,17 @@ pub fn candidates(location: &[u8]) -> [PathBuf; 2] {
 }
 
 fn strip_scheme(location: &[u8]) -> &[u8] {
-    let Some(rest) = location.strip_prefix(b"file:") else { return location };
-    let rest = rest.strip_prefix(b"//localhost").unwrap_or(rest);
+    let Some(rest) = strip_word(location, b"file:") else { return location };
+    let rest = strip_word(rest, b"//localhost").unwrap_or(rest);
     let slashes = rest.iter().take_while(|byte| **byte == b'/').count();
     let drive = cfg!(windows) && rest.get(slashes + 1) == Some(&b':');
     &rest[if drive { slashes } else { slashes.saturating_sub(1) }..]
+}
+
+/// What follows the word, in small or capital letters.
+fn strip_word<'a>(text: &'a [u8], word: &[u8]) -> Option<&'a [u8]> {
+    let (start, rest) = text.split_at_checked(word.len())?;
+    start.eq_ignore_ascii_case(word).then_some(rest)
 }
 
 fn percent_decode(text: &[u8]) -> Vec<u8> {
@@ -71,6 +77,9 @@ mod tests {
             ("file:////opt/a b/größe", "/opt/a b/größe"),
             ("file:/opt/resources", "/opt/resources"),
             ("file://localhost/opt/r", "/opt/r"),
+            ("FILE:///opt/R", "/opt/R"),
+            ("File://LOCALHOST/opt/r", "/opt/r"),
+            ("fil", "fil"),
             ("/opt/gr%C3%B6%C3%9Fe", "/opt/größe"),
             ("file:///opt/100%", "/opt/100%"),
             ("file:///opt/%zz", "/opt/%zz"),

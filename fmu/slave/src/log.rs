@@ -36,7 +36,11 @@ impl Category {
     }
 }
 
-/// The way to the host's log, with what it wants to hear. A recurring warning is said the 1st, 10th, 100th … time.
+/// Beginnings of the same that are all said.
+const ONSETS: u64 = 10;
+
+/// The way to the host's log, with what it wants to hear. A recurring warning is said the 1st, 10th, 100th … time, one that
+/// tells of something that began the first ten times too.
 pub struct Log {
     callbacks: CallbackFunctions,
     instance: CString,
@@ -50,16 +54,17 @@ impl Log {
         Log { callbacks, instance, enabled: [logging_on, true, true], recurring: Vec::new() }
     }
 
-    /// Turns categories on or off; without a name, all of them (errors and warnings stay on).
+    /// `fmi2SetDebugLogging`: on with names turns on these alone, off with names turns these off; without a name, or with
+    /// `logAll`, all are meant, but warnings and errors stay on.
     pub fn enable(&mut self, on: bool, categories: &[String]) {
-        let all = categories.is_empty() || categories.iter().any(|name| name == "logAll");
-        if all {
+        if categories.is_empty() || categories.iter().any(|name| name == "logAll") {
             self.enabled = [on, true, true];
+            return;
         }
         for (category, name, _) in Category::ALL {
-            if categories.iter().any(|asked| asked == name) {
-                self.enabled[category as usize] = on;
-            }
+            let named = categories.iter().any(|asked| asked == name);
+            let enabled = &mut self.enabled[category as usize];
+            *enabled = if on { named } else { *enabled && !named };
         }
     }
 
@@ -75,6 +80,15 @@ impl Log {
         let count = self.count(key);
         if is_power_of_ten(count) {
             let times = if count == 1 { String::new() } else { format!(" ({count} times so far)") };
+            self.say(Category::Warning, &format!("{}{times}", message()));
+        }
+    }
+
+    /// Warns of something that began, and may begin again and again; `key` tells it from other such warnings.
+    pub fn warn_of_onset(&mut self, key: &'static str, message: impl FnOnce() -> String) {
+        let count = self.count(key);
+        if count <= ONSETS || is_power_of_ten(count) {
+            let times = if count <= ONSETS { String::new() } else { format!(" (for the {count}th time)") };
             self.say(Category::Warning, &format!("{}{times}", message()));
         }
     }
@@ -115,6 +129,11 @@ impl Log {
     }
 }
 
+/// A time as a reader wants it, s: to the nanosecond, without what rounding left behind.
+pub fn seconds(t: f64) -> f64 {
+    format!("{t:.9}").parse().unwrap_or(t)
+}
+
 fn is_power_of_ten(count: u64) -> bool {
     let mut power = 1;
     while power < count {
@@ -126,4 +145,17 @@ fn is_power_of_ten(count: u64) -> bool {
 /// The text as C reads it; an inner zero byte would end it early and becomes a space.
 pub fn c_text(text: &str) -> CString {
     CString::new(text.replace('\0', " ")).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::seconds;
+
+    #[test]
+    fn times_are_rounded_to_the_nanosecond() {
+        for (t, shown) in [(0.1 + 0.2, "0.3"), (1e-3 * 1234567.0, "1234.567"), (-2.0, "-2"), (1e12, "1000000000000")] {
+            assert_eq!(seconds(t).to_string(), shown);
+        }
+        assert!(seconds(f64::NAN).is_nan());
+    }
 }

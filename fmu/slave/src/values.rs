@@ -56,8 +56,8 @@ pub enum ValueError {
         /// The type of the call.
         asked: &'static str,
     },
-    /// An output cannot be set.
-    #[error("{name} is an output: it cannot be set")]
+    /// An output or the time cannot be set.
+    #[error("{name} is no input and no parameter: it cannot be set")]
     Output {
         /// The variable.
         name: String,
@@ -134,6 +134,14 @@ impl Values {
             Some(Value::Text(value)) => value,
             _ => "",
         }
+    }
+
+    /// Names of the parameters that are no longer at their start values.
+    pub fn changed_parameters<'a>(&self, description: &'a Description) -> Vec<&'a str> {
+        let start = Values::start(description);
+        let all = description.variables.iter().zip(self.0.iter().zip(&start.0));
+        let changed = all.filter(|(variable, (now, start))| variable.causality == Causality::Parameter && now != start);
+        changed.map(|(variable, _)| variable.name.as_str()).collect()
     }
 
     /// Whether the other values are those of the same variables, by type.

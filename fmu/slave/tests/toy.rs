@@ -69,6 +69,10 @@ fn variable(name: &str, causality: Causality, kind: Kind) -> Variable {
 }
 
 fn resources() -> tempfile::TempDir {
+    resources_with(GUID)
+}
+
+fn resources_with(guid: &str) -> tempfile::TempDir {
     let real = |start| Kind::Real { start, min: None, max: Some(100.0), unit: None };
     let variables = vec![
         variable("u", Causality::Input, real(0.0)),
@@ -89,15 +93,19 @@ fn resources() -> tempfile::TempDir {
         variables,
     };
     let directory = tempfile::tempdir().unwrap();
-    let interface = Interface { guid: GUID.into(), description };
+    let interface = Interface { guid: guid.into(), description };
     std::fs::write(directory.path().join(INTERFACE_FILE), serde_json::to_vec(&interface).unwrap()).unwrap();
     directory
 }
 
 fn toy() -> Instance {
-    let resources = resources();
+    toy_with_guid(GUID)
+}
+
+fn toy_with_guid(guid: &str) -> Instance {
+    let resources = resources_with(guid);
     let location = format!("file://{}", resources.path().display());
-    let request = Request { co_simulation: true, guid: GUID, location: Some(&location), logging: true };
+    let request = Request { co_simulation: true, guid, location: Some(&location), logging: true };
     Instance::new(toy_functions(), &request).unwrap()
 }
 
@@ -211,7 +219,9 @@ fn a_refused_parameter_can_be_mended() {
     let instance = toy();
     assert_eq!(instance.enter().max(instance.set_reals(&[GAIN], &[7.0])), OK);
     assert_eq!(instance.exit(), ERROR);
-    assert_eq!(last_message(&instance), "gain = 7 brings bad luck: take 8, 100 % safer");
+    let text = last_message(&instance);
+    assert!(text.starts_with("gain = 7 brings bad luck: take 8, 100 % safer. Not initialised"), "{text}");
+    assert!(text.contains("fmi2Reset"), "{text}");
     assert_eq!(instance.set_reals(&[GAIN], &[101.0]).max(instance.exit()), ERROR);
     assert!(last_message(&instance).contains("100 or less"), "{:?}", instance.messages());
     assert_eq!(instance.set_reals(&[GAIN], &[f64::NAN]).max(instance.exit()), ERROR);
@@ -251,29 +261,117 @@ fn recurring_warnings_do_not_flood() {
     assert!(warnings[3].2.contains("1000 times"));
 }
 
-#[test]
-fn muted_categories_stay_silent() {
+fn said_after(on: i32, category: &std::ffi::CStr) -> [usize; 2] {
     let instance = running();
-    let error = c"logStatusError".as_ptr();
-    assert_eq!(instance.call(|f, c| unsafe { (f.set_debug_logging)(c, 0, 1, &error) }), OK);
+    let category = category.as_ptr();
+    assert_eq!(instance.call(|f, c| unsafe { (f.set_debug_logging)(c, on, 1, &category) }), OK);
     assert_eq!(instance.reals(&[99]), Err(ERROR));
-    assert!(instance.messages().is_empty());
+    assert_eq!(instance.set_reals(&[U], &[f64::NAN]).max(instance.step(0.0, 1.0)), OK);
+    let messages = instance.messages();
+    ["logStatusError", "logStatusWarning"].map(|name| messages.iter().filter(|(_, said, _)| said == name).count())
 }
 
 #[test]
-fn a_state_of_something_else_is_refused() {
+fn categories_filter() {
+    assert_eq!(said_after(0, c"logStatusError"), [0, 1]);
+    assert_eq!(said_after(1, c"logStatusError"), [1, 0]);
+    assert_eq!(said_after(1, c"logEvents"), [0, 0]);
+    assert_eq!(said_after(0, c"logAll"), [1, 1]);
+    assert_eq!(said_after(1, c"logAll"), [1, 1]);
+}
+
+#[test]
+fn a_step_beyond_the_stop_time_is_refused() {
+    let instance = toy();
+    assert_eq!(instance.setup_until(1.0, 0.5), ERROR);
+    assert!(last_message(&instance).contains("stop time 0.5 s"), "{:?}", instance.messages());
+    assert_eq!(instance.setup_until(0.0, 1.0).max(instance.enter()).max(instance.exit()), OK);
+    let mut t = 0.0;
+    for _ in 0..10 {
+        assert_eq!(instance.step(t, 0.1), OK);
+        t += 0.1;
+    }
+    assert_eq!(instance.step(t, 0.0), OK);
+    assert_eq!(instance.step(t, 0.1), ERROR);
+    let text = last_message(&instance);
+    assert!(text.contains("t = 1 s over h = 0.1 s") && text.contains("stop time 1 s"), "{text}");
+}
+
+#[test]
+fn reset_says_which_parameters_are_at_their_defaults_again() {
+    let instance = toy();
+    assert_eq!(instance.reset(), OK);
+    assert!(instance.messages().is_empty());
+    assert_eq!(instance.set_reals(&[GAIN], &[3.0]).max(instance.set_text(NOTE, "x")).max(instance.reset()), OK);
+    let text = last_message(&instance);
+    assert!(text.contains("gain, note") && !text.contains("count"), "{text}");
+}
+
+#[test]
+fn changed_and_truncated_bytes_are_refused() {
     let instance = running();
     let mut state = instance.save().unwrap();
-    let mut bytes = instance.pack(state).unwrap();
+    let bytes = instance.pack(state).unwrap();
+    for bit in 0..8 * bytes.len() {
+        let mut changed = bytes.clone();
+        changed[bit / 8] ^= 1 << (bit % 8);
+        assert_eq!(instance.unpack(&changed), Err(ERROR), "bit {bit}");
+    }
+    for length in 0..bytes.len() {
+        assert_eq!(instance.unpack(&bytes[..length]), Err(ERROR), "{length} bytes");
+    }
+    assert!(last_message(&instance).contains("checksum"), "{:?}", instance.messages());
     assert_eq!(instance.pack_into(state, 3), ERROR);
-    bytes[1] ^= 1;
-    assert_eq!(instance.unpack(&bytes), Err(ERROR));
-    assert!(last_message(&instance).contains("GUID"), "{:?}", instance.messages());
-    assert_eq!(instance.unpack(b"nonsense"), Err(ERROR));
-    assert_eq!(instance.unpack(&[]), Err(ERROR));
-    assert_eq!(instance.restore(Saved::NULL), ERROR);
+    assert!(last_message(&instance).contains("fmi2SerializedFMUstateSize"), "{:?}", instance.messages());
+    assert_eq!(instance.free(&mut state), OK);
+    assert_eq!(instance.step(0.0, 1.0), OK);
+}
+
+#[test]
+fn a_state_of_another_fmu_is_refused() {
+    let instance = running();
+    let other = toy_with_guid("another-guid");
+    assert_eq!(other.initialize(0.0), OK);
+    let mut state = other.save().unwrap();
+    assert_eq!(instance.unpack(&other.pack(state).unwrap()), Err(ERROR));
+    assert!(last_message(&instance).contains("another-guid"), "{:?}", instance.messages());
+    assert_eq!(other.free(&mut state), OK);
+}
+
+#[test]
+fn a_freed_or_foreign_handle_is_refused() {
+    let (instance, other) = (running(), running());
+    let (mut state, mut foreign) = (instance.save().unwrap(), other.save().unwrap());
+    let kept = state;
     assert_eq!(instance.free(&mut state), OK);
     assert_eq!(state, Saved::NULL);
+    assert_eq!(instance.free(&mut state), OK);
+    let on_the_stack = Saved::at((&raw const state).addr());
+    for handle in [kept, foreign, on_the_stack, Saved::NULL, Saved::at(8), Saved::at(usize::MAX)] {
+        assert_eq!(instance.restore(handle), ERROR);
+        assert_eq!(instance.pack(handle), Err(ERROR));
+        assert_eq!(instance.pack_into(handle, 1000), ERROR);
+    }
+    assert!(last_message(&instance).contains("none that this instance holds"), "{:?}", instance.messages());
+    for mut handle in [kept, foreign, on_the_stack] {
+        assert_eq!(instance.free(&mut handle), ERROR);
+    }
+    let mut rubbish = Saved::at(0xdead_beef);
+    assert_eq!(instance.save_into(&mut rubbish).max(instance.restore(rubbish)).max(instance.free(&mut rubbish)), OK);
+    assert_eq!(other.restore(foreign).max(other.free(&mut foreign)), OK);
+}
+
+#[test]
+fn a_held_state_is_overwritten() {
+    let instance = running();
+    let mut state = instance.save().unwrap();
+    let (held, bytes) = (state, instance.pack(state).unwrap());
+    assert_eq!(instance.set_reals(&[U], &[3.0]).max(instance.step(0.0, 1.0)), OK);
+    assert_eq!(instance.save_into(&mut state), OK);
+    assert_eq!(state, held);
+    assert_ne!(instance.pack(state).unwrap(), bytes);
+    assert_eq!(instance.step(1.0, 1.0).max(instance.restore(state)), OK);
+    assert_eq!(instance.reals(&[Y]), Ok(vec![6.0]));
     assert_eq!(instance.free(&mut state), OK);
 }
 

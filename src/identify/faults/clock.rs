@@ -31,8 +31,9 @@ pub struct Clock {
     /// The usual step, s, and how many it is known from.
     pace: f64,
     known: u32,
-    /// The last stamp that was not believed, and how many in a row went on from it.
+    /// The last stamp that was not believed, the first of those that it goes on from, and how many there are.
     stray: Option<f64>,
+    first: f64,
     steady: u32,
 }
 
@@ -66,13 +67,14 @@ impl Clock {
         if self.known < KNOWN || self.stray == Some(stamp) {
             return None;
         }
-        self.steady = if agrees { self.steady + 1 } else { 0 };
+        (self.first, self.steady) = if agrees { (self.first, self.steady + 1) } else { (stamp, 0) };
         self.stray = Some(stamp);
         if self.steady < STEADY {
             return None;
         }
-        self.shift = last + self.pace - stamp;
-        Some(last + self.pace)
+        // the clock was set back between the last sample of the record and the first that came before it
+        self.shift = last + self.pace - self.first;
+        Some(stamp + self.shift)
     }
 
     /// A sample of that time is used.
@@ -86,13 +88,13 @@ impl Clock {
                 (self.pace, self.known) = (step, 0);
             }
         }
-        (self.last, self.stray, self.steady) = (Some(t), None, 0);
+        (self.last, self.stray, self.first, self.steady) = (Some(t), None, 0.0, 0);
     }
 
     /// Whether the record has had no sample for longer than is usual, at a stamp that was skipped.
     pub fn is_stale(&self, stamp: f64) -> bool {
         let step = self.last.map_or(0.0, |last| stamp + self.shift - last);
-        self.known >= KNOWN && !(step.abs() <= STALE * self.pace) && stamp.is_finite()
+        self.known >= KNOWN && (step.is_nan() || step.abs() > STALE * self.pace) && stamp.is_finite()
     }
 }
 

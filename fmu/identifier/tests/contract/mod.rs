@@ -1,41 +1,14 @@
 //! What every FMU of ours must hold, whatever it computes: run on the identifier and on the plants.
 
-use switchid_fmu_package::Fmu;
-use switchid_fmu_slave::host::{Functions, Instance, Request};
-use switchid_fmu_slave::{Causality, Interface, Kind};
+mod storm;
+mod subject;
 
-/// `fmi2OK`.
-pub const OK: u32 = 0;
+pub use subject::{OK, Subject};
 
-/// An FMU's functions with its resources unpacked.
-pub struct Subject {
-    functions: Functions,
-    resources: tempfile::TempDir,
-    interface: Interface,
-}
+use switchid_fmu_slave::host::{Instance, Request};
+use switchid_fmu_slave::{Causality, Kind};
 
 impl Subject {
-    /// The FMU with these functions.
-    pub fn new(functions: Functions, fmu: &Fmu) -> Subject {
-        let resources = tempfile::Builder::new().prefix("größe 100 %").tempdir().unwrap();
-        for (path, content) in fmu.files() {
-            if let Some(name) = path.strip_prefix("resources/") {
-                std::fs::write(resources.path().join(name), content).unwrap();
-            }
-        }
-        let interface = std::fs::read(resources.path().join("interface.json")).unwrap();
-        let interface = serde_json::from_slice(&interface).unwrap();
-        Subject { functions, resources, interface }
-    }
-
-    /// A fresh instance.
-    pub fn instance(&self) -> Instance {
-        let location = format!("file:///{}", self.resources.path().display());
-        let request =
-            Request { co_simulation: true, guid: &self.interface.guid, location: Some(&location), logging: true };
-        Instance::new(self.functions, &request).unwrap()
-    }
-
     /// Why there is no instance once that resource is gone.
     pub fn refusal_without(&self, resource: &str) -> String {
         let path = self.resources.path().join(resource);
@@ -47,11 +20,6 @@ impl Subject {
         let messages = Instance::new(self.functions, &request).err().unwrap();
         std::fs::write(&path, content).unwrap();
         messages[0].2.clone()
-    }
-
-    /// Value reference of a variable.
-    pub fn reference(&self, name: &str) -> u32 {
-        self.interface.description.position(name).unwrap_or_else(|| panic!("no variable {name}")) as u32
     }
 
     /// Every output, bit by bit.
@@ -85,6 +53,7 @@ pub fn check(subject: &Subject, drive: &Drive) {
     reset_equals_fresh(subject, drive, &reference);
     restored_equals_going_on(subject, drive, &reference);
     interleaved_equals_alone(subject, drive, &reference);
+    storm::storm(subject, drive);
 }
 
 fn run(subject: &Subject, drive: &Drive, instance: &Instance) -> Vec<Vec<u64>> {
