@@ -15,6 +15,7 @@ mod identifier;
 mod library;
 mod outputs;
 mod packed;
+mod packed_readings;
 mod parameters;
 mod problem;
 mod published_method;

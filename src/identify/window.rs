@@ -1,6 +1,6 @@
 //! The last samples, in a ring whose memory is fixed at construction.
 
-use super::packed;
+use super::packed_readings;
 use super::reading::Reading;
 use super::sample::Sample;
 use super::settings::Channels;
@@ -26,7 +26,7 @@ const MEMORY: f64 = 4000.0;
 /// Accepted samples by number; the first of all is number 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Window {
-    #[serde(with = "packed::readings")]
+    #[serde(with = "packed_readings")]
     ring: Vec<Reading>,
     count: u64,
     channels: Channels,

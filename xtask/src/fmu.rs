@@ -2,8 +2,9 @@
 
 use crate::command::{cargo, root, run};
 use crate::error::Error;
+use crate::files::{file, write};
 use crate::{licences, platforms};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use switchid::fmu::{DUFFING, VAN_DER_POL, identifier, plant};
 use switchid::law::Model;
 use switchid_fmu_package::{Fmu, LINUX64, Platform};
@@ -88,21 +89,4 @@ fn build_package(package: &str) -> Result<PathBuf, Error> {
     let mut command = cargo(&["build", "--quiet", "--release", "--package", package, "--target-dir"]);
     run(command.arg(&target), "install Rust from https://rustup.rs")?;
     Ok(target.join("release"))
-}
-
-/// Writes a file where its content changes.
-///
-/// # Errors
-/// [`Error::File`].
-pub fn write(path: &Path, content: &[u8]) -> Result<(), Error> {
-    if std::fs::read(path).is_ok_and(|present| present == content) {
-        return Ok(());
-    }
-    std::fs::write(path, content).map_err(file("write", path))
-}
-
-/// The error of an action on a file.
-pub fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Error {
-    let path = path.to_path_buf();
-    move |source| Error::File { action, path, source }
 }

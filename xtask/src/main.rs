@@ -3,6 +3,7 @@
 mod command;
 mod crosscheck;
 mod error;
+mod files;
 mod fmu;
 mod importers;
 mod libclang;

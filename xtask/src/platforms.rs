@@ -4,7 +4,7 @@
 
 use crate::command::{cargo, root, run};
 use crate::error::Error;
-use crate::fmu::{file, write};
+use crate::files::{file, write};
 use crate::python;
 use std::path::{Path, PathBuf};
 use switchid_fmu_package::{AARCH64_LINUX, LINUX64, Platform, WIN64};

@@ -2,7 +2,8 @@
 
 use crate::command::root;
 use crate::error::Error;
-use crate::fmu::{BINARIES, file, write};
+use crate::files::{file, write};
+use crate::fmu::BINARIES;
 use crate::platforms;
 use std::path::{Path, PathBuf};
 use std::process::Command;
