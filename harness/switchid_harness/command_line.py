@@ -21,5 +21,14 @@ class CommandLine:
         command = [str(self.program), *arguments, "--json"]
         done = subprocess.run(command, cwd=self.directory, capture_output=True, text=True)
         if done.returncode:
-            raise CommandFailed(f"in {self.directory}: {' '.join(command)}\n{done.stderr.strip()}")
+            said = done.stderr.strip()
+            raise CommandFailed(f"in {self.directory}: {' '.join(command)}\n{said}\n{_error(said)}")
         return json.loads(done.stdout)
+
+
+def _error(said: str) -> str:
+    """The error that the last line of stderr tells as JSON; empty where it tells none."""
+    try:
+        return json.loads(said.splitlines()[-1])["error"]
+    except (IndexError, KeyError, TypeError, ValueError):
+        return ""

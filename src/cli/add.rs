@@ -63,7 +63,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let mut targets = Targets::new(output::files_of(&arguments.data)?, arguments.force);
     let target = targets.claim("-o", &arguments.output)?;
     output::one_document("-o", &target, arguments.json)?;
-    let input = Input::open(&arguments.data, &arguments.model)?;
+    let input = Input::open(&arguments.data, &arguments.model)?.thinned();
     let term = effect(&arguments.effect, &input)?;
     let found = Waiting::on("fitting", || find(&input, term));
     let effect = arguments.effect.clone();

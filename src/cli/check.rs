@@ -96,12 +96,12 @@ fn text(looked: &Looked) -> String {
     let recording = &looked.opened.recording;
     let t = recording.t();
     let mut text = format!(
-        "{}: {} samples from {} s to {} s, {:.6} per second\n",
+        "{}: {} samples from {} s to {} s, {} per second\n",
         recording.source(),
         t.len(),
         t[0],
         t[t.len() - 1],
-        looked.rate()
+        (1e6 * looked.rate()).round() / 1e6
     );
     looked.opened.columns.iter().for_each(|column| text += &format!("  {column}\n"));
     text += &format!("between samples: {} ({})\n", looked.hold, looked.hold_from);

@@ -48,7 +48,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let options = options(arguments)?;
     let mut targets = Targets::new(arguments.input.files()?, arguments.force);
     let picture = arguments.picture.open(&mut targets)?;
-    let input = Input::open(&arguments.input.data, &arguments.input.model)?;
+    let input = Input::open(&arguments.input.data, &arguments.input.model)?.thinned();
     fits(options.window, &input)?;
     let recordings = input.judged();
     let found = compare(&input.model, &recordings, &Options { units: input.units, ..options });

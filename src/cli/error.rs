@@ -177,6 +177,7 @@ pub(super) enum CommandError {
         other: &'static str,
     },
     /// A picture whose format its file's extension does not tell.
+    #[cfg(feature = "pictures")]
     #[error("--picture {file}: the extension says the format: write OUT.svg, OUT.png or OUT.html")]
     PictureKind {
         /// The file.

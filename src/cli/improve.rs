@@ -103,7 +103,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     output::one_document("-o", &target, arguments.json)?;
     targets.protect(&arguments.input.model.model);
     let picture = arguments.picture.open(&mut targets)?;
-    let input = Input::open(&arguments.input.data, &arguments.input.model)?;
+    let input = Input::open(&arguments.input.data, &arguments.input.model)?.thinned();
     let others = match arguments.validate.is_empty() {
         true => None,
         false => Some(Input::open(&arguments.validate, &arguments.input.model)?),

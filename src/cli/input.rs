@@ -15,6 +15,13 @@ use std::path::PathBuf;
 /// Noise std ÷ largest value below which a record counts as free of noise: six digits in a file leave 3e-7.
 const NOISELESS: f64 = 1e-6;
 
+/// Samples of a recording that are judged, from twice as many on: its windows are then thousands, and what a law lacks by less than
+/// they see is below any sensor's calibration.
+const ENOUGH: usize = 200_000;
+
+/// Parts that are taken of a longer recording.
+const PARTS: usize = 8;
+
 /// The model, and the hold if the user names one.
 #[derive(Args)]
 pub(super) struct ModelArguments {
@@ -83,6 +90,19 @@ impl Input {
         let hold = arguments.hold.as_deref().and_then(Hold::from_id).or(model.hold);
         recordings.iter().flat_map(warnings).for_each(|text| output::complain("warning", &text));
         Ok(Input { file, model, units, hold, recordings })
+    }
+
+    /// The same with evenly spread parts of very long recordings, which tell what a law lacks as well; says so.
+    pub(super) fn thinned(mut self) -> Input {
+        for recording in &mut self.recordings {
+            let Some(parts) = recording.spread(ENOUGH, PARTS) else { continue };
+            let (source, all) = (recording.source(), recording.count());
+            let note =
+                format!("{source}: {PARTS} evenly spread parts, {} of its {all} samples, are judged", parts.count());
+            output::complain("note", &note);
+            *recording = parts;
+        }
+        self
     }
 
     /// The recordings.

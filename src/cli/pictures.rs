@@ -1,7 +1,9 @@
 //! `--picture OUT.svg|.png|.html`: what a command found, drawn.
 
 use super::error::CommandError;
-use super::output::{Target, Targets};
+#[cfg(feature = "pictures")]
+use super::output::Target;
+use super::output::Targets;
 use crate::report::Figure;
 #[cfg(feature = "pictures")]
 use crate::report::{self, Block};
@@ -17,6 +19,7 @@ pub(super) struct PictureArguments {
 }
 
 /// How a picture is drawn.
+#[cfg(feature = "pictures")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Svg,
@@ -25,17 +28,23 @@ enum Kind {
 }
 
 /// A picture to be drawn into a file.
+#[cfg(feature = "pictures")]
 pub(super) struct Picture {
     target: Target,
     file: String,
     kind: Kind,
 }
 
+/// A picture, which a build without the feature `pictures` has none of.
+#[cfg(not(feature = "pictures"))]
+pub(super) enum Picture {}
+
 impl PictureArguments {
     /// The picture that is asked for.
     ///
     /// # Errors
-    /// [`CommandError::PictureKind`]; what [`Targets::claim`] refuses; [`CommandError::NoPictures`].
+    /// [`CommandError::PictureKind`]; what [`Targets::claim`] refuses.
+    #[cfg(feature = "pictures")]
     pub(super) fn open(&self, targets: &mut Targets) -> Result<Option<Picture>, CommandError> {
         let Some(path) = &self.picture else { return Ok(None) };
         let file = path.display().to_string();
@@ -46,10 +55,17 @@ impl PictureArguments {
             Some("html" | "htm") => Kind::Html,
             _ => return Err(CommandError::PictureKind { file }),
         };
-        #[cfg(not(feature = "pictures"))]
-        return Err(CommandError::NoPictures { file });
-        #[cfg(feature = "pictures")]
         Ok(Some(Picture { target: targets.claim("--picture", path)?, file, kind }))
+    }
+
+    /// Refuses any picture before any work.
+    ///
+    /// # Errors
+    /// [`CommandError::NoPictures`].
+    #[cfg(not(feature = "pictures"))]
+    pub(super) fn open(&self, _targets: &mut Targets) -> Result<Option<Picture>, CommandError> {
+        let refused = |path: &PathBuf| Err(CommandError::NoPictures { file: path.display().to_string() });
+        self.picture.as_ref().map_or(Ok(None), refused)
     }
 }
 
@@ -68,13 +84,12 @@ impl Picture {
         }
     }
 
-    /// Refuses.
+    /// What [`PictureArguments::open`] never lets happen.
     ///
     /// # Errors
-    /// [`CommandError::NoPictures`].
+    /// None.
     #[cfg(not(feature = "pictures"))]
     pub(super) fn draw(&self, _figure: &Figure) -> Result<(), CommandError> {
-        let _ = (&self.target, self.kind);
-        Err(CommandError::NoPictures { file: self.file.clone() })
+        match *self {}
     }
 }

@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
 
 fn blocks(arguments: &Arguments) -> Result<Vec<Block>, CommandError> {
     let InputArguments { data, model } = &arguments.input;
-    let input = Input::open(data, model)?;
+    let input = Input::open(data, model)?.thinned();
     let mut blocks = Vec::new();
     for data in data {
         let looked = Looked::open(data, Some(&model.model), &model.columns)?;

@@ -46,6 +46,7 @@ fn names(channel: Channel) -> &'static [&'static str] {
             "déplacement",
             "deplacement",
             "stroke",
+            "output",
         ],
         Channel::Velocity => &[
             "qd",

@@ -29,7 +29,7 @@ pub struct Observation {
     pub dt: f64,
     /// The excitation over that time.
     pub drive: Drive,
-    /// What was measured at its end, by [`Channel`]; `None` where a channel is not measured.
+    /// What was measured at its end, q and q̇; `None` where a channel is not measured.
     pub measured: [Option<f64>; 2],
     /// Intensity of the white force that the excitation may have had unseen over that time, N² s.
     pub unseen: f64,

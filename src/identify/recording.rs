@@ -213,6 +213,20 @@ impl Recording {
         Recording::new(&self.source, cut(&self.t), of(&self.q), of(&self.qd), of(&self.excitation))
     }
 
+    /// Evenly spread parts of it, `most` samples together, with gaps between them; none where it is not at least twice as long.
+    pub fn spread(&self, most: usize, parts: usize) -> Option<Recording> {
+        let length = most / parts;
+        if self.count() < 2 * most || parts < 2 || length < Recording::MINIMUM {
+            return None;
+        }
+        let start = |part: usize| (self.count() - length) * part / (parts - 1);
+        let cut = |values: &[f64]| {
+            (0..parts).flat_map(|part| values[start(part)..start(part) + length].iter().copied()).collect()
+        };
+        let of = |values: &Option<Vec<f64>>| values.as_deref().map(cut);
+        Recording::new(&self.source, cut(&self.t), of(&self.q), of(&self.qd), of(&self.excitation)).ok()
+    }
+
     /// The runs of samples between gaps.
     pub fn pieces(&self) -> Vec<Range<usize>> {
         let cuts = self.gaps().into_iter().map(|gap| self.t.partition_point(|t| *t < gap.end));
@@ -249,6 +263,16 @@ mod tests {
         assert!((recording.sample_time() - 0.1).abs() < 1e-12);
         assert_eq!(recording.gaps(), [Gap { start: t[14], end: t[15] }]);
         assert_eq!(recording.pieces(), [0..15, 15..40]);
+    }
+
+    #[test]
+    fn parts_of_a_long_recording_are_spread_over_all_of_it() {
+        let recording = ramp((0..1000).map(f64::from).collect());
+        let parts = recording.spread(200, 4).unwrap();
+        assert_eq!((parts.count(), parts.t()[0], parts.t()[199]), (200, 0.0, 999.0));
+        assert_eq!(parts.pieces(), [0..50, 50..100, 100..150, 150..200]);
+        assert_eq!(parts.sample(70).q, 2.0 * parts.t()[70]);
+        assert_eq!(recording.spread(600, 4), None);
     }
 
     #[test]

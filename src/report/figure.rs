@@ -103,6 +103,7 @@ impl Layer {
     }
 }
 
+#[cfg(feature = "pictures")]
 impl Panel {
     /// The extents of what is drawn: x from, to, y from, to; finite and not empty.
     pub(super) fn extents(&self) -> [f64; 4] {
@@ -138,6 +139,7 @@ impl Panel {
 }
 
 /// A range that is not empty, a little wider than its content upwards and downwards.
+#[cfg(feature = "pictures")]
 fn widened(from: f64, to: f64, log: bool) -> [f64; 2] {
     match (from <= to, log) {
         (false, true) => [0.1, 1.0],

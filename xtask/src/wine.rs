@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use switchid::fmu::{DUFFING, Fmu, identifier, plant};
 use switchid::law::Model;
-use switchid_fmu_package::{LINUX64, Platform, WIN64};
+use switchid_fmu_package::{LINUX64, WIN64};
 
 const WINE: &str = "install Wine (Debian: `apt-get install wine64`)";
 

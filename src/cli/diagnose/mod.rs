@@ -48,7 +48,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let mut targets = Targets::new(arguments.input.files()?, arguments.force);
     let picture = arguments.picture.open(&mut targets)?;
-    let input = Input::open(&arguments.input.data, &arguments.input.model)?;
+    let input = Input::open(&arguments.input.data, &arguments.input.model)?.thinned();
     let found = Waiting::on("diagnosing", || find(&input))?;
     picture.map_or(Ok(()), |picture| picture.draw(&figures::diagnosis(&input, &found.principal)))?;
     if arguments.json {

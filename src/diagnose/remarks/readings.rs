@@ -42,10 +42,11 @@ pub(super) fn remarks(recording: &Recording) -> Vec<Remark> {
     for (channel, values) in &signals {
         let others: Vec<&[f64]> =
             signals.iter().filter(|(other, _)| other != channel).map(|(_, values)| *values).collect();
-        said.extend(wild(t, values).map(|(kind, sentence)| Remark::new(channel, kind, sentence)));
+        let moves = *channel != "F";
+        said.extend(wild(t, values, moves).map(|sentence| Remark::new(channel, "wild", sentence)));
         said.extend(stuck(t, values, &others).map(|sentence| Remark::new(channel, "stuck", sentence)));
         said.extend(clipped(values).map(|sentence| Remark::new(channel, "clipped", sentence)));
-        if *channel != "F" {
+        if moves {
             said.extend(coarse(values).map(|sentence| Remark::new(channel, "coarse", sentence)));
             said.extend(beside(values).map(|sentence| Remark::new(channel, "offset", sentence)));
         }
@@ -53,9 +54,13 @@ pub(super) fn remarks(recording: &Recording) -> Vec<Remark> {
     said
 }
 
-/// Readings that stand alone: each third difference shows a spike and its mirror images.
-fn wild(t: &[f64], values: &[f64]) -> Option<(&'static str, String)> {
-    let bend = |at: usize| values[at] - 0.5 * values[at - 1] - 0.5 * values[at + 1];
+/// Readings that stand alone: beside each spike its neighbours' bends show its mirror images. What is no motion may be a blow, as an
+/// excitation may, and is wild only where it leaves the range of all other readings by more than that range.
+fn wild(t: &[f64], values: &[f64], moves: bool) -> Option<String> {
+    let bend = |at: usize| {
+        let part = (t[at] - t[at - 1]) / (t[at + 1] - t[at - 1]);
+        values[at] - (1.0 - part) * values[at - 1] - part * values[at + 1]
+    };
     let mut sizes: Vec<f64> = (1..values.len() - 1).map(|at| bend(at).abs()).collect();
     let middle = sizes.len() / 2;
     let usual = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745;
@@ -63,15 +68,24 @@ fn wild(t: &[f64], values: &[f64]) -> Option<(&'static str, String)> {
     let mirrored = |at: usize, other: usize| MIRRORED.contains(&(-bend(other) / bend(at)));
     let is_wild = |at: &usize| bend(*at).abs() > WILD * usual && mirrored(*at, at - 1) && mirrored(*at, at + 1);
     let found: Vec<usize> = (2..values.len().saturating_sub(2)).filter(is_wild).collect();
+    let found = if moves { found } else { beyond(values, &found) };
     let largest = found.iter().copied().max_by(|a, b| bend(*a).abs().total_cmp(&bend(*b).abs()))?;
     let readings = if found.len() == 1 { "reading stands" } else { "readings stand" };
-    let sentence = format!(
+    Some(format!(
         "{} single {readings} far off their neighbours, the largest with {:.4e} at {} s: correct or delete them, a law pays for each",
         found.len(),
         values[largest],
         t[largest]
-    );
-    Some(("wild", sentence))
+    ))
+}
+
+/// Those of the readings found that leave the range of all the others by more than that range.
+fn beyond(values: &[f64], found: &[usize]) -> Vec<usize> {
+    let others: Vec<f64> =
+        (0..values.len()).filter(|at| found.binary_search(at).is_err()).map(|at| values[at]).collect();
+    let [low, high] = ends(&others);
+    let far = |at: &&usize| values[**at] > high + (high - low) || values[**at] < low - (high - low);
+    found.iter().filter(far).copied().collect()
 }
 
 fn smallest_step(values: &[f64]) -> f64 {
@@ -202,13 +216,13 @@ mod tests {
     fn a_clean_signal_is_not_remarked_on() {
         let (t, values): (Vec<f64>, Vec<f64>) = ((0..4000).map(f64::from).collect(), sine());
         let cosine: Vec<f64> = t.iter().map(|t| (0.013 * t).cos()).collect();
-        assert_eq!((wild(&t, &values), stuck(&t, &values, &[&cosine]), clipped(&values)), (None, None, None));
+        assert_eq!((wild(&t, &values, true), stuck(&t, &values, &[&cosine]), clipped(&values)), (None, None, None));
         assert_eq!((coarse(&values), beside(&values)), (None, None));
         let rounded: Vec<f64> = values.iter().map(|value| (value * 50.0).round() / 50.0).collect();
-        assert_eq!((wild(&t, &rounded), clipped(&rounded)), (None, None));
+        assert_eq!((wild(&t, &rounded, true), clipped(&rounded)), (None, None));
         assert!(coarse(&rounded).unwrap().contains("2.000e-2"));
         let square: Vec<f64> = values.iter().map(|value| value.signum()).collect();
-        assert_eq!((wild(&t, &square), clipped(&square)), (None, None));
+        assert_eq!((wild(&t, &square, true), clipped(&square)), (None, None));
     }
 
     #[test]
@@ -218,7 +232,8 @@ mod tests {
         for size in [0.3, 1e6, 1e308] {
             let mut spiked = values.clone();
             spiked[700] = size;
-            assert!(wild(&t, &spiked).unwrap().1.contains("at 700 s"), "{size}");
+            assert!(wild(&t, &spiked, true).unwrap().contains("at 700 s"), "{size}");
+            assert_eq!(wild(&t, &spiked, false).is_some(), size > 3.0, "{size}");
         }
         let mut held = values.clone();
         held[1000..1400].fill(values[1000]);

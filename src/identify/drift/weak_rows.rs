@@ -185,10 +185,23 @@ impl WeakRowDrift {
         known.sum::<f64>() / law.all.iter().map(|value| value * value).sum::<f64>()
     }
 
+    /// The same of all coefficients: one that the rows do not determine is as uncertain as its term may be large.
+    pub fn whole_error(&self) -> f64 {
+        let law = self.law();
+        let variance = |free: usize| law.variances[free].min(law.reach(free).powi(2));
+        let sum: f64 = (0..law.variances.len()).map(variance).sum();
+        sum / law.all.iter().map(|value| value * value).sum::<f64>()
+    }
+
     /// Whether the rows say anything of the free coefficient: it is known better than that its term may be as large as
     /// the right side.
     pub fn determines(&self, free: usize) -> bool {
-        self.std(free) < self.law().reach(free)
+        self.std(free) < self.reach(free)
+    }
+
+    /// The value of the free coefficient at which its term alone would be as large as the right side.
+    pub fn reach(&self, free: usize) -> f64 {
+        self.law().reach(free)
     }
 
     /// One variation of samples, that of the length in use.

@@ -42,11 +42,18 @@ impl AfterOutage {
         AfterOutage { hypotheses: kinds.map(|kind| Hypothesis::new(kind, 1)).into(), since: None }
     }
 
-    /// An outage ends: the state is any that the motion may have.
-    pub fn begin(&mut self, law: &Expected) {
-        let [q, qd] = law.size;
-        let filter = Filter::begin([0.0; 2], [q * q, qd * qd]);
-        self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.begin(&filter, law, 0.0, 0.0));
+    /// An outage ends with these readings: the state is what they say, but for an offset.
+    pub fn begin(&mut self, law: &Expected, measured: [Option<f64>; 2]) {
+        let [q, qd] = measured;
+        let spread = |channel: usize| match measured[channel] {
+            Some(_) => law.noise.sensor[channel],
+            None => law.size[channel].powi(2),
+        };
+        let filter = Filter::begin([q.unwrap_or(0.0), qd.unwrap_or(0.0)], [spread(0), spread(1)]);
+        for hypothesis in &mut self.hypotheses {
+            hypothesis.begin(&filter, law, 0.0, 0.0);
+            hypothesis.return_with_offset();
+        }
         self.since = Some(0.0);
     }
 
@@ -63,8 +70,6 @@ impl AfterOutage {
     /// Takes a sample.
     pub fn take(&mut self, law: &Expected, dt: f64, drive: &Drive, measured: [Option<f64>; 2]) {
         let Some(since) = self.since else { return };
-        // the first reading after the outage is that at its end
-        let dt = if since == 0.0 { f64::MIN_POSITIVE } else { dt };
         let value = |value: f64| Value { value, repeats: None, start: SELDOM };
         let values = measured.map(|measured| measured.map(value));
         self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.take(law, dt, drive, values, 0));

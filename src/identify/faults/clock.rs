@@ -31,8 +31,9 @@ pub struct Clock {
     /// The usual step, s, and how many it is known from.
     pace: f64,
     known: u32,
-    /// The last stamp that was not believed, and how many in a row went on from it.
+    /// The last stamp that was not believed, the first of those that it goes on from, and how many there are.
     stray: Option<f64>,
+    first: f64,
     steady: u32,
 }
 
@@ -66,13 +67,14 @@ impl Clock {
         if self.known < KNOWN || self.stray == Some(stamp) {
             return None;
         }
-        self.steady = if agrees { self.steady + 1 } else { 0 };
+        (self.first, self.steady) = if agrees { (self.first, self.steady + 1) } else { (stamp, 0) };
         self.stray = Some(stamp);
         if self.steady < STEADY {
             return None;
         }
-        self.shift = last + self.pace - stamp;
-        Some(last + self.pace)
+        // the clock was set back between the last sample of the record and the first that came before it
+        self.shift = last + self.pace - self.first;
+        Some(stamp + self.shift)
     }
 
     /// A sample of that time is used.
@@ -86,13 +88,14 @@ impl Clock {
                 (self.pace, self.known) = (step, 0);
             }
         }
-        (self.last, self.stray, self.steady) = (Some(t), None, 0);
+        (self.last, self.stray, self.first, self.steady) = (Some(t), None, 0.0, 0);
     }
 
-    /// Whether the record has had no sample for longer than is usual, at a stamp that was skipped.
+    /// Whether the record has had no sample for longer than is usual, at a stamp that was skipped: it is later than the
+    /// next sample can be, or one of several that came before the last.
     pub fn is_stale(&self, stamp: f64) -> bool {
         let step = self.last.map_or(0.0, |last| stamp + self.shift - last);
-        self.known >= KNOWN && !(step.abs() <= STALE * self.pace) && stamp.is_finite()
+        self.known >= KNOWN && (step > STALE * self.pace || self.steady >= 2)
     }
 }
 
@@ -132,6 +135,19 @@ mod tests {
     fn a_clock_that_was_set_back_goes_on() {
         let seen = times(stamps(3600.0, 50).chain(stamps(0.0, 50)));
         assert!(seen.len() > 85 && seen.is_sorted() && seen[seen.len() - 1] < 3600.2, "{seen:?}");
+    }
+
+    #[test]
+    fn the_record_is_stale_once_samples_are_missing_not_at_one_stamp_from_before() {
+        let mut clock = Clock::default();
+        stamps(0.0, 50).for_each(|stamp| {
+            let t = clock.time(stamp, 1e-3).unwrap();
+            clock.advance(t);
+        });
+        assert!(clock.time(0.01, 1e-3).is_err() && !clock.is_stale(0.01));
+        assert!(!clock.is_stale(0.051) && clock.is_stale(0.0525) && !clock.is_stale(f64::NAN));
+        [0.011, 0.012].into_iter().for_each(|stamp| assert!(clock.time(stamp, 1e-3).is_err()));
+        assert!(clock.is_stale(0.012));
     }
 
     #[test]

@@ -27,18 +27,21 @@ pub struct ExcitationGate {
     course: Option<f64>,
     /// Whether the last reading was replaced, or one before it was a glitch.
     faulty: bool,
+    /// Intensity of the white force that a glitch just ended may not have been, N² s.
+    glitch: f64,
     /// Mean squares of F, and of what it moves by.
     squares: [f64; 2],
     count: f64,
 }
 
 impl ExcitationGate {
-    /// Takes a sample. Where F has just returned from a glitch, or was replaced, the reading holds the white force that
-    /// this leaves open for the interval.
+    /// Takes a sample. Where the last F was replaced, the reading holds the white force that this leaves open for the
+    /// interval.
     pub fn take(&mut self, sample: Sample) -> Reading {
         let (before, replaced) = (self.last, self.faulty && self.course.is_none());
-        let absurd = self.count > KNOWN && !(sample.excitation.abs() <= ABSURD * self.size());
-        let force = if absurd { before.excitation } else { sample.excitation };
+        let force = sample.excitation;
+        let absurd = self.count > KNOWN && (force.is_nan() || force.abs() > ABSURD * self.size());
+        let force = if absurd { before.excitation } else { force };
         let moved = force - before.excitation;
         let leaves = self.leaves(moved);
         let returned = self.course.filter(|course| leaves && !self.leaves(force - course));
@@ -50,7 +53,14 @@ impl ExcitationGate {
         self.learn(force, moved);
         self.last = sample;
         let dt = if self.count > 1.0 { sample.t - before.t } else { 0.0 };
-        Reading { unseen: (glitch * glitch + scatter) * dt, ..Reading::from(sample) }
+        self.glitch = glitch * glitch * dt;
+        Reading { unseen: scatter * dt, ..Reading::from(sample) }
+    }
+
+    /// Intensity of the white force, N² s, that F was over the interval before, if it was a glitch of its sensor; 0 where F
+    /// kept its course.
+    pub fn glitch(&self) -> f64 {
+        self.glitch
     }
 
     /// RMS of F.
@@ -82,11 +92,13 @@ impl ExcitationGate {
 mod tests {
     use super::*;
 
+    fn sample(index: usize, excitation: f64) -> Sample {
+        Sample { t: 1e-3 * index as f64, excitation, ..Sample::default() }
+    }
+
     fn through(forces: &[f64]) -> Vec<Reading> {
         let mut gate = ExcitationGate::default();
-        let sample =
-            |(index, force): (usize, &f64)| Sample { t: 1e-3 * index as f64, excitation: *force, ..Sample::default() };
-        forces.iter().enumerate().map(|of| gate.take(sample(of))).collect()
+        forces.iter().enumerate().map(|(index, force)| gate.take(sample(index, *force))).collect()
     }
 
     fn sine() -> Vec<f64> {
@@ -97,11 +109,16 @@ mod tests {
     fn a_glitch_leaves_the_interval_after_it_open() {
         let mut forces = sine();
         forces[300] += 5.0;
-        let readings = through(&forces);
-        assert_eq!(readings[300].sample.excitation, forces[300]);
-        let open: Vec<usize> = (0..500).filter(|index| readings[*index].unseen > 0.0).collect();
+        let mut gate = ExcitationGate::default();
+        let glitches: Vec<f64> = (0..500)
+            .map(|index| {
+                assert_eq!(gate.take(sample(index, forces[index])).sample.excitation, forces[index]);
+                gate.glitch()
+            })
+            .collect();
+        let open: Vec<usize> = (0..500).filter(|index| glitches[*index] > 0.0).collect();
         assert_eq!(open, [301]);
-        assert!((readings[301].unseen / (25.0 * 1e-3) - 1.0).abs() < 0.01);
+        assert!((glitches[301] / (25.0 * 1e-3) - 1.0).abs() < 0.01);
     }
 
     #[test]
@@ -119,6 +136,10 @@ mod tests {
     fn a_step_is_no_glitch() {
         let mut forces = sine();
         forces[300..].iter_mut().for_each(|force| *force += 0.5);
-        assert!(through(&forces).iter().all(|reading| reading.unseen == 0.0));
+        let mut gate = ExcitationGate::default();
+        forces.iter().enumerate().for_each(|(index, force)| {
+            gate.take(sample(index, *force));
+            assert!(gate.glitch() == 0.0 && !gate.is_faulty());
+        });
     }
 }

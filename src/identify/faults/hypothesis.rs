@@ -147,6 +147,16 @@ impl Hypothesis {
         }
     }
 
+    /// The state that it begins at was read from a sensor which may have an offset already: what the offset is, the reading
+    /// is too large by.
+    pub fn return_with_offset(&mut self) {
+        if let Kind::Offset(channel) = self.kind {
+            let (index, variance) = (channel as usize, self.covariance[2][2]);
+            self.covariance[index][index] += variance;
+            (self.covariance[index][2], self.covariance[2][index]) = (-variance, -variance);
+        }
+    }
+
     /// These channels are in a burst.
     pub fn begin_bursts(&mut self, bursts: [Burst; 2]) {
         self.bursts = bursts;
@@ -244,13 +254,11 @@ impl Hypothesis {
         for (target, row) in first.iter_mut().zip(&rows) {
             *target = std::array::from_fn(|column| carried(row, column));
         }
-        for row in 0..4 {
-            let entries = first[row];
-            for (column, coefficients) in rows.iter().enumerate() {
-                self.covariance[row][column] = entries.iter().zip(coefficients).map(|(a, b)| a * b).sum();
+        for (row, entries) in self.covariance.iter_mut().zip(first) {
+            for (entry, coefficients) in row.iter_mut().zip(&rows) {
+                *entry = entries.iter().zip(coefficients).map(|(a, b)| a * b).sum();
             }
-            self.covariance[row][2] = entries[2];
-            self.covariance[row][3] = entries[3];
+            (row[2], row[3]) = (entries[2], entries[3]);
         }
         self.covariance[0][0] += process * dt * dt * dt / 3.0;
         self.covariance[0][1] += process * dt * dt / 2.0;
@@ -287,11 +295,9 @@ impl Hypothesis {
 
     fn update(&mut self, column: [f64; 4], residual: f64, variance: f64) {
         let gain = column.map(|entry| entry / variance);
-        for row in 0..4 {
-            self.mean[row] += gain[row] * residual;
-            for (entry, other) in self.covariance[row].iter_mut().zip(&column) {
-                *entry -= gain[row] * other;
-            }
+        for ((mean, row), gain) in self.mean.iter_mut().zip(&mut self.covariance).zip(gain) {
+            *mean += gain * residual;
+            row.iter_mut().zip(&column).for_each(|(entry, other)| *entry -= gain * other);
         }
     }
 }

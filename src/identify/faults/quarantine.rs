@@ -320,8 +320,8 @@ impl Quarantine {
 
     /// What the sensors do by the hypothesis just named.
     fn say(&mut self, kind: Kind, faulty: [bool; 2], first: bool) {
-        for index in 0..2 {
-            if kind == Kind::Readings && faulty[index] {
+        for (index, faulty) in faulty.into_iter().enumerate() {
+            if kind == Kind::Readings && faulty {
                 self.sensors[index] = SensorState::Outlier;
                 self.bursts[index] += if first { 1.0 } else { 0.0 };
             }

@@ -80,7 +80,7 @@ impl Tracker {
         }
         if self.augmented_drift.is_following() {
             let drift = &self.augmented_drift;
-            self.published.set(setup.problem, |free| Some(drift.coefficient(free)));
+            self.published.set(setup.problem, |free, _| Some(drift.coefficient(free)));
             let known = drift.stated_error() < TRUSTED;
             self.enter(Event::DriftValidated(known, self.now()));
             match (self.is_resting(), self.augmented_drift.rests_since()) {
@@ -153,14 +153,17 @@ impl Tracker {
 
     fn publish_weak_rows(&mut self, problem: &Problem) {
         let drift = &self.weak_row_drift;
-        let told = |free: usize| drift.determines(free).then(|| (drift.coefficients()[free], drift.std(free)));
-        self.published.set(problem, told);
+        // what the rows say nothing of keeps its value, as uncertain as its term may be large
+        self.published.set(problem, |free, before| match drift.determines(free) {
+            true => Some((drift.coefficients()[free], drift.std(free))),
+            false => Some((before, drift.reach(free))),
+        });
         let physical = self.is_physical(problem, self.published.coefficients[problem.inertia].value);
         if !physical {
             self.published.forget_stds(problem);
         }
         let drift = &self.weak_row_drift;
-        let known = physical && drift.predicts() && drift.stated_error() < TRUSTED;
+        let known = physical && drift.predicts() && drift.whole_error() < TRUSTED;
         self.enter(Event::DriftValidated(known, self.now()));
     }
 }

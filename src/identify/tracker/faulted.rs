@@ -57,10 +57,10 @@ impl Tracker {
         let law = &monitor.law;
         let Intake { after_outage, quarantine, .. } = intake;
         let expected = expected(setup.problem, law, &segment.scales, quarantine.size());
-        if outage {
-            after_outage.begin(&expected);
+        match outage {
+            true => after_outage.begin(&expected, observation.measured),
+            false => after_outage.take(&expected, observation.dt, &observation.drive, observation.measured),
         }
-        after_outage.take(&expected, observation.dt, &observation.drive, observation.measured);
     }
 
     /// Whether what speaks for a switch is a sensor's fault, or may be.

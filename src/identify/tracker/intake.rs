@@ -35,16 +35,15 @@ impl Tracker {
     /// A glitch of F that would have moved q̇ by more than its readings scatter is told by q̇ itself: it acted, or the
     /// motion has been kicked the other way. Of a smaller one nobody knows.
     fn weigh_glitch(&self, problem: &Problem, reading: &mut Reading) {
-        if reading.unseen == 0.0 {
+        let (glitch, law) = (self.intake.excitation.glitch(), &self.monitor.law);
+        if glitch == 0.0 || !law.running {
             return;
         }
-        let law = &self.monitor.law;
         let motion = Motion { terms: &problem.terms, coefficients: &law.all };
         let dt = reading.sample.t - self.now();
-        let push = reading.unseen * dt / motion.mass(law.run.filter.mean[0]).powi(2);
-        let scatter = law.noise.sensor[1] + law.run.filter.covariance[1][1];
-        if !law.running || push > TOLD * TOLD * scatter {
-            reading.unseen = 0.0;
+        let push = glitch * dt / motion.mass(law.run.filter.mean[0]).powi(2);
+        if push < TOLD * TOLD * law.noise.sensor[1] {
+            reading.unseen += glitch;
         }
     }
 

@@ -146,7 +146,7 @@ impl Tracker {
         self.monitor.bank.set_spread(&self.belief.spread);
         let recognition = Recognition { place, confirmed: false, mixture, samples: law.samples };
         let (library, spread) = (&self.library, &self.belief.spread);
-        self.published.set(problem, |free| {
+        self.published.set(problem, |free, _| {
             let value = law.coefficients[free];
             let doubt = library.recognition_std(Some(recognition), free, value, spread[free]);
             Some((value, law.variance(free).sqrt().hypot(doubt)))

@@ -29,7 +29,7 @@ impl Tracker {
     fn publish_coefficients(&mut self, problem: &Problem) {
         let Tracker { published, library, segment, belief, regime, .. } = self;
         let recognition = regime.recognition();
-        published.set(problem, |free| {
+        published.set(problem, |free, _| {
             let (std, spread) = (segment.std(free), belief.spread[free]);
             if !segment.active[free] {
                 return Some((0.0, library.recognition_std(recognition, free, 0.0, spread)));
