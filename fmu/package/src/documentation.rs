@@ -22,10 +22,8 @@ fn row(variable: &Variable) -> String {
         Causality::Parameter => "parameter",
         Causality::Input => "input",
         Causality::Output => "output",
-        Causality::Independent => "time",
     };
-    let has_start = matches!(variable.causality, Causality::Parameter | Causality::Input);
-    let start = if has_start { start_text(&variable.kind) } else { String::new() };
+    let start = if variable.causality == Causality::Output { String::new() } else { start_text(&variable.kind) };
     let unit = match &variable.kind {
         Kind::Real { unit: Some(unit), .. } => unit.as_str(),
         _ => "",

@@ -43,12 +43,6 @@ pub fn output(variable: Variable, depends_on: &[&str]) -> Variable {
     Variable { causality: Causality::Output, depends_on, ..variable }
 }
 
-/// The time; what every output depends on, and nothing else in a step's end.
-pub fn time() -> Variable {
-    let time = real("time", 0.0, Some("s"), "Time up to which the last step went");
-    Variable { causality: Causality::Independent, variability: Variability::Continuous, ..time }
-}
-
 /// The units among seconds and radians per second that the variables name.
 pub fn units(variables: &[Variable]) -> Vec<Unit> {
     let known = [("s", [0, 0, 1, 0, 0]), ("rad/s", [0, 0, -1, 0, 1])];

@@ -181,7 +181,6 @@ fn scalar_variable(reference: usize, variable: &Variable) -> Attributes {
         (Causality::Parameter, _) => ("parameter", "fixed", Some("exact")),
         (Causality::Input, Variability::Discrete) => ("input", "discrete", None),
         (Causality::Input, Variability::Continuous) => ("input", "continuous", None),
-        (Causality::Independent, _) => ("independent", "continuous", None),
         (Causality::Output, Variability::Discrete) => ("output", "discrete", Some("calculated")),
         (Causality::Output, Variability::Continuous) => ("output", "continuous", Some("calculated")),
     };
@@ -218,7 +217,7 @@ fn type_element(variable: &Variable) -> (&'static str, Attributes) {
         Kind::Boolean { start } => ("Boolean", start.to_string()),
         Kind::String { start } => ("String", start.clone()),
     };
-    if !matches!(variable.causality, Causality::Output | Causality::Independent) {
+    if variable.causality != Causality::Output {
         attributes.push(("start", start));
     }
     (name, attributes)
@@ -229,15 +228,14 @@ fn nominal(start: f64) -> Option<f64> {
     Some(start.abs()).filter(|size| *size > 0.0 && *size < 1e20 && *size != 1.0)
 }
 
-/// Outputs after a step do not depend on inputs at the same instant, only on the time: an empty list, which says the same, is read by
-/// FMI Library as a missing one, and that means "on everything". Indices count from 1.
+/// Outputs after a step do not depend on inputs at the same instant, hence no dependencies; indices count from 1.
 fn write_structure(xml: &mut Xml, description: &Description) -> io::Result<()> {
     let outputs: Vec<(usize, &Variable)> = (1..).zip(&description.variables).filter(is_output).collect();
     if outputs.is_empty() {
         return Ok(());
     }
     element(xml, "Outputs", vec![], |xml| {
-        outputs.iter().try_for_each(|(index, _)| unknown(xml, *index, indices(description, &[])))
+        outputs.iter().try_for_each(|(index, _)| unknown(xml, *index, String::new()))
     })?;
     element(xml, "InitialUnknowns", vec![], |xml| {
         outputs
@@ -256,10 +254,6 @@ fn unknown(xml: &mut Xml, index: usize, dependencies: String) -> io::Result<()> 
 
 fn indices(description: &Description, names: &[String]) -> String {
     let mut positions: Vec<usize> = names.iter().filter_map(|name| description.position(name)).collect();
-    if positions.is_empty() {
-        let is_time = |variable: &Variable| variable.causality == Causality::Independent;
-        positions.extend(description.variables.iter().position(is_time));
-    }
     positions.sort_unstable();
     positions.iter().map(|position| (position + 1).to_string()).collect::<Vec<_>>().join(" ")
 }

@@ -66,8 +66,6 @@ pub enum Causality {
     Input,
     /// Written by the slave.
     Output,
-    /// The time up to which the last step went, s.
-    Independent,
 }
 
 /// When an input or output may change; a parameter never does.

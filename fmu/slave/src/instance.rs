@@ -3,7 +3,7 @@
 //! Invariant: a refused call changes nothing.
 
 use crate::calls::{Call, Phase};
-use crate::description::{Causality, Interface, Variable};
+use crate::description::{Causality, Interface};
 use crate::log::{Category, Log, seconds};
 use crate::seal::{self, SealError};
 use crate::slave::{Slave, SlaveError};
@@ -161,8 +161,6 @@ pub struct Instance<S> {
     fresh: S,
     state: Snapshot<S>,
     states: States<Snapshot<S>>,
-    /// Value reference of the time.
-    independent: Option<usize>,
     /// Where the host's messages go.
     pub log: Log,
     /// Texts handed to the host; they live until the next call that hands out some.
@@ -173,9 +171,7 @@ impl<S: Slave> Instance<S> {
     /// An instance of a slave as read from its resources.
     pub fn new(interface: Interface, slave: S, log: Log) -> Instance<S> {
         let state = Snapshot::fresh(&interface, &slave);
-        let is_time = |variable: &Variable| variable.causality == Causality::Independent;
-        let independent = interface.description.variables.iter().position(is_time);
-        Instance { interface, fresh: slave, state, states: States::new(), independent, log, texts: Vec::new() }
+        Instance { interface, fresh: slave, state, states: States::new(), log, texts: Vec::new() }
     }
 
     /// Refuses what the state machine forbids.
@@ -217,16 +213,9 @@ impl<S: Slave> Instance<S> {
         }
         self.state.start_time = start_time;
         self.state.stop_time = stop_time;
-        self.set_time(start_time);
+        self.state.time = start_time;
         self.state.started = false;
         Ok(())
-    }
-
-    fn set_time(&mut self, time: f64) {
-        self.state.time = time;
-        if let Some(reference) = self.independent {
-            self.state.values.put(reference, Value::Real(time));
-        }
     }
 
     /// `fmi2EnterInitializationMode`.
@@ -285,7 +274,7 @@ impl<S: Slave> Instance<S> {
             return Err(CallError::BeyondStop { time, step, stop });
         }
         self.state.slave.step(time, step, &mut self.state.values, &mut self.log)?;
-        self.set_time(end);
+        self.state.time = end;
         Ok(())
     }
 
@@ -324,7 +313,7 @@ impl<S: Slave> Instance<S> {
         let variable = &self.interface.description.variables[reference];
         let name = || variable.name.clone();
         match (variable.causality, self.state.phase) {
-            (Causality::Output | Causality::Independent, _) => Err(ValueError::Output { name: name() }),
+            (Causality::Output, _) => Err(ValueError::Output { name: name() }),
             (Causality::Parameter, Phase::Step) if present != value => Err(ValueError::Fixed { name: name() }),
             _ => Ok(()),
         }

@@ -56,8 +56,8 @@ pub enum ValueError {
         /// The type of the call.
         asked: &'static str,
     },
-    /// An output or the time cannot be set.
-    #[error("{name} is no input and no parameter: it cannot be set")]
+    /// An output cannot be set.
+    #[error("{name} is an output: it cannot be set")]
     Output {
         /// The variable.
         name: String,

@@ -26,15 +26,16 @@ def simulate(fmus: Fmus, case: Case, _: Path) -> list[float]:
         for name, value in case.plant.items():
             execution.real_initial_value(slave_index=plant, variable_reference=of_plant[name], value=value)
         execution.integer_initial_value(slave_index=plant, variable_reference=of_plant["seed"], value=case.seed(pair))
-        execution.integer_initial_value(
-            slave_index=identifier, variable_reference=of_identifier["model"], value=case.law
+        # it passes over enumerations, so that the law is chosen by its terms
+        execution.string_initial_value(
+            slave_index=identifier, variable_reference=of_identifier["terms"], value=case.terms
         )
         for name in WIRES:
             execution.connect_real_variables(
-                source_slave_index=plant,
-                source_variable_reference=of_plant[name],
-                target_slave_index=identifier,
-                target_variable_reference=of_identifier[name],
+                output_slave_index=plant,
+                output_variable_reference=of_plant[name],
+                input_slave_index=identifier,
+                input_variable_reference=of_identifier[name],
             )
         parts += [(plant, [of_plant[name] for name in WIRES]), (identifier, [of_identifier[name] for name in WATCHED])]
     execution.step(step_count=len(case.steps))

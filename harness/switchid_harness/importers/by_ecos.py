@@ -11,6 +11,8 @@ def simulate(fmus: Fmus, case: Case, _: Path) -> list[float]:
 
     if case.step is None:
         raise CannotDo("fixed steps")
+    if case.start:
+        raise CannotDo("a start at 0 (it tells FMUs of another one, but steps from 0)")
     with EcosSimulationStructure() as structure:
         for pair in range(case.pairs):
             structure.add_model(f"plant{pair}", str(fmus.plant))
@@ -19,7 +21,8 @@ def simulate(fmus: Fmus, case: Case, _: Path) -> list[float]:
                 structure.make_real_connection(f"plant{pair}::{name}", f"identifier{pair}::{name}")
         values = {f"plant{pair}::{name}": value for pair in range(case.pairs) for name, value in case.plant.items()}
         values |= {f"plant{pair}::seed": case.seed(pair) for pair in range(case.pairs)}
-        values |= {f"identifier{pair}::model": case.law for pair in range(case.pairs)}
+        # it does not set enumerations, so that the law is chosen by its terms
+        values |= {f"identifier{pair}::terms": case.terms for pair in range(case.pairs)}
         structure.add_parameter_set("case", values)
         with EcosSimulation(structure=structure, step_size=case.step) as simulation:
             simulation.init(start_time=case.start, parameter_set="case")

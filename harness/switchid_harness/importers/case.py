@@ -26,6 +26,8 @@ class Case:
     )
     law: int = 3
     """Number of the identifier's model: Duffing."""
+    terms: str = "qdd qd q q^3"
+    """The same as a text."""
 
     @property
     def step(self) -> float | None:
