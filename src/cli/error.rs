@@ -12,7 +12,7 @@ use thiserror::Error;
 pub(super) enum CommandError {
     /// A file is at fault.
     #[error(transparent)]
-    Data(#[from] DataError),
+    Data(Box<DataError>),
     /// Neither a file nor a built-in scenario.
     #[error("{argument}: there is no such file, and {source}")]
     NoScenario {
@@ -223,6 +223,12 @@ pub(super) enum CommandError {
         /// What the system says.
         reason: String,
     },
+}
+
+impl From<DataError> for CommandError {
+    fn from(error: DataError) -> CommandError {
+        CommandError::Data(Box::new(error))
+    }
 }
 
 impl CommandError {

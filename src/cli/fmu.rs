@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let name = name(&arguments.output);
     let refused = |source: FmuError| match (source, &arguments.known_laws) {
         (FmuError::Laws(source), Some(path)) => {
-            CommandError::Data(DataError::Laws { file: path.display().to_string(), source })
+            CommandError::from(DataError::Laws { file: path.display().to_string(), source })
         }
         (source, _) => CommandError::Fmu { model: arguments.model.display().to_string(), source },
     };

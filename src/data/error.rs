@@ -264,7 +264,7 @@ pub enum DataError {
         /// The quantity.
         channel: &'static str,
         /// The units that it may have.
-        known: String,
+        known: Box<str>,
     },
     /// An acceleration in place of a motion or a force.
     #[error(
@@ -293,7 +293,7 @@ pub enum DataError {
         /// What kind of file it is.
         kind: FileKind,
         /// The header.
-        column: String,
+        column: Box<str>,
         /// The unit as written.
         unit: Box<str>,
         /// What the unit measures.

@@ -343,7 +343,7 @@ impl Finder<'_> {
             Written::Known(text, unit) => Err(DataError::WrongUnit {
                 file,
                 kind,
-                column,
+                column: column.into(),
                 unit: text.into(),
                 quantity: unit.quantity.name(),
                 channel: channel.name(),
@@ -358,7 +358,7 @@ impl Finder<'_> {
                 column,
                 unit: text.into(),
                 channel: channel.name(),
-                known: channel.known_units(),
+                known: channel.known_units().into(),
             }),
         }
     }

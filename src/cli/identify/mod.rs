@@ -184,7 +184,7 @@ fn identify(
 fn refused(arguments: &Arguments, source: BuildError) -> CommandError {
     match (source, &arguments.known_laws) {
         (BuildError::Laws(source), Some(path)) => {
-            CommandError::Data(DataError::Laws { file: path.display().to_string(), source })
+            CommandError::from(DataError::Laws { file: path.display().to_string(), source })
         }
         (source, _) => CommandError::Build { model: arguments.model.display().to_string(), source },
     }

@@ -60,8 +60,8 @@ mod tests {
 
     #[test]
     fn twenty_readings_of_three_stds_are_a_burst_and_none_of_one_are() {
-        let sign = |index: u32| if index * 7 % 3 == 0 { 1.0 } else { -1.0 };
+        let sign = |index: u32| if (index * 7).is_multiple_of(3) { 1.0 } else { -1.0 };
         assert!(after((0..20).map(|index| 3.0 * sign(index))) > 20.0);
-        assert!(after((0..2000).map(|index| sign(index))) < 1.0);
+        assert!(after((0..2000).map(sign)) < 1.0);
     }
 }
