@@ -72,6 +72,23 @@ fn a_complete_model_is_adequate_and_leaves_what_its_sensors_would() {
     }
 }
 
+/// Reversals under dry friction are kinks that no smoothed motion has: what they leave is the floor of a complete law, and hides no force
+/// that is missing.
+#[test]
+fn the_kinks_of_dry_friction_are_no_missing_effect() {
+    let bench = Bench::new("kinks");
+    bench.write("dry.toml", &format!("{LINEAR}coulomb_friction = \"fit\"\n"));
+    let wobble = "wobble = { coefficient = 0.5, expression = \"q*sin(3.3*t)\" }";
+    for seed in [24, 25, 26] {
+        for (more, verdict) in [("", "adequate"), (wobble, "unexplained")] {
+            let name = format!("{verdict}{seed}");
+            simulate(&bench, &name, seed, 2e-4, &format!("coulomb_friction = 0.8\n{more}"), "");
+            let found = bench.json(&["diagnose", &format!("{name}.csv"), "--model", "dry.toml", "--json"]);
+            assert_eq!((&found["verdict"], &found["effect"]), (&verdict.into(), &Value::Null), "{seed}: {found:#}");
+        }
+    }
+}
+
 /// The error that a form without the hidden force leaves is told, and no effect of the catalogue takes it.
 fn assert_unexplained(bench: &Bench, data: &str, least: f64) {
     let found = diagnose(bench, &[data]);
