@@ -47,8 +47,8 @@ pub(super) fn is_comment(text: &str) -> bool {
 }
 
 /// Lines ending as on any system; old ones end in a carriage return alone.
-fn split_lines(text: &str) -> Box<dyn Iterator<Item = &str> + '_> {
-    if text.contains('\n') { Box::new(text.lines()) } else { Box::new(text.split('\r')) }
+pub(super) fn split_lines(text: &str) -> Box<dyn Iterator<Item = &str> + '_> {
+    if text.contains('\n') { Box::new(text.lines()) } else { Box::new(text.split_terminator('\r')) }
 }
 
 impl Dialect {
