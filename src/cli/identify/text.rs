@@ -90,11 +90,19 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
         true => "0: the record does not speak for it".into(),
         false => quantity(known.value, std, unit_of(known.term, units)),
     };
-    let own = |(known, std): &(&Coefficient, f64)| value(known, *std).chars().count();
-    let value_width = stage.known().filter(|(_, std)| *std > 0.0).map(|entry| own(&entry)).max().unwrap_or(0);
-    for (known, std) in stage.known() {
-        let (name, value) = (known.term.name(), value(known, std));
-        let line = format!("  {name:<width$} {value:<value_width$}{}", times_limit(known.term, std, limit));
+    let known: Vec<(&Coefficient, f64, String)> =
+        stage.known().map(|(known, std)| (known, std, value(known, std))).collect();
+    let uncertain = || known.iter().filter_map(|(.., value)| value.split_once('±'));
+    let [before, behind] = [
+        uncertain().map(|(value, _)| value.chars().count()).max().unwrap_or(0),
+        uncertain().map(|(_, std)| std.chars().count()).max().unwrap_or(0),
+    ];
+    for (known, std, value) in &known {
+        let value = match value.split_once('±') {
+            Some((value, std)) => format!("{value:>before$}±{std:<behind$}"),
+            None => value.clone(),
+        };
+        let line = format!("  {:<width$} {value}{}", known.term.name(), times_limit(known.term, *std, limit));
         text = text + line.trim_end() + "\n";
     }
     let open: Vec<String> = stage
