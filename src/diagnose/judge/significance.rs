@@ -48,14 +48,18 @@ impl Blocks {
         self.count.unwrap_or(BLOCKS[BLOCKS.len() - 1])
     }
 
-    /// ½ ln(loss before ÷ loss after) in every block, the mean over the window lengths.
+    /// ½ ln(loss before ÷ loss after) in every block, the mean over the window lengths. A block's loss is its own and the usual one's mean:
+    /// what a few readings of slow motion say of the error's size is little, and one bad stretch does not decide either (the log loss of a
+    /// Student distribution, whose variance has the record's as its prior: Gelman et al., Bayesian Data Analysis, 2013, sect. 2.6).
     pub(in crate::diagnose) fn gains(&self, record: &Record, before: &HeldOut, after: &HeldOut) -> Vec<f64> {
         let mut gains = vec![0.0; self.len()];
         for which in 0..COUNT {
             let [before, after] = [before, after].map(|held| self.losses(record, which, held));
-            let pairs = before.iter().zip(&after).zip(&mut gains);
-            let told = pairs.filter(|((before, after), _)| **before > 0.0 && **after > 0.0);
-            told.for_each(|((before, after), gain)| *gain += 0.5 * (before / after).ln() / COUNT as f64);
+            let usual = after.iter().sum::<f64>() / after.len() as f64;
+            let pairs = before.iter().zip(&after).zip(&mut gains).filter(|_| usual > 0.0);
+            pairs.for_each(|((before, after), gain)| {
+                *gain += 0.5 * ((before + usual) / (after + usual)).ln() / COUNT as f64
+            });
         }
         gains
     }
