@@ -7,6 +7,7 @@ use super::recording::Recording;
 use super::report::{Coefficient, SensorState};
 use super::sample::Skipped;
 use super::settings::{Method, Settings};
+use crate::estimation::Missing;
 use crate::law::{Hold, Model, Term, equation};
 use std::ops::Range;
 
@@ -40,6 +41,8 @@ pub struct Stage {
     pub explained: Option<f64>,
     /// What its data could not determine.
     pub unidentifiable: Vec<String>,
+    /// The effect that its law lacked at its end; `None` where no evidence stood out.
+    pub missing: Option<Missing>,
 }
 
 impl Stage {
@@ -256,6 +259,7 @@ fn begin(identifier: &Identifier, start: f64) -> Stage {
         explained: None,
         coefficients: identifier.coefficients().to_vec(),
         unidentifiable: identifier.unidentifiable(),
+        missing: None,
     }
 }
 
@@ -265,5 +269,6 @@ fn renew(stage: &mut Stage, identifier: &Identifier, t: f64) {
     stage.identified = output.identified_time;
     (stage.law_number, stage.recognised) = (output.law_number, output.recognised);
     (stage.drifting, stage.valid, stage.explained) = (output.drifting, output.valid, output.explained);
+    stage.missing = output.missing;
     stage.coefficients.copy_from_slice(identifier.coefficients());
 }
