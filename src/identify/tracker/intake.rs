@@ -65,7 +65,7 @@ impl Tracker {
         let size = intake.quarantine.size();
         let expected = known.then(|| (expected(problem, law, &segment.scales, size), law.run.filter));
         let measured = [problem.channels.q, problem.channels.qd];
-        intake.quarantine.take(reading, measured, problem.hold, window.pace(), expected);
+        intake.quarantine.take(reading, measured, window.timing(), window.pace(), expected);
     }
 
     /// What the sensors of q, q̇ and F do.

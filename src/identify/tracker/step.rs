@@ -1,7 +1,7 @@
 //! What a sample does: the law in use is followed, the segment refined, coefficients that move are tracked.
 
 use super::recognition::TRIAL_BUDGET;
-use super::state::{Setup, Tracker, YOUNG};
+use super::state::{Fitting, Setup, Tracker, YOUNG};
 use crate::evidence::Law;
 use crate::identify::change::SUSPENSE;
 use crate::identify::problem::Problem;
@@ -40,7 +40,7 @@ impl Tracker {
         }
         let switches = self.published.switches.count;
         self.window.push(reading);
-        self.weak_form.step(problem, sample);
+        self.weak_form.step(problem, self.window.timing().hold, sample);
         if self.window.end().is_multiple_of(REST_EVERY) {
             self.weak_form.rest(problem, setup.first_noise(&self.difference_noise));
         }
@@ -144,7 +144,7 @@ impl Tracker {
         if self.is_in_suspense() || !self.segment.refine(setup.problem, setup.settings, &self.window, budget) {
             return;
         }
-        if self.give_up_guess() || self.leave(setup) {
+        if self.give_up_guess() || self.leave(setup) || self.change_timing() {
             return;
         }
         self.published.missing = self.segment.missing;
@@ -161,6 +161,25 @@ impl Tracker {
             self.refute_law();
         }
         self.take_into_use(setup.problem, trusted, !waits, mixed);
+    }
+
+    /// The record has decided that the excitation acted otherwise than was taken for granted: what was fitted under that
+    /// is no law.
+    fn change_timing(&mut self) -> bool {
+        let Some(timing) = self.segment.likelier_timing() else { return false };
+        self.window.set_timing(timing);
+        self.segment.begin_under_another_timing(&self.window);
+        self.alternative.begin_under_another_timing(&self.window);
+        if self.fitting == Fitting::Contested {
+            self.fitting = Fitting::Refining;
+        }
+        self.start.begin(self.window.end());
+        self.schedule.rows_from = self.window.end();
+        self.monitor.stop();
+        if self.regime.law().is_some() {
+            self.supersede();
+        }
+        true
     }
 
     /// What the run that has just closed says is published; without a law to trust the std of the last one are none of

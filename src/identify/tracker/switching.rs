@@ -70,7 +70,7 @@ impl Tracker {
 
     /// The law in use never was the record's: the one that is comes into use with its next run. What spoke against the
     /// one before says nothing of a switch.
-    fn supersede(&mut self) {
+    pub(super) fn supersede(&mut self) {
         self.monitor.stop();
         self.monitor.bank.clear();
         self.monitor.empirical_null.clear();
