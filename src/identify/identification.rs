@@ -7,6 +7,7 @@ use super::recording::Recording;
 use super::report::{Coefficient, SensorState};
 use super::sample::Skipped;
 use super::settings::{Method, Settings};
+use crate::estimation::Missing;
 use crate::law::{Hold, Model, Term, equation};
 use std::ops::Range;
 
@@ -38,6 +39,8 @@ pub struct Stage {
     /// Share of the force's variance that the coefficients explain: of a law without inertia, and of one of motion
     /// where they are those of the weak form, which are not validated.
     pub explained: Option<f64>,
+    /// The effect of the catalogue that its law lacks most, where one stands out.
+    pub missing: Option<Missing>,
     /// What its data could not determine.
     pub unidentifiable: Vec<String>,
 }
@@ -98,6 +101,8 @@ pub struct Identification {
     pub known_laws: SavedLaws,
     /// The sensors' faults, in the order of their start.
     pub sensors: Vec<SensorFault>,
+    /// What the excitation does between samples, by the record; `None` where it does not tell and the law depends on it.
+    pub hold: Option<Hold>,
     /// The samples that were not used, and why.
     pub skipped: Vec<Skipped>,
 }
@@ -184,6 +189,7 @@ pub fn identify_knowing(
         noise_force: None,
         known_laws: known.clone(),
         sensors: Vec::new(),
+        hold: Some(settings.hold),
         skipped: Vec::new(),
     };
     for piece in recording.pieces() {
@@ -222,6 +228,7 @@ fn follow(
     present.unidentifiable = identifier.unidentifiable();
     found.stages.push(present);
     found.known_laws = identifier.known_laws();
+    found.hold = identifier.output().hold;
     found.noise_q = identifier.output().noise_q.or(found.noise_q);
     found.noise_force = identifier.output().noise_force.or(found.noise_force);
     found.noise_qd = identifier.output().noise_qd.or(found.noise_qd);
@@ -254,6 +261,7 @@ fn begin(identifier: &Identifier, start: f64) -> Stage {
         drifting: false,
         valid: false,
         explained: None,
+        missing: None,
         coefficients: identifier.coefficients().to_vec(),
         unidentifiable: identifier.unidentifiable(),
     }
@@ -265,5 +273,6 @@ fn renew(stage: &mut Stage, identifier: &Identifier, t: f64) {
     stage.identified = output.identified_time;
     (stage.law_number, stage.recognised) = (output.law_number, output.recognised);
     (stage.drifting, stage.valid, stage.explained) = (output.drifting, output.valid, output.explained);
+    stage.missing = output.missing;
     stage.coefficients.copy_from_slice(identifier.coefficients());
 }

@@ -3,8 +3,8 @@
 use super::found::{Run, noise, stages};
 use crate::cli::output::Pairs;
 use crate::cli::stage_limit::StageLimit;
-use crate::identify::{SensorFault, Stage};
-use crate::law::{Units, unit_of};
+use crate::identify::{Missing, SensorFault, Stage};
+use crate::law::{Catalogue, Hold, Units, unit_of};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -17,6 +17,8 @@ pub(super) struct Report {
     noise: Pairs,
     sensors: Vec<SensorReport>,
     hold: &'static str,
+    /// What the record says of it; null where it does not tell and the law depends on it.
+    hold_found: Option<&'static str>,
     gaps: Vec<[f64; 2]>,
     skipped: usize,
 }
@@ -47,6 +49,8 @@ struct StageReport {
     explained: Option<f64>,
     /// Whether the coefficients were moving at the stage's end.
     drifting: bool,
+    /// The effect that the law lacks most; null where none stands out.
+    missing: Option<MissingReport>,
     unidentifiable: Vec<String>,
     /// What any method could reach on this stage; null where that is not known.
     limit: Option<LimitReport>,
@@ -66,6 +70,20 @@ impl SensorReport {
     fn of(fault: &SensorFault) -> SensorReport {
         let SensorFault { channel, kind, start, end } = *fault;
         SensorReport { channel, kind: kind.id(), start, end }
+    }
+}
+
+/// An effect of the catalogue that a law lacks.
+#[derive(Serialize)]
+struct MissingReport {
+    effect: &'static str,
+    /// Log-likelihood that it would gain, less that of chance among all candidates, nats.
+    evidence: f64,
+}
+
+impl MissingReport {
+    fn of(missing: Missing) -> MissingReport {
+        MissingReport { effect: Catalogue::ENTRIES[missing.entry].id, evidence: missing.evidence }
     }
 }
 
@@ -90,6 +108,7 @@ impl Report {
             noise: Pairs(noise(found)),
             sensors: found.sensors.iter().map(SensorReport::of).collect(),
             hold: settings.hold.id(),
+            hold_found: found.hold.map(Hold::id),
             gaps: opened.recording.gaps().into_iter().map(|gap| [gap.start, gap.end]).collect(),
             skipped: found.skipped.len(),
         }
@@ -118,6 +137,7 @@ impl StageReport {
                 .collect(),
             explained: stage.explained,
             drifting: stage.drifting,
+            missing: stage.missing.map(MissingReport::of),
             unidentifiable: stage.unidentifiable.clone(),
             limit: limit.map(|limit| LimitReport::of(stage, limit)),
         }

@@ -4,7 +4,7 @@ use super::found::{Run, noise, stages};
 use crate::cli::stage_limit::StageLimit;
 use crate::cli::words::percent;
 use crate::identify::Stage;
-use crate::law::{Term, Units, unit_of};
+use crate::law::{Catalogue, Term, Units, unit_of};
 use std::fmt::Write;
 
 /// Least width of the column of terms.
@@ -55,12 +55,21 @@ fn head(run: &Run) -> String {
     }
     text += &match run.gives_force {
         true => "F is the output: F = law(q, q̇)\n".into(),
-        false => format!("between samples: {} ({})\n", run.settings.hold, run.hold_from),
+        false => format!("between samples: {} ({}){}\n", run.settings.hold, run.hold_from, otherwise(run)),
     };
     let noise: Vec<String> = noise(&run.found).iter().map(|(channel, std)| format!("{channel} {std:.3e}")).collect();
     let noise = if noise.is_empty() { "not known".into() } else { noise.join(", ") };
     let _ = writeln!(text, "sensor noise (std): {noise}");
     text
+}
+
+/// What the record says of the hold, where it is not that of the settings.
+fn otherwise(run: &Run) -> String {
+    match run.found.hold {
+        Some(hold) if hold == run.settings.hold => String::new(),
+        Some(hold) => format!("; the record says: {hold}"),
+        None => "; the record does not tell, and the law depends on it".into(),
+    }
 }
 
 /// The law on one line, its coefficients with their std, units and what any method could reach, and what is not known.
@@ -91,6 +100,10 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
     }
     text += &lacking(stage);
     text += &explained(stage);
+    if let Some(missing) = stage.missing {
+        let lacks = Catalogue::ENTRIES[missing.entry];
+        let _ = writeln!(text, "  the law lacks an effect, most of all {}: {}", lacks.id, lacks.equation);
+    }
     if limit.is_some_and(|limit| !limit.explained()) {
         text += "  the law leaves more than sensor noise: no comparison with what any method could reach\n";
     }

@@ -260,10 +260,12 @@ impl Segment {
         self.timing.likelier().filter(|_| self.is_calm())
     }
 
-    /// The window has another timing by now: the record's fit begins anew.
-    pub fn begin_under_another_timing(&mut self, window: &Window) {
-        self.runs = Runs::default();
-        self.stability.clear();
+    /// The window has another timing by now: the fit goes on under it; where the law depends on it, it begins anew.
+    pub fn go_on_under_another_timing(&mut self, window: &Window) {
+        if self.depends_on_timing() {
+            self.runs = Runs::default();
+            self.stability.clear();
+        }
         self.constancy.clear();
         self.timing.forget();
         (self.fit.decrement, self.fit.gain) = (f64::INFINITY, f64::INFINITY);

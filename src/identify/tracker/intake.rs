@@ -72,12 +72,16 @@ impl Tracker {
     pub(super) fn sensors(&self) -> [SensorState; 3] {
         let Intake { excitation, quarantine, force_lost, .. } = &self.intake;
         let [q, qd, kicked] = quarantine.sensors();
+        let late = |state: SensorState, lag: i8| match state {
+            SensorState::Ok if self.window.timing().lag == lag => SensorState::Late,
+            state => state,
+        };
         let force = match (force_lost, excitation.is_faulty()) {
             (true, _) => SensorState::Stuck,
             (false, true) => SensorState::Outlier,
             (false, false) => kicked,
         };
-        [q, qd, force]
+        [late(q, 1), late(qd, 1), late(force, -1)]
     }
 
     /// Whether the law in use has been held against the last samples, and nothing is as likely as it.

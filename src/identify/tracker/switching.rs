@@ -55,7 +55,7 @@ impl Tracker {
             false => self.segment.fit.overdispersion,
         };
         Decision {
-            samples: self.segment.length(suspect.start) + self.known_samples(),
+            samples: self.worth(self.segment.length(suspect.start) + self.known_samples()),
             overdispersion,
             proven: self.regime.is_valid() || self.monitor.law.proven,
             explains: self.explains(),
