@@ -101,6 +101,8 @@ pub struct Identification {
     pub known_laws: SavedLaws,
     /// The sensors' faults, in the order of their start.
     pub sensors: Vec<SensorFault>,
+    /// What the excitation does between samples, by the record; `None` where it does not tell and the law depends on it.
+    pub hold: Option<Hold>,
     /// The samples that were not used, and why.
     pub skipped: Vec<Skipped>,
 }
@@ -187,6 +189,7 @@ pub fn identify_knowing(
         noise_force: None,
         known_laws: known.clone(),
         sensors: Vec::new(),
+        hold: Some(settings.hold),
         skipped: Vec::new(),
     };
     for piece in recording.pieces() {
@@ -225,6 +228,7 @@ fn follow(
     present.unidentifiable = identifier.unidentifiable();
     found.stages.push(present);
     found.known_laws = identifier.known_laws();
+    found.hold = identifier.output().hold;
     found.noise_q = identifier.output().noise_q.or(found.noise_q);
     found.noise_force = identifier.output().noise_force.or(found.noise_force);
     found.noise_qd = identifier.output().noise_qd.or(found.noise_qd);
