@@ -6,10 +6,10 @@ use super::figures;
 use super::input::{Input, InputArguments};
 use super::output::{self, Targets};
 use super::pictures::PictureArguments;
-use super::words::percent;
-use crate::diagnose::{Comparison, Estimate, NOISE_RATIO, Options, Side, Verdict, compare};
+use super::words::{digits, number, percent, quantity};
+use crate::diagnose::{Comparison, Estimate, NOISE_RATIO, Options, Side, Verdict};
 use crate::identify::Recording;
-use crate::law::{Hold, Model, equation};
+use crate::law::{Model, equation, unit_of};
 use clap::Args;
 use std::fmt::Write;
 
@@ -50,12 +50,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let picture = arguments.picture.open(&mut targets)?;
     let input = Input::open(&arguments.input.data, &arguments.input.model)?.thinned();
     fits(options.window, &input)?;
-    let recordings = input.judged();
-    let found = compare(&input.model, &recordings, &Options { units: input.units, ..options });
+    let found = input.compared(&options);
     picture.map_or(Ok(()), |picture| picture.draw(&figures::comparison(&found)))?;
-    let holds: Vec<Hold> = recordings.iter().map(|(_, hold)| *hold).collect();
     if arguments.json {
-        output::print_json(&Report::of(&found, &holds))
+        output::print_json(&Report::of(&found))
     } else {
         output::print(&text(&found, &input.model, &input.file))
     }
@@ -148,8 +146,9 @@ fn off(found: &Comparison) -> String {
     let mut indices: Vec<usize> = (0..best.terms.len()).filter(|index| distance(*index) > 3.0).collect();
     indices.sort_by(|a, b| distance(*b).total_cmp(&distance(*a)));
     let change = |index: &usize| {
-        let name = best.terms[*index].name();
-        format!("{name} {:.4} is rather {:.4}", given.coefficients[*index], best.coefficients[*index])
+        let (term, std) = (best.terms[*index], best.std[*index].unwrap_or(0.0));
+        let rather = quantity(best.coefficients[*index], std, unit_of(term, &found.units));
+        format!("{} {} is rather {rather}", term.name(), number(given.coefficients[*index], 0.0))
     };
     indices.iter().take(3).map(change).collect::<Vec<_>>().join(", ")
 }
@@ -160,22 +159,30 @@ fn table(found: &Comparison) -> String {
     let mut line = |name: &str, values: [String; 2]| {
         let _ = writeln!(text, "{name:<34}{:>14}{:>20}", values[0], values[1]);
     };
-    let number = |value: Option<f64>| value.map_or_else(|| "–".into(), |value| format!("{value:.4e}"));
-    line(
-        &format!("force residual ({:.3} s windows)", found.window),
-        sides.map(|side| number(Some(side.force_residual))),
-    );
-    line("noise floor", sides.map(|side| number(Some(side.noise_floor))));
+    let share = |value: Option<f64>| value.map_or_else(|| "–".into(), percent);
+    line(&format!("force residual ({:.3} s windows)", found.window), sides.map(|side| percent(side.force_residual)));
+    line("noise floor", sides.map(|side| percent(side.noise_floor)));
     line("residual ÷ noise floor", sides.map(|side| ratio(side.ratio())));
     line(
         "free run, RMSE ÷ std",
-        sides.map(|side| side.diverged.map_or(number(side.free_run_nrmse), |t| format!("diverges {t:.2} s"))),
+        sides.map(|side| side.diverged.map_or(share(side.free_run_nrmse), |t| format!("diverges {t:.2} s"))),
     );
     if sides.iter().any(|side| side.free_run_nrmse_velocity.is_some()) {
-        line("  of the velocity", sides.map(|side| number(side.free_run_nrmse_velocity)));
+        line("  of the velocity", sides.map(|side| share(side.free_run_nrmse_velocity)));
     }
-    line(&format!("open loop over {} s, RMSE", found.horizon), sides.map(|side| number(side.window_rmse)));
+    let rmse = |value: Option<f64>| value.map_or_else(|| "–".into(), |value| digits(value, 3));
+    line(
+        &format!("open loop over {} s, RMSE{}", found.horizon, predicted(found)),
+        sides.map(|side| rmse(side.window_rmse)),
+    );
     text
+}
+
+/// `, m`: in what the open-loop error is told; q̇'s unit where q is not measured.
+fn predicted(found: &Comparison) -> String {
+    let of_velocity = found.noise.iter().all(|noise| noise[0] == 0.0);
+    let unit = if of_velocity { found.units.velocity() } else { found.units.displacement() };
+    unit.filter(|unit| unit.symbol != "1").map_or_else(String::new, |unit| format!(", {}", unit.symbol))
 }
 
 fn numbers(found: &Comparison, model: &Model) -> String {
@@ -189,10 +196,11 @@ fn numbers(found: &Comparison, model: &Model) -> String {
         .collect();
     let mut text = format!("\nbest of this form: {}\n", equation(&pairs, found.forced));
     for (index, entry) in model.terms.iter().enumerate() {
+        let unit = || unit_of(entry.term, &found.units);
         let known = |law: &Estimate| match law.std[index] {
-            Some(std) => format!("{:.6e} ± {std:.1e}", law.coefficients[index]),
+            Some(std) => quantity(law.coefficients[index], std, unit()),
             None if law.undetermined.contains(&entry.term) => "not determined".into(),
-            None => format!("{:.6e} (held)", law.coefficients[index]),
+            None => format!("{} (held)", quantity(law.coefficients[index], 0.0, unit())),
         };
         let _ = writeln!(text, "  {:<28} {:>26} {:>26}", entry.key, known(given), known(best));
     }
@@ -206,12 +214,9 @@ fn recordings(found: &Comparison) -> String {
     let mut text = String::from("\nby recording: force residual as given, best, noise floor; free run as given\n");
     for (index, source) in found.sources.iter().enumerate() {
         let (given, best) = (&found.given.each[index], &found.best.each[index]);
-        let free = given.free_run_nrmse.map_or_else(|| "–".into(), |value| format!("{value:.4e}"));
-        let _ = writeln!(
-            text,
-            "  {:.4e} {:.4e} {:.4e}  {free:>10}  {source}",
-            given.force_residual, best.force_residual, given.noise_floor
-        );
+        let free = given.free_run_nrmse.map_or_else(|| "–".into(), percent);
+        let [given, best, floor] = [given.force_residual, best.force_residual, given.noise_floor].map(percent);
+        let _ = writeln!(text, "  {given:>10} {best:>10} {floor:>10} {free:>10}  {source}");
     }
     text
 }

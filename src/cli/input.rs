@@ -5,7 +5,7 @@ use super::error::CommandError;
 use super::looked;
 use super::output;
 use crate::data::{self, Opened};
-use crate::diagnose::Posed;
+use crate::diagnose::{Comparison, Options, Posed, compare_posed};
 use crate::identify::{self, Gap, Recording, Settings};
 use crate::law::{Given, Hold, Model, ModelTerm, Term, Units};
 use clap::Args;
@@ -110,14 +110,13 @@ impl Input {
         self.recordings.iter().collect()
     }
 
-    /// The recordings, each with the hold that is known, or under which the model's law leaves least.
-    pub(super) fn judged(&self) -> Vec<(&Recording, Hold)> {
-        let hold = || {
-            let posed = Posed::new(&self.model.freed(), &self.recordings(), None)?;
-            Some(posed.law()?.0.timing.hold)
-        };
-        let hold = self.hold.or_else(hold).unwrap_or(Hold::Linear);
-        self.recordings.iter().map(|recording| (recording, hold)).collect()
+    /// The model held against the recordings, each with the hold that is known, or under which the best of its form leaves least.
+    pub(super) fn compared(&self, options: &Options) -> Comparison {
+        let posed = Posed::new(&self.model.freed(), &self.recordings(), self.hold);
+        let law = posed.as_ref().and_then(Posed::law);
+        let hold = self.hold.or(law.map(|(law, _)| law.timing.hold)).unwrap_or(Hold::Linear);
+        let recordings: Vec<_> = self.recordings.iter().map(|recording| (recording, hold)).collect();
+        compare_posed(&self.model, &recordings, posed.as_ref(), &Options { units: self.units, ..*options })
     }
 
     /// The recordings, each with the hold that is known, or under which it is likeliest.
@@ -138,12 +137,6 @@ impl Input {
     /// The arguments by which the recordings were named, as for another command.
     pub(super) fn named(&self) -> String {
         self.recordings.iter().map(Recording::source).collect::<Vec<_>>().join(" ")
-    }
-
-    /// The unit of a term's coefficient behind its value; empty where it is not known or none.
-    pub(super) fn unit(&self, term: Term) -> String {
-        let unit = self.units.coefficient(term).filter(|unit| unit.symbol != "1");
-        unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol))
     }
 
     /// Why there is no law.

@@ -9,7 +9,7 @@ use super::input::{Input, InputArguments};
 use super::looked::Looked;
 use super::output::Targets;
 use super::progress::Waiting;
-use crate::diagnose::{Options, compare as compare_with};
+use crate::diagnose::Options;
 use crate::report::{Block, page};
 use clap::Args;
 use std::path::PathBuf;
@@ -57,7 +57,7 @@ fn blocks(arguments: &Arguments) -> Result<Vec<Block>, CommandError> {
             Block::Verbatim(told.text),
         ]);
     }
-    let compared = compare_with(&input.model, &input.judged(), &Options { units: input.units, ..Options::default() });
+    let compared = input.compared(&Options::default());
     blocks.extend([
         Block::Figure(figures::comparison(&compared)),
         Block::Verbatim(compare::text(&compared, &input.model, &input.file)),

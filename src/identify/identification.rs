@@ -39,10 +39,10 @@ pub struct Stage {
     /// Share of the force's variance that the coefficients explain: of a law without inertia, and of one of motion
     /// where they are those of the weak form, which are not validated.
     pub explained: Option<f64>,
-    /// The effect of the catalogue that its law lacks most, where one stands out.
-    pub missing: Option<Missing>,
     /// What its data could not determine.
     pub unidentifiable: Vec<String>,
+    /// The effect that its law lacked at its end; `None` where no evidence stood out.
+    pub missing: Option<Missing>,
 }
 
 impl Stage {
@@ -261,9 +261,9 @@ fn begin(identifier: &Identifier, start: f64) -> Stage {
         drifting: false,
         valid: false,
         explained: None,
-        missing: None,
         coefficients: identifier.coefficients().to_vec(),
         unidentifiable: identifier.unidentifiable(),
+        missing: None,
     }
 }
 

@@ -26,7 +26,7 @@ const TARGETS: [(Platform, &str); 3] = [
 pub fn build(packages: &[&str]) -> Result<(), Error> {
     let environment = python::platforms()?;
     let mut targets = std::process::Command::new("rustup");
-    run(targets.args(["target", "add", "--quiet"]).args(TARGETS.map(|(_, target)| target)), RUSTUP)?;
+    run(targets.args(["--quiet", "target", "add"]).args(TARGETS.map(|(_, target)| target)), RUSTUP)?;
     for (platform, target) in TARGETS {
         build_one(&environment, platform, target, packages)?;
     }

@@ -1,10 +1,10 @@
 //! The JSON document of `switchid identify`.
 
-use super::found::{Run, noise, stages};
+use super::found::{Run, missing, noise, stages};
 use crate::cli::output::Pairs;
 use crate::cli::stage_limit::StageLimit;
 use crate::identify::{Missing, SensorFault, Stage};
-use crate::law::{Catalogue, Hold, Units, unit_of};
+use crate::law::{Hold, Units, unit_of};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -13,6 +13,8 @@ use std::collections::BTreeMap;
 pub(super) struct Report {
     /// What the law gives: `F`, or the motion.
     output: &'static str,
+    /// The effect that a stage's law lacks most evidently; null where none does.
+    missing: Option<&'static str>,
     stages: Vec<StageReport>,
     noise: Pairs,
     sensors: Vec<SensorReport>,
@@ -47,13 +49,27 @@ struct StageReport {
     units: BTreeMap<String, String>,
     /// Share of the force's variance that the coefficients explain; null for a law of motion that states its own std.
     explained: Option<f64>,
+    /// What the law lacks at the stage's end; null where no evidence stands out.
+    missing: Option<MissingReport>,
     /// Whether the coefficients were moving at the stage's end.
     drifting: bool,
-    /// The effect that the law lacks most; null where none stands out.
-    missing: Option<MissingReport>,
     unidentifiable: Vec<String>,
     /// What any method could reach on this stage; null where that is not known.
     limit: Option<LimitReport>,
+}
+
+/// An effect that a law lacks.
+#[derive(Serialize)]
+struct MissingReport {
+    effect: &'static str,
+    /// Log-likelihood that it would gain, less that of chance, nats.
+    evidence: f64,
+}
+
+impl MissingReport {
+    fn of(missing: Missing) -> MissingReport {
+        MissingReport { effect: missing.effect().id, evidence: missing.evidence }
+    }
 }
 
 /// A sensor's fault.
@@ -70,20 +86,6 @@ impl SensorReport {
     fn of(fault: &SensorFault) -> SensorReport {
         let SensorFault { channel, kind, start, end } = *fault;
         SensorReport { channel, kind: kind.id(), start, end }
-    }
-}
-
-/// An effect of the catalogue that a law lacks.
-#[derive(Serialize)]
-struct MissingReport {
-    effect: &'static str,
-    /// Log-likelihood that it would gain, less that of chance among all candidates, nats.
-    evidence: f64,
-}
-
-impl MissingReport {
-    fn of(missing: Missing) -> MissingReport {
-        MissingReport { effect: Catalogue::ENTRIES[missing.entry].id, evidence: missing.evidence }
     }
 }
 
@@ -104,6 +106,7 @@ impl Report {
         let forced = settings.channels.excitation;
         Report {
             output: if run.gives_force { "F" } else { "motion" },
+            missing: missing(found).map(|(_, missing)| missing.effect().id),
             stages: stages(run).map(|(stage, limit)| StageReport::of(stage, limit, forced, &opened.units)).collect(),
             noise: Pairs(noise(found)),
             sensors: found.sensors.iter().map(SensorReport::of).collect(),
@@ -136,8 +139,8 @@ impl StageReport {
                 .filter_map(|(known, _)| Some((known.term.name(), unit_of(known.term, units)?)))
                 .collect(),
             explained: stage.explained,
-            drifting: stage.drifting,
             missing: stage.missing.map(MissingReport::of),
+            drifting: stage.drifting,
             unidentifiable: stage.unidentifiable.clone(),
             limit: limit.map(|limit| LimitReport::of(stage, limit)),
         }

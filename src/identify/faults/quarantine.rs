@@ -9,7 +9,7 @@ use crate::identify::reading::Reading;
 use crate::identify::report::SensorState;
 use crate::identify::sample::Sample;
 use crate::identify::timing::Timing;
-use crate::law::Drive;
+use crate::law::{Drive, State};
 use serde::{Deserialize, Serialize};
 
 /// Samples held at most: what has no name by then has the likeliest one.
@@ -129,7 +129,10 @@ impl Quarantine {
         let before = self.last.replace(reading.sample);
         self.samples += 1.0;
         self.sensors = self.standing();
-        let arrival = before.map(|before| self.arrival(reading, &before, measured, timing));
+        let arrival = before.map(|before| {
+            let course = law.map_or([f64::INFINITY; 2], |(law, filter)| self.course(&law, filter, before, reading));
+            self.arrival(reading, &before, measured, timing, course)
+        });
         match (law, arrival) {
             (Some((law, filter)), Some(arrival)) if arrival.dt < OUTAGE * pace => {
                 let law = Expected { noise: law.noise_with(reading.unseen, filter.mean[0]), ..law };
@@ -185,7 +188,23 @@ impl Quarantine {
         self.sensors
     }
 
-    fn arrival(&mut self, reading: Reading, before: &Sample, measured: [bool; 2], timing: Timing) -> Arrival {
+    /// What q and q̇ have moved by at least since the sample before, by the law.
+    fn course(&self, law: &Expected, filter: Filter, before: Sample, reading: Reading) -> [f64; 2] {
+        let filter = if self.count == 0 { filter } else { self.weighing.hypothesis(0).filter() };
+        let dt = reading.sample.t - before.t;
+        let qdd = law.motion.acceleration(State { q: filter.mean[0], qd: filter.mean[1] }, before.excitation);
+        let speed = filter.mean[1].abs() - UNEXPECTED * filter.covariance[1][1].sqrt();
+        [speed * dt, qdd.abs() * dt - UNEXPECTED * (law.noise.process * dt).sqrt()]
+    }
+
+    fn arrival(
+        &mut self,
+        reading: Reading,
+        before: &Sample,
+        measured: [bool; 2],
+        timing: Timing,
+        course: [f64; 2],
+    ) -> Arrival {
         let sample = reading.sample;
         let earlier = std::mem::replace(&mut self.earlier, before.excitation);
         let drive = timing.drive([earlier, before.excitation, sample.excitation]);
@@ -196,7 +215,7 @@ impl Quarantine {
             let index = channel as usize;
             let value = [sample.q, sample.qd][index];
             let start = event.max(self.bursts[index] / self.samples);
-            let repeats = self.repetitions[index].take(value);
+            let repeats = self.repetitions[index].take(value, course[index]);
             measured[index].then_some(Value { value, repeats, start })
         });
         Arrival { reading, dt, drive, values, runs }
