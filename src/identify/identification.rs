@@ -144,7 +144,11 @@ pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) ->
             break;
         }
     }
-    let tried = rivals.iter().filter_map(|(hold, identifier)| Some((*hold, identifier.likelihood()?)));
+    // a rival finds by itself where the stream has another hold than its own
+    let found = |(hold, identifier): &(Hold, Identifier)| {
+        Some((identifier.output().hold.unwrap_or(*hold), identifier.likelihood()?))
+    };
+    let tried = rivals.iter().filter_map(found);
     tried.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(Hold::Linear, |(hold, _)| hold)
 }
 
