@@ -22,7 +22,7 @@ const HYPOTHESES: usize = 20;
 const YOUNG: u64 = 5000;
 
 /// … or than this many natural times hold, where the samples are few to one …
-const YOUNG_TIMES: f64 = 32.0;
+const YOUNG_TIMES: f64 = 64.0;
 
 /// … but not below what a test of whiteness takes.
 const LEAST_YOUNG: u64 = 100;
