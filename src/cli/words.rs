@@ -33,10 +33,11 @@ pub(super) fn chance(probability: f64) -> String {
 
 /// A number that no std comes with: so many significant digits.
 pub(super) fn digits(value: f64, count: usize) -> String {
-    let exponent = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    let text = format!("{value:.*e}", count - 1);
+    let exponent = text.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()).unwrap_or(0);
     match (-6..6).contains(&exponent) {
         true => format!("{value:.*}", (count as i32 - 1 - exponent).max(0) as usize),
-        false => format!("{value:.*e}", count - 1),
+        false => text,
     }
 }
 
@@ -149,7 +150,8 @@ mod tests {
     fn shares_and_chances_are_short() {
         let shares = [0.19, 0.045, 0.0032, 2.1e-5, 2.1e-9, 0.0].map(percent);
         assert_eq!(shares, ["19 %", "4.5 %", "0.32 %", "0.0021 %", "2.1e-7 %", "0 %"]);
-        assert_eq!([0.01, -1234.5, 0.0, 1.5e-9].map(|value| digits(value, 3)), ["0.0100", "-1234", "0.00", "1.50e-9"]);
+        let told = [0.01, 0.009996, -1234.5, 0.0, 1.5e-9].map(|value| digits(value, 3));
+        assert_eq!(told, ["0.0100", "0.0100", "-1234", "0.00", "1.50e-9"]);
         assert_eq!([0.0, 3.2e-45, 0.25].map(chance), ["< 1e-300", "3.2e-45", "0.25"]);
     }
 }
