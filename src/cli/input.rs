@@ -4,6 +4,7 @@ use super::columns::ColumnArguments;
 use super::error::CommandError;
 use super::looked;
 use super::output;
+use super::words::{quoted, seconds};
 use crate::data::{self, Opened};
 use crate::diagnose::{Comparison, Options, Posed, compare_posed};
 use crate::identify::{self, Gap, Recording, Settings};
@@ -134,9 +135,14 @@ impl Input {
         self.recordings.iter().any(|recording| recording.channels().excitation)
     }
 
-    /// The arguments by which the recordings were named, as for another command.
+    /// The arguments by which the recordings were named.
     pub(super) fn named(&self) -> String {
         self.recordings.iter().map(Recording::source).collect::<Vec<_>>().join(" ")
+    }
+
+    /// The recordings as a shell takes them.
+    pub(super) fn arguments(&self) -> String {
+        self.recordings.iter().map(|recording| quoted(recording.source())).collect::<Vec<_>>().join(" ")
     }
 
     /// Why there is no law.
@@ -167,8 +173,13 @@ pub(super) fn is_noiseless(std: [Option<f64>; 2], recording: &Recording) -> [boo
 /// What was taken otherwise than the file says.
 fn warnings(recording: &Recording) -> Vec<String> {
     let source = recording.source();
-    let gap =
-        |gap: Gap| format!("{source}: no samples from {} s to {} s: nothing is carried over it", gap.start, gap.end);
+    let gap = |gap: Gap| {
+        format!(
+            "{source}: no samples from {} s to {} s: nothing is carried over it",
+            seconds(gap.start),
+            seconds(gap.end)
+        )
+    };
     let mut warnings: Vec<String> = recording.gaps().into_iter().map(gap).collect();
     if !recording.channels().excitation {
         warnings.push(format!("{source}: there is no excitation: taken as free motion"));

@@ -40,6 +40,21 @@ pub(super) fn digits(value: f64, count: usize) -> String {
     }
 }
 
+/// An argument as a shell takes it.
+pub(super) fn quoted(argument: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./:@=+,%^".contains(c);
+    match !argument.is_empty() && argument.chars().all(is_plain) {
+        true => argument.into(),
+        false => format!("'{}'", argument.replace('\'', r"'\''")),
+    }
+}
+
+/// A time without the digits that only its binary form has, s.
+pub(super) fn seconds(t: f64) -> String {
+    let text = format!("{t:.9}");
+    text.trim_end_matches('0').trim_end_matches('.').into()
+}
+
 /// `(20.35 ± 0.05) N`, `20.35 ± 0.05` where the unit is not known.
 pub(super) fn quantity(value: f64, std: f64, unit: Option<String>) -> String {
     let number = number(value, std);
@@ -114,6 +129,12 @@ mod tests {
         ] {
             assert_eq!(number(value, std), text);
         }
+    }
+
+    #[test]
+    fn arguments_with_blanks_and_quotes_are_quoted() {
+        assert_eq!(["a/b.csv@0:5", "run 3.csv", "q's"].map(quoted), ["a/b.csv@0:5", "'run 3.csv'", r"'q'\''s'"]);
+        assert_eq!([29.997999999999593, 0.0, -5.0, 120.0].map(seconds), ["29.998", "0", "-5", "120"]);
     }
 
     #[test]

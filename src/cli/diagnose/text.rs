@@ -2,7 +2,7 @@
 
 use super::super::input::Input;
 use super::found::Found;
-use crate::cli::words::{chance, digits, effect_of, percent, quantity};
+use crate::cli::words::{chance, digits, effect_of, percent, quantity, quoted};
 use crate::diagnose::{Candidate, Clock, Diagnosis, Doubt, Finding, Law, StageDiagnosis, WORTH};
 use crate::law::{Catalogue, SiUnit, Units, equation, unit_of};
 use std::fmt::Write;
@@ -27,7 +27,7 @@ pub(in crate::cli) fn text(found: &Found, input: &Input) -> String {
         text += &stage_text(index, stage, input);
     }
     if let (Finding::Missing, Some(effect)) = (found.finding, &found.principal.effect) {
-        let (model, data) = (&input.file, input.named());
+        let (model, data) = (quoted(&input.file), input.arguments());
         let _ = writeln!(text, "\nnext: `switchid add {effect} --model {model} --data {data} -o BETTER.toml`");
     }
     text

@@ -15,6 +15,7 @@ use super::pictures::PictureArguments;
 use super::progress::{Progress, Waiting};
 use super::stage_limit::{force_limits, stage_limits};
 use super::trace::Trace;
+use super::words::seconds;
 use crate::data::{self, DataError};
 #[cfg(feature = "pictures")]
 use crate::identify::Coefficient;
@@ -246,7 +247,7 @@ fn settings(
 
 /// One by one where there are few.
 fn gap_warnings(source: &str, gaps: &[Gap]) -> Vec<String> {
-    let hole = |gap: &Gap| format!("no samples from {} s to {} s", gap.start, gap.end);
+    let hole = |gap: &Gap| format!("no samples from {} s to {} s", seconds(gap.start), seconds(gap.end));
     match gaps {
         [first, .., last] if gaps.len() > GAPS_TOLD => vec![format!(
             "{source}: {} gaps, the first with {}, the last with {}: identified anew after each, nothing is carried over \

@@ -2,7 +2,7 @@
 
 use super::found::{Run, noise, stages};
 use crate::cli::stage_limit::StageLimit;
-use crate::cli::words::{self, percent, quantity};
+use crate::cli::words::{self, percent, quantity, quoted, seconds};
 use crate::data::Section;
 use crate::identify::{Coefficient, Missing, Stage};
 use crate::law::{Term, Units, unit_of};
@@ -44,12 +44,13 @@ pub(super) fn text(run: &Run) -> String {
 
 /// What the law lacks, and what tells more of it.
 fn lacks(missing: Missing, run: &Run, stage: &Stage) -> String {
-    let (effect, nats, model) = (missing.effect().id, missing.evidence, &run.file);
+    let (effect, nats, model) = (missing.effect().id, missing.evidence, quoted(&run.file));
     let source = run.opened.recording.source();
     let data = match run.found.stages.len() {
         1 => source.to_string(),
         _ => format!("{}@{:.3}:{:.3}", file(source), stage.start, stage.end),
     };
+    let data = quoted(&data);
     format!("  this law lacks {effect} ({nats:.0} nats): run `switchid diagnose {data} --model {model}`\n")
 }
 
@@ -67,7 +68,8 @@ fn again(before: &[Stage], stage: &Stage) -> String {
 fn head(run: &Run) -> String {
     let recording = &run.opened.recording;
     let (first, last) = (recording.sample(0).t, recording.sample(recording.count() - 1).t);
-    let mut text = format!("{}: {} samples from {first} s to {last} s\n", recording.source(), recording.count());
+    let (source, count, first, last) = (recording.source(), recording.count(), seconds(first), seconds(last));
+    let mut text = format!("{source}: {count} samples from {first} s to {last} s\n");
     for column in &run.opened.columns {
         let _ = writeln!(text, "  {column}");
     }

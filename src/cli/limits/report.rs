@@ -1,7 +1,7 @@
 //! The limits as text and as JSON.
 
 use super::super::output::Pairs;
-use super::super::words::{noise, percent, quantity};
+use super::super::words::{noise, percent, quantity, seconds};
 use super::found::Limits;
 use crate::law::{Hold, Term, equation, unit_of};
 use crate::limits::Detection;
@@ -110,7 +110,7 @@ pub(super) fn text(found: &Limits) -> String {
 
 /// The first line.
 fn coefficients(found: &Limits) -> String {
-    let record = format!("{:.4} s of record", duration(found));
+    let record = format!("{} s of record", seconds(duration(found)));
     match found.bound.relative_error {
         Some(error) => format!(
             "coefficients: no method errs less than e = {error:.2e} ({} rms) on these {record}",

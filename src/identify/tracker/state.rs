@@ -20,7 +20,7 @@ const HYPOTHESES: usize = 20;
 
 /// A record is a long one from [`YOUNG`] samples on, or from those that this many natural times hold, where they are
 /// fewer …
-const YOUNG_TIMES: f64 = 32.0;
+const YOUNG_TIMES: f64 = 64.0;
 
 /// … but not below what a test of whiteness takes.
 const LEAST_YOUNG: u64 = 100;
