@@ -17,6 +17,7 @@ mod state;
 mod weak_start;
 
 pub use motion_scales::MotionScales;
+pub use nuisance_timing::YOUNG;
 pub use prior::Prior;
 pub use refinement::GROWTH;
 pub use state::{NOISE_MEMORY, Segment};

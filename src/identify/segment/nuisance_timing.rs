@@ -21,11 +21,13 @@ const DECISIVE: f64 = 6.0;
 /// What a hypothesis must explain of what any shares would: nearer to the best ones than to the next hypothesis.
 const EXPLAINED: f64 = 0.75;
 
-/// Records shorter than this are tested run by run, longer ones …
-const YOUNG: u64 = 5000;
+/// A record of fewer samples than this is refined at the faster pace, and tested run by run: its law is not yet linear
+/// within its std.
+pub const YOUNG: u64 = 5000;
 
-/// … when they have grown by this factor.
-const LOOK_AGAIN: f64 = 1.4;
+/// What is tested beside a run is tested again when the record has grown by this factor, twice in every doubling: most
+/// runs are spared the work.
+pub(super) const LOOK_AGAIN: f64 = 1.4;
 
 /// The posterior of the timings, and what it stands on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,7 +35,7 @@ pub(super) struct NuisanceTiming {
     test: TimingTest,
     /// Whether the run under way tests them.
     looking: bool,
-    /// Length of the record from which the next run does.
+    /// Length of the record from which the next run does: a young one is tested run by run.
     next_look: u64,
     /// Posterior probabilities, and by how much the shares of each differ from those in use.
     weights: [f64; Timing::ALL.len()],

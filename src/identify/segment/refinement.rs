@@ -8,6 +8,7 @@
 
 use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
+use super::nuisance_timing::LOOK_AGAIN;
 use super::prior::{InertiaPrior, Prior};
 use super::state::{NOISE_MEMORY, Runs, Segment};
 use crate::estimation::{Noise, Pass};
@@ -24,10 +25,6 @@ pub const GROWTH: f64 = 0.02;
 
 /// … and by this many samples.
 const FRESH: u64 = 8;
-
-/// Effects that the law lacks are looked for again when the record has grown by this factor, twice in every doubling:
-/// most runs are spared the work.
-const LOOK_AGAIN: f64 = 1.4;
 
 /// The record of a segment is folded into a prior when it fills this fraction of the window: the run that folds still
 /// has a tenth of it to catch up in.

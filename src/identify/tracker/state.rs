@@ -10,7 +10,7 @@ use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
 use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition, Scatter};
 use crate::identify::functional::WeakForm;
 use crate::identify::problem::Problem;
-use crate::identify::segment::{MotionScales, Segment, WeakStart};
+use crate::identify::segment::{MotionScales, Segment, WeakStart, YOUNG};
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
 use serde::{Deserialize, Serialize};
@@ -18,10 +18,8 @@ use serde::{Deserialize, Serialize};
 /// Hypotheses of a switch that are kept: each costs its share of every step.
 const HYPOTHESES: usize = 20;
 
-/// A segment with fewer samples than this is refined at the faster pace: its law is not yet linear within its std …
-const YOUNG: u64 = 5000;
-
-/// … or than this many natural times hold, where the samples are few to one …
+/// A record is a long one from [`YOUNG`] samples on, or from those that this many natural times hold, where they are
+/// fewer …
 const YOUNG_TIMES: f64 = 64.0;
 
 /// … but not below what a test of whiteness takes.
