@@ -5,9 +5,9 @@ use super::error::CommandError;
 use super::input::{Input, ModelArguments};
 use super::output::{self, Pairs, Targets};
 use super::progress::Waiting;
-use super::words::{number, percent};
-use crate::diagnose::{Addition, Law, Posed, improved_model, same_effect};
-use crate::law::{Catalogue, Expression, Term};
+use super::words::{digits, percent, quantity};
+use crate::diagnose::{Addition, Law, Posed, improved_model, refitted_model, same_effect};
+use crate::law::{Catalogue, Expression, Model, Term, unit_of};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;
@@ -37,6 +37,9 @@ pub(super) struct Arguments {
     /// Where to write the new model
     #[arg(short, long, value_name = "MODEL2")]
     output: PathBuf,
+    /// Write coefficients as "fit" in place of the values found, but for numbers that MODEL holds: for `identify` and `fmu`
+    #[arg(long)]
+    refit: bool,
     /// Overwrite the output file where it exists
     #[arg(long)]
     force: bool,
@@ -68,7 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let found = Waiting::on("fitting", || find(&input, term));
     let effect = arguments.effect.clone();
     let found = found.ok_or_else(|| CommandError::NotDetermined { data: input.named(), effect })?;
-    target.write(&improved_model(&input.model, &found.after).to_toml())?;
+    target.write(&written(&input.model, &found.after, arguments.refit).to_toml())?;
     if target.is_stdout() {
         Ok(())
     } else if arguments.json {
@@ -76,6 +79,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     } else {
         output::print(&text(arguments, &found, &input))
     }
+}
+
+/// The model that is written: with the law's values, or to be fitted anew.
+pub(super) fn written(model: &Model, law: &Law, refit: bool) -> Model {
+    if refit { refitted_model(model, law) } else { improved_model(model, law) }
 }
 
 /// The law with the effect, sharpened by the likelihood where that holds.
@@ -151,10 +159,10 @@ fn text(arguments: &Arguments, found: &Addition, input: &Input) -> String {
     }
     for ((term, value), std) in law.terms.iter().zip(&law.coefficients).zip(&law.std) {
         let name = law.effect_name(*term);
-        let _ = writeln!(text, "  {name:<28} {:>26}{}", number(*value, *std), input.unit(*term));
+        let _ = writeln!(text, "  {name:<28} {:>30}", quantity(*value, *std, unit_of(*term, &input.units)));
     }
     for (name, value) in inner(law) {
-        let _ = writeln!(text, "    {name:<26} {value:>26.6}");
+        let _ = writeln!(text, "    {name:<26} {:>30}", digits(value, 4));
     }
     text + &format!("written: {}\n", arguments.output.display())
 }

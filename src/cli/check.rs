@@ -7,6 +7,7 @@ use super::looked::Looked;
 use super::output::{self, Targets};
 use super::pictures::PictureArguments;
 use super::progress::Waiting;
+use super::words::seconds;
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;
@@ -99,8 +100,8 @@ fn text(looked: &Looked) -> String {
         "{}: {} samples from {} s to {} s, {} per second\n",
         recording.source(),
         t.len(),
-        t[0],
-        t[t.len() - 1],
+        seconds(t[0]),
+        seconds(t[t.len() - 1]),
         (1e6 * looked.rate()).round() / 1e6
     );
     looked.opened.columns.iter().for_each(|column| text += &format!("  {column}\n"));

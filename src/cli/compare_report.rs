@@ -3,7 +3,6 @@
 use super::diagnose::WindowReport;
 use super::output::Pairs;
 use crate::diagnose::{Bounds, Comparison, Error, Fail, Over, Side, Verdict};
-use crate::law::Hold;
 use serde::Serialize;
 
 /// The document.
@@ -71,12 +70,12 @@ struct ErrorReport {
 }
 
 impl Report {
-    /// Of a comparison, each recording with its hold.
-    pub(super) fn of(found: &Comparison, holds: &[Hold]) -> Report {
+    /// Of a comparison.
+    pub(super) fn of(found: &Comparison) -> Report {
         let error = |error: &Error| ErrorReport::of(error, found);
         let recordings = found.sources.iter().enumerate().map(|(index, source)| RecordingReport {
             data: source.clone(),
-            hold: holds[index].id(),
+            hold: found.holds[index].id(),
             noise: noise(found.noise[index]),
             error: error(&found.given.each[index]),
             best: error(&found.best.each[index]),

@@ -5,7 +5,7 @@ use super::input::Input;
 use super::looked::Looked;
 use super::words::percent;
 use crate::data::Opened;
-use crate::diagnose::{Candidate, Comparison, Diagnosis, Options, Place, Side, compare};
+use crate::diagnose::{Candidate, Comparison, Diagnosis, Doubt, Options, Place, Side, compare_posed};
 use crate::identify::{Identification, Recording};
 use crate::law::{Term, Units};
 use crate::report::{Axis, Figure, Layer, MOST, Panel};
@@ -81,11 +81,12 @@ pub(super) fn stages(opened: &Opened, found: &Identification, course: &Course) -
         let known = |edge: &[f64; 3]| edge.iter().all(|value| value.is_finite());
         let edges: Vec<[f64; 3]> = course.t.iter().zip(series).map(edge).filter(known).collect();
         let values: Vec<f64> = series.iter().map(|[value, _]| *value).collect();
+        let symbol = Some(coefficient.term.symbol()).filter(|symbol| !symbol.is_empty()).unwrap_or_else(|| "1".into());
         let mut layers: Vec<Layer> = bands(false).collect();
         layers.push(Layer::Area { name: "± std".into(), edges: sober(edges, &values) });
-        layers.push(Layer::line(&coefficient.term.name(), &course.t, &values));
+        layers.push(Layer::line(&symbol, &course.t, &values));
         layers.extend(alarms());
-        let label = format!("coefficient of {}", coefficient.term.symbol());
+        let label = format!("coefficient of {symbol}");
         panels.push(Panel { title: String::new(), x: Axis::of("t, s"), y: Axis::of(&label), layers });
     }
     let caption = format!(
@@ -179,7 +180,8 @@ fn over_motion(side: &Side, units: Units) -> [Panel; 2] {
 pub(super) fn diagnosis(input: &Input, found: &Diagnosis) -> Figure {
     let recordings: Vec<_> =
         input.recordings().into_iter().map(|recording| (recording, found.base.timing.hold)).collect();
-    let compared = compare(&input.model.freed(), &recordings, &Options { units: input.units, ..Options::default() });
+    let options = Options { units: input.units, ..Options::default() };
+    let compared = compare_posed(&input.model.freed(), &recordings, None, &options);
     let mut panels = over_motion(&compared.best, input.units);
     let drawn = found.candidates.iter().filter(|candidate| candidate.doubt.is_none()).take(DRAWN);
     let places: Vec<&Place> = compared.best.left.iter().flat_map(|left| &left.places).collect();
@@ -192,19 +194,12 @@ pub(super) fn diagnosis(input: &Input, found: &Diagnosis) -> Figure {
     let error = found.candidates.iter().take(8);
     let bars = error.map(|candidate| {
         let error = candidate.error().after;
-        (candidate.effect.clone(), 100.0 * error, percent(error))
+        let why = candidate.doubt.map_or_else(String::new, |doubt| format!(": {}", briefly(doubt)));
+        (candidate.effect.clone(), 100.0 * error, percent(error) + &why)
     });
-    let bars = bars.filter(|(_, error, _)| error.is_finite()).collect();
-    let now = found.errors[1];
-    let stairs = Panel {
-        title: String::new(),
-        x: Axis::log("held-out error with the candidate, %"),
-        y: Axis::default(),
-        layers: vec![
-            Layer::Bars(bars),
-            Layer::Mark { at: 100.0 * now.before, label: format!("without {}", percent(now.before)) },
-        ],
-    };
+    let before = found.errors[1].before;
+    let mark = Layer::Mark { at: 100.0 * before, label: format!("without any of them {}", percent(before)) };
+    let stairs = ladder("held-out error with the candidate, %", bars.collect(), mark);
     let effect = found.effect.as_deref().unwrap_or("nothing of the catalogue");
     Figure {
         title: format!("{}: what the law leaves over, and {effect} in it", input.named()),
@@ -253,24 +248,36 @@ fn curve(panel: &Panel, candidate: &Candidate, beside: &[(Term, f64)], of_veloci
 /// The error falling step by step to the noise floor; `floor` with the length of its windows, s.
 pub(super) fn staircase(steps: &[(String, f64)], [floor, window]: [f64; 2]) -> Figure {
     let bars = steps.iter().map(|(title, error)| (title.clone(), 100.0 * error, percent(*error))).collect();
-    let panel = Panel {
-        title: String::new(),
-        x: Axis::log("error on held-out data, %"),
-        y: Axis::default(),
-        layers: vec![
-            Layer::Bars(bars),
-            Layer::Mark { at: 100.0 * floor, label: format!("noise floor {}", percent(floor)) },
-        ],
-    };
+    let mark = Layer::Mark { at: 100.0 * floor, label: format!("noise floor {}", percent(floor)) };
+    let panel = ladder("error on held-out data, %", bars, mark);
     let caption = format!("Errors over windows of {window:.3} s, on stretches that no coefficient has seen.");
     Figure { title: "The error as effects join the law".into(), caption, panels: vec![panel] }
+}
+
+/// Bars from the left beside a mark.
+fn ladder(label: &str, bars: Vec<(String, f64, String)>, mark: Layer) -> Panel {
+    let bars: Vec<_> = bars.into_iter().filter(|(_, length, _)| length.is_finite()).collect();
+    let at = if let Layer::Mark { at, .. } = mark { Some(at) } else { None };
+    let x = Axis::of_bars(label, bars.iter().map(|(_, length, _)| *length).chain(at));
+    Panel { title: String::new(), x, y: Axis::default(), layers: vec![Layer::Bars(bars), mark] }
+}
+
+/// Why a candidate is not named.
+fn briefly(doubt: Doubt) -> &'static str {
+    match doubt {
+        Doubt::Sign => "wrong sign",
+        Doubt::Trap => "the law's own terms are it",
+        Doubt::Uncertain => "within its std",
+        Doubt::Worse => "explains nothing",
+        Doubt::Chance => "may be chance",
+    }
 }
 
 /// The smallest std of every coefficient ÷ its value.
 pub(super) fn limits(bars: &[(String, f64, String)]) -> Figure {
     let panel = Panel {
         title: String::new(),
-        x: Axis::log("smallest std of a coefficient, % of its value"),
+        x: Axis::of_bars("smallest std of a coefficient, % of its value", bars.iter().map(|(_, length, _)| *length)),
         y: Axis::default(),
         layers: vec![Layer::Bars(bars.to_vec())],
     };

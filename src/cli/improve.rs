@@ -1,5 +1,6 @@
 //! `switchid improve`: effects join the model until nothing is missing that the catalogue has.
 
+use super::add::written;
 use super::diagnose::{self, CandidateReport, TimingReport, WindowReport};
 use super::error::CommandError;
 use super::figures;
@@ -7,8 +8,9 @@ use super::input::{Input, InputArguments};
 use super::output::{self, Pairs, Targets};
 use super::pictures::PictureArguments;
 use super::progress::Waiting;
-use super::words::{number, percent};
+use super::words::{percent, quantity};
 use crate::diagnose::{Clock, Improvement, Law, Posed, Step, WindowError, improved_model};
+use crate::law::unit_of;
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;
@@ -37,6 +39,9 @@ pub(super) struct Arguments {
     /// Recordings that no coefficient has seen, on which every step's law is judged as it is
     #[arg(long, value_name = "DATA2", num_args = 1..)]
     validate: Vec<String>,
+    /// Write coefficients as "fit" in place of the values found, but for numbers that MODEL holds: for `identify` and `fmu`
+    #[arg(long)]
+    refit: bool,
     /// Overwrite output files where they exist
     #[arg(long)]
     force: bool,
@@ -109,7 +114,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
         false => Some(Input::open(&arguments.validate, &arguments.input.model)?),
     };
     let found = Waiting::on("improving", || find(&input, others.as_ref())).ok_or_else(|| input.undetermined())?;
-    target.write(&improved_model(&input.model, &found.law).to_toml())?;
+    target.write(&written(&input.model, &found.law, arguments.refit).to_toml())?;
     if let Some(picture) = picture {
         picture.draw(&figures::staircase(&stairs(&found), found.floor()))?;
     }
@@ -176,10 +181,12 @@ fn text(arguments: &Arguments, found: &Found, input: &Input) -> String {
     let mut text = diagnose::answer(diagnosis, Some(&found.clock), input).join("\n");
     let [floor, window] = found.floor();
     let validated = if found.validation.iter().any(Option::is_some) { "validation" } else { "" };
-    text += &format!("\n\nerror on held-out data, windows of {window:.3} s{validated:>32}\n");
+    let head = format!("error on held-out data, windows of {window:.3} s{validated:>32}");
+    text += &format!("\n\n{}\n", head.trim_end());
     for (index, (step, validation)) in found.steps().iter().zip(&found.validation).enumerate() {
         let other = validation.map_or_else(String::new, |errors| percent(errors[1].after));
-        let _ = writeln!(text, "{index:>3}  {:<40} {:>10} {other:>12}", title(step), percent(step.error()));
+        let line = format!("{index:>3}  {:<40} {:>10} {other:>12}", title(step), percent(step.error()));
+        text = text + line.trim_end() + "\n";
         for group in &step.ties {
             let _ = writeln!(text, "     this record cannot tell {} from {}", group[0], group[1..].join(", "));
         }
@@ -189,7 +196,7 @@ fn text(arguments: &Arguments, found: &Found, input: &Input) -> String {
     let law = &found.law;
     for ((term, value), std) in law.terms.iter().zip(&law.coefficients).zip(&law.std) {
         let name = law.effect_name(*term);
-        let _ = writeln!(text, "  {name:<28} {:>26}{}", number(*value, *std), input.unit(*term));
+        let _ = writeln!(text, "  {name:<28} {:>30}", quantity(*value, *std, unit_of(*term, &input.units)));
     }
     text += "\n";
     text += &diagnose::candidates(diagnosis, input);

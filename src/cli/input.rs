@@ -4,8 +4,9 @@ use super::columns::ColumnArguments;
 use super::error::CommandError;
 use super::looked;
 use super::output;
+use super::words::{quoted, seconds};
 use crate::data::{self, Opened};
-use crate::diagnose::Posed;
+use crate::diagnose::{Comparison, Options, Posed, compare_posed};
 use crate::identify::{self, Gap, Recording, Settings};
 use crate::law::{Given, Hold, Model, ModelTerm, Term, Units};
 use clap::Args;
@@ -110,14 +111,13 @@ impl Input {
         self.recordings.iter().collect()
     }
 
-    /// The recordings, each with the hold that is known, or under which the model's law leaves least.
-    pub(super) fn judged(&self) -> Vec<(&Recording, Hold)> {
-        let hold = || {
-            let posed = Posed::new(&self.model.freed(), &self.recordings(), None)?;
-            Some(posed.law()?.0.timing.hold)
-        };
-        let hold = self.hold.or_else(hold).unwrap_or(Hold::Linear);
-        self.recordings.iter().map(|recording| (recording, hold)).collect()
+    /// The model held against the recordings, each with the hold that is known, or under which the best of its form leaves least.
+    pub(super) fn compared(&self, options: &Options) -> Comparison {
+        let posed = Posed::new(&self.model.freed(), &self.recordings(), self.hold);
+        let law = posed.as_ref().and_then(Posed::law);
+        let hold = self.hold.or(law.map(|(law, _)| law.timing.hold)).unwrap_or(Hold::Linear);
+        let recordings: Vec<_> = self.recordings.iter().map(|recording| (recording, hold)).collect();
+        compare_posed(&self.model, &recordings, posed.as_ref(), &Options { units: self.units, ..*options })
     }
 
     /// The recordings, each with the hold that is known, or under which it is likeliest.
@@ -135,15 +135,14 @@ impl Input {
         self.recordings.iter().any(|recording| recording.channels().excitation)
     }
 
-    /// The arguments by which the recordings were named, as for another command.
+    /// The arguments by which the recordings were named.
     pub(super) fn named(&self) -> String {
         self.recordings.iter().map(Recording::source).collect::<Vec<_>>().join(" ")
     }
 
-    /// The unit of a term's coefficient behind its value; empty where it is not known or none.
-    pub(super) fn unit(&self, term: Term) -> String {
-        let unit = self.units.coefficient(term).filter(|unit| unit.symbol != "1");
-        unit.map_or_else(String::new, |unit| format!(" {}", unit.symbol))
+    /// The recordings as a shell takes them.
+    pub(super) fn arguments(&self) -> String {
+        self.recordings.iter().map(|recording| quoted(recording.source())).collect::<Vec<_>>().join(" ")
     }
 
     /// Why there is no law.
@@ -174,8 +173,13 @@ pub(super) fn is_noiseless(std: [Option<f64>; 2], recording: &Recording) -> [boo
 /// What was taken otherwise than the file says.
 fn warnings(recording: &Recording) -> Vec<String> {
     let source = recording.source();
-    let gap =
-        |gap: Gap| format!("{source}: no samples from {} s to {} s: nothing is carried over it", gap.start, gap.end);
+    let gap = |gap: Gap| {
+        format!(
+            "{source}: no samples from {} s to {} s: nothing is carried over it",
+            seconds(gap.start),
+            seconds(gap.end)
+        )
+    };
     let mut warnings: Vec<String> = recording.gaps().into_iter().map(gap).collect();
     if !recording.channels().excitation {
         warnings.push(format!("{source}: there is no excitation: taken as free motion"));

@@ -9,7 +9,8 @@ use super::input::{Input, InputArguments};
 use super::looked::Looked;
 use super::output::Targets;
 use super::progress::Waiting;
-use crate::diagnose::{Options, compare as compare_with};
+use super::words::quoted;
+use crate::diagnose::Options;
 use crate::report::{Block, page};
 use clap::Args;
 use std::path::PathBuf;
@@ -57,10 +58,10 @@ fn blocks(arguments: &Arguments) -> Result<Vec<Block>, CommandError> {
             Block::Verbatim(told.text),
         ]);
     }
-    let compared = compare_with(&input.model, &input.judged(), &Options { units: input.units, ..Options::default() });
+    let compared = input.compared(&Options::default());
     blocks.extend([
         Block::Figure(figures::comparison(&compared)),
-        Block::Verbatim(compare::text(&compared, &input.model, &input.file)),
+        Block::Verbatim(compare::text(&compared, &input.model, &input.file, None)),
     ]);
     match diagnose::find(&input) {
         Ok(found) => blocks.extend([
@@ -80,7 +81,6 @@ fn blocks(arguments: &Arguments) -> Result<Vec<Block>, CommandError> {
 
 /// The command.
 fn again(arguments: &Arguments) -> String {
-    let quoted = |text: &str| if text.contains([' ', '[', '(']) { format!("'{text}'") } else { text.to_string() };
     let data: Vec<String> = arguments.input.data.iter().map(|data| quoted(data)).collect();
     let model = quoted(&arguments.input.model.model.display().to_string());
     let mut command = format!("switchid report {} --model {model}", data.join(" "));

@@ -1,18 +1,22 @@
 //! Numbers as text is given them: shares, chances, values with their std.
 
 use crate::diagnose::Law;
-use crate::law::{Catalogue, Term};
+use crate::law::{Catalogue, Term, Units};
 
 /// Most decimals that a value is given: what is left of 16 digits for a value of some thousands.
 const MOST: i32 = 12;
 
-/// `19 %`, `4.5 %`, `0.32 %`, `2.1e-3 %`.
+/// Characters of a number that is told as it is given.
+const SHORT: usize = 8;
+
+/// `19 %`, `4.5 %`, `0.32 %`, `0.0021 %`.
 pub(super) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     match percent {
         percent if percent >= 10.0 => format!("{percent:.0} %"),
         percent if percent >= 1.0 => format!("{percent:.1} %"),
         percent if percent >= 0.1 => format!("{percent:.2} %"),
+        percent if percent >= 1e-4 => format!("{} %", digits(percent, 2)),
         0.0 => "0 %".into(),
         percent => format!("{percent:.1e} %"),
     }
@@ -27,10 +31,59 @@ pub(super) fn chance(probability: f64) -> String {
     }
 }
 
-/// `20.35 ± 0.05`: as many digits as the std supports, two of its own.
+/// A number that no std comes with: so many significant digits.
+pub(super) fn digits(value: f64, count: usize) -> String {
+    let exponent = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    match (-6..6).contains(&exponent) {
+        true => format!("{value:.*}", (count as i32 - 1 - exponent).max(0) as usize),
+        false => format!("{value:.*e}", count - 1),
+    }
+}
+
+/// An argument as a shell takes it.
+pub(super) fn quoted(argument: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./:@=+,%^".contains(c);
+    match !argument.is_empty() && argument.chars().all(is_plain) {
+        true => argument.into(),
+        false => format!("'{}'", argument.replace('\'', r"'\''")),
+    }
+}
+
+/// A time without the digits that only its binary form has, s.
+pub(super) fn seconds(t: f64) -> String {
+    let text = format!("{t:.9}");
+    text.trim_end_matches('0').trim_end_matches('.').into()
+}
+
+/// `(20.35 ± 0.05) N`, `20.35 ± 0.05` where the unit is not known.
+pub(super) fn quantity(value: f64, std: f64, unit: Option<String>) -> String {
+    let number = number(value, std);
+    match unit.filter(|unit| unit != "1") {
+        None => number,
+        Some(unit) if number.starts_with('(') || !number.contains('±') => format!("{number} {unit}"),
+        Some(unit) => format!("({number}) {unit}"),
+    }
+}
+
+/// `q 0.0100 m, qd 0.00995 m/s`: std of the sensors' noise by channel.
+pub(super) fn noise(std: &[(impl AsRef<str>, f64)], units: &Units) -> String {
+    let unit = |channel: &str| match channel {
+        "q" => units.displacement(),
+        "qd" => units.velocity(),
+        _ => units.excitation(),
+    };
+    let one = |channel: &str, std: f64| match unit(channel).filter(|unit| unit.symbol != "1") {
+        Some(unit) => format!("{channel} {} {}", digits(std, 3), unit.symbol),
+        None => format!("{channel} {}", digits(std, 3)),
+    };
+    std.iter().map(|(channel, std)| one(channel.as_ref(), *std)).collect::<Vec<_>>().join(", ")
+}
+
+/// `20.35 ± 0.05`: as many digits as the std supports, two of its own. A number that is held has no std.
 pub(super) fn number(value: f64, std: f64) -> String {
-    if std <= 0.0 || !std.is_finite() || value == 0.0 {
-        return format!("{value:.4e}");
+    if std <= 0.0 || !std.is_finite() {
+        let text = value.to_string();
+        return if text.len() <= SHORT { text } else { digits(value, 6) };
     }
     let last = std.log10().floor() as i32 - 1;
     let exponent = value.abs().max(std).log10().floor() as i32;
@@ -71,14 +124,32 @@ mod tests {
             (5.376e-6, 2.1e-9, "(5.3760 ± 0.0021)e-6"),
             (1.5e9, 2e7, "(1.500 ± 0.020)e9"),
             (0.8477312848794, 3.1e-16, "8.477312848794e-1 ± 3.1e-16"),
+            (0.0, 0.012, "0.000 ± 0.012"),
+            (0.3, 0.0, "0.3"),
         ] {
             assert_eq!(number(value, std), text);
         }
     }
 
     #[test]
+    fn arguments_with_blanks_and_quotes_are_quoted() {
+        assert_eq!(["a/b.csv@0:5", "run 3.csv", "q's"].map(quoted), ["a/b.csv@0:5", "'run 3.csv'", r"'q'\''s'"]);
+        assert_eq!([29.997999999999593, 0.0, -5.0, 120.0].map(seconds), ["29.998", "0", "-5", "120"]);
+    }
+
+    #[test]
+    fn units_belong_to_value_and_std() {
+        let unit = |symbol: &str| Some(symbol.to_string());
+        assert_eq!(quantity(20.3456, 0.0512, unit("N")), "(20.346 ± 0.051) N");
+        assert_eq!(quantity(5.376e-6, 2.1e-9, unit("kg")), "(5.3760 ± 0.0021)e-6 kg");
+        assert_eq!([quantity(95.0, 12.0, None), quantity(0.3, 0.0, unit("N s/m"))], ["95 ± 12", "0.3 N s/m"]);
+    }
+
+    #[test]
     fn shares_and_chances_are_short() {
-        assert_eq!([0.19, 0.045, 0.0032, 2.1e-5, 0.0].map(percent), ["19 %", "4.5 %", "0.32 %", "2.1e-3 %", "0 %"]);
+        let shares = [0.19, 0.045, 0.0032, 2.1e-5, 2.1e-9, 0.0].map(percent);
+        assert_eq!(shares, ["19 %", "4.5 %", "0.32 %", "0.0021 %", "2.1e-7 %", "0 %"]);
+        assert_eq!([0.01, -1234.5, 0.0, 1.5e-9].map(|value| digits(value, 3)), ["0.0100", "-1234", "0.00", "1.50e-9"]);
         assert_eq!([0.0, 3.2e-45, 0.25].map(chance), ["< 1e-300", "3.2e-45", "0.25"]);
     }
 }

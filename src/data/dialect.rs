@@ -47,8 +47,8 @@ pub(super) fn is_comment(text: &str) -> bool {
 }
 
 /// Lines ending as on any system; old ones end in a carriage return alone.
-fn split_lines(text: &str) -> Box<dyn Iterator<Item = &str> + '_> {
-    if text.contains('\n') { Box::new(text.lines()) } else { Box::new(text.split('\r')) }
+pub(super) fn split_lines(text: &str) -> Box<dyn Iterator<Item = &str> + '_> {
+    if text.contains('\n') { Box::new(text.lines()) } else { Box::new(text.split_terminator('\r')) }
 }
 
 impl Dialect {
@@ -149,12 +149,19 @@ fn uncommented(text: &str) -> &str {
 
 /// Names and their units: `Weg` over `mm` is `Weg [mm]`.
 fn joined(names: &[String], units: &[String]) -> Vec<String> {
-    let unit = |index: usize| units.get(index).map(|unit| bare_unit(unit)).filter(|unit| !unit.is_empty());
+    let is_told = |unit: &&str| !unit.is_empty() && !is_clock_format(unit);
+    let unit = |index: usize| units.get(index).map(|unit| bare_unit(unit)).filter(is_told);
     let name = |(index, name): (usize, &String)| match unit(index) {
         Some(unit) if !name.contains(['[', '(']) => format!("{name} [{unit}]"),
         _ => name.clone(),
     };
     names.iter().enumerate().map(name).collect()
+}
+
+/// Whether a cell in place of a unit says how clock times are written: `hh:mm:ss.000`.
+fn is_clock_format(text: &str) -> bool {
+    text.contains(':')
+        && text.chars().all(|c| matches!(c.to_ascii_lowercase(), 'h' | 'm' | 's' | 'f' | ':' | '.' | ',' | '0'))
 }
 
 /// `[mm]` and `(mm)` are mm.
@@ -180,11 +187,14 @@ fn is_heading(cells: &[String], columns: usize, decimal: Decimal) -> bool {
     near && told > 0 && !cells.iter().any(is_value)
 }
 
-/// Whether every cell is a unit, a bracket with something in it, or empty, and one at least is a unit.
+/// Whether cells are the units of columns: one at least is one, and so are half of those that are not empty, or stand in brackets; the
+/// others may be formats of times (`hh:mm:ss`) and units of no motion (`°C`).
 fn are_units(cells: &[String]) -> bool {
-    let is_unit = |cell: &String| Unit::parse(bare_unit(cell)).is_some();
-    let is_bracket = |cell: &String| bare_unit(cell) != cell.trim();
-    cells.iter().any(is_unit) && cells.iter().all(|cell| cell.is_empty() || is_unit(cell) || is_bracket(cell))
+    let is_unit = |cell: &&String| Unit::parse(bare_unit(cell)).is_some();
+    let is_bracket = |cell: &&String| bare_unit(cell) != cell.trim();
+    let told = cells.iter().filter(|cell| !cell.is_empty()).count();
+    let units = cells.iter().filter(|cell| is_unit(cell) || is_bracket(cell)).count();
+    cells.iter().any(|cell| is_unit(&cell)) && 2 * units >= told
 }
 
 /// How well lines are a table under a separator and a decimal mark.
@@ -264,6 +274,9 @@ mod tests {
     #[test]
     fn a_line_of_units_joins_the_header() {
         assert_eq!(of("t;q;F\n[s];[mm];\n0;1;2\n1;2;3\n").4, ["t [s]", "q [mm]", "F"]);
+        let excel = "Uhrzeit;Weg;Kraft;Temperatur\nhh:mm:ss;mm;kN;°C\n10:00:00,5;1,5;2;21,5\n";
+        assert_eq!(of(excel).4, ["Uhrzeit", "Weg [mm]", "Kraft [kN]", "Temperatur [°C]"]);
+        assert_eq!(of("Rig;run\nt;q\n0;1\n1;2\n").4, ["t", "q"]);
         assert_eq!(of("1;2\n3;4\n").4, ["1", "2"]);
     }
 }

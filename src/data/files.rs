@@ -6,11 +6,6 @@ use crate::law::Model;
 use crate::simulate::Scenario;
 use std::path::Path;
 
-/// The content of a file.
-pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, DataError> {
-    std::fs::read(path).map_err(|source| DataError::Read { file: path.display().to_string(), source })
-}
-
 fn read(path: &Path) -> Result<String, DataError> {
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|source| DataError::Read { file, source })?;

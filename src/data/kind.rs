@@ -76,10 +76,15 @@ impl FileKind {
     }
 }
 
-/// Whether these are the first bytes of a compressed workbook of Office or OpenDocument, or of Excel's older format.
+/// Whether these are the first bytes of an archive, whose table of contents stands at its end.
+pub(super) fn is_archive(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"PK\x03\x04")
+}
+
+/// Whether these are the bytes of a compressed workbook of Office or OpenDocument, or of Excel's older format.
 fn is_spreadsheet(bytes: &[u8]) -> bool {
     let has = |name: &[u8]| bytes.windows(name.len()).any(|window| window == name);
-    let zipped = bytes.starts_with(b"PK\x03\x04") && (has(b"xl/workbook") || has(b"opendocument.spreadsheet"));
+    let zipped = is_archive(bytes) && (has(b"xl/workbook") || has(b"opendocument.spreadsheet"));
     zipped || bytes.starts_with(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")
 }
 

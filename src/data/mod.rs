@@ -11,6 +11,7 @@
 #[cfg(feature = "formats")]
 mod arrays;
 mod cells;
+mod content;
 mod csv;
 mod dialect;
 mod encoding;
@@ -35,6 +36,7 @@ mod rows;
 mod section;
 mod spreadsheet;
 mod stored;
+mod text;
 
 pub use error::DataError;
 pub use files::{open_laws, open_model, open_scenario};

@@ -29,8 +29,11 @@ fn plain(text: &str) -> Option<f64> {
     text.parse().ok().or_else(|| unusual(text))
 }
 
-/// Fortran's `1.0D+02` and a typographic minus.
+/// Fortran's `1.0D+02`, a typographic minus, and the `0.5 sec` of MATLAB's durations.
 fn unusual(text: &str) -> Option<f64> {
+    if let Some(seconds) = text.strip_suffix(" sec") {
+        return seconds.parse().ok();
+    }
     let usual = text.replace('−', "-").replace(['D', 'd'], "e");
     if usual == text { None } else { usual.parse().ok() }
 }
@@ -46,6 +49,7 @@ mod tests {
         assert_eq!(number("-1.234,5E+2", Comma), Some(-123450.0));
         assert_eq!(number("1.0D+02", Point), Some(100.0));
         assert_eq!(number("−2", Comma), Some(-2.0));
+        assert_eq!([number("0.5 sec", Point), number("0,5 sec", Comma)], [Some(0.5), Some(0.5)]);
         for (text, decimal) in [("1,5", Point), ("1.5", Comma), ("1.23,5", Comma), ("1,5,2", Comma), ("", Point)] {
             assert_eq!(number(text, decimal), None, "{text}");
         }

@@ -1,9 +1,11 @@
 //! Opening a recording, whatever kind of file it is in.
 
+use super::content::Content;
 use super::header::{Column, Layout};
 use super::kind::FileKind;
 use super::rows::{Signals, Source};
-use super::{DataError, csv, encoding, kind, spreadsheet, stored};
+use super::text::Text;
+use super::{DataError, csv, kind, spreadsheet, stored};
 use crate::identify::{Recording, RecordingError};
 use crate::law::{Channel, Given, Model, Term, Unit, Units};
 
@@ -41,8 +43,8 @@ pub struct Taken {
 /// # Errors
 /// [`DataError`] names file, line and column (or variable and sample), and what would mend it.
 pub fn open_recording(data: &str, model: &Model) -> Result<Opened, DataError> {
-    let (source, bytes) = Source::open(data)?;
-    let (layout, signals, form) = read(&source, bytes, model)?;
+    let (source, content) = Source::open(data)?;
+    let (layout, signals, form) = read(&source, content, model)?;
     let unmet = model.terms.iter().find(|entry| model.uses_excitation(entry.term) && layout.excitation.is_none());
     if let Some(entry) = unmet {
         let (file, kind) = (source.file, source.kind);
@@ -78,18 +80,19 @@ fn taken(layout: &Layout) -> Vec<Taken> {
 }
 
 /// The columns, the signals, and how the file was taken where that is not plain.
-fn read(source: &Source, bytes: Vec<u8>, model: &Model) -> Result<(Layout, Signals, Vec<String>), DataError> {
-    let file = || source.file.clone();
+fn read(source: &Source, content: Content, model: &Model) -> Result<(Layout, Signals, Vec<String>), DataError> {
+    let all = |content: Content| content.all().map_err(|error| source.unread(error));
     match source.kind {
         FileKind::Csv { .. } => {
-            if let Some((what, how)) = kind::foreign(&bytes) {
+            let file = || source.file.clone();
+            if let Some((what, how)) = kind::foreign(&content.head) {
                 return Err(DataError::Convert { file: file(), what, how });
             }
-            let text = encoding::decode(&bytes).ok_or_else(|| DataError::Foreign { file: file() })?;
-            csv::read(source, &text, model)
+            let text = Text::of(content).map_err(|error| source.unread(error))?;
+            csv::read(source, text.ok_or_else(|| DataError::Foreign { file: file() })?, model)
         }
-        FileKind::Spreadsheet => csv::read(source, &spreadsheet::text(source, bytes)?, model),
-        _ => stored::read(source, bytes, model).map(|(layout, signals)| (layout, signals, Vec::new())),
+        FileKind::Spreadsheet => csv::read(source, spreadsheet::text(source, all(content)?)?, model),
+        _ => stored::read(source, all(content)?, model).map(|(layout, signals)| (layout, signals, Vec::new())),
     }
 }
 

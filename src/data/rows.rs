@@ -1,9 +1,10 @@
 //! From the rows of any table to the signals of a section, in SI units.
 
+use super::DataError;
+use super::content::Content;
 use super::header::{Column, Layout};
-use super::kind::FileKind;
+use super::kind::{self, FileKind};
 use super::section::Section;
-use super::{DataError, files};
 use crate::identify::Recording;
 
 /// The file that is being read.
@@ -18,11 +19,20 @@ pub(super) struct Source<'a> {
 
 impl<'a> Source<'a> {
     /// The source that `DATA` or `DATA@t0:t1` names, and the content of its file.
-    pub(super) fn open(data: &'a str) -> Result<(Source<'a>, Vec<u8>), DataError> {
+    pub(super) fn open(data: &'a str) -> Result<(Source<'a>, Content), DataError> {
         let section = Section::parse(data)?;
-        let bytes = files::bytes(&section.path)?;
-        let kind = FileKind::of(&bytes);
-        Ok((Source { data, file: section.path.display().to_string(), kind, section }, bytes))
+        let mut content = Content::open(&section.path)?;
+        let file = section.path.display().to_string();
+        if kind::is_archive(&content.head) {
+            content = Content::of(content.all().map_err(|source| DataError::Read { file: file.clone(), source })?);
+        }
+        let kind = FileKind::of(&content.head);
+        Ok((Source { data, file, kind, section }, content))
+    }
+
+    /// Why the file could not be read.
+    pub(super) fn unread(&self, source: std::io::Error) -> DataError {
+        DataError::Read { file: self.file.clone(), source }
     }
 
     /// The same source, its kind told more closely.

@@ -1,7 +1,10 @@
 //! Spreadsheets: the first sheet with numbers, as the text that it would be exported to.
 
 use super::DataError;
+#[cfg(feature = "formats")]
+use super::content::Content;
 use super::rows::Source;
+use super::text::Text;
 #[cfg(feature = "formats")]
 use calamine::{Data, Range, Reader};
 
@@ -10,14 +13,15 @@ use calamine::{Data, Range, Reader};
 /// # Errors
 /// [`DataError::Damaged`].
 #[cfg(feature = "formats")]
-pub(super) fn text(source: &Source, bytes: Vec<u8>) -> Result<String, DataError> {
+pub(super) fn text(source: &Source, bytes: Vec<u8>) -> Result<Text, DataError> {
     let damaged = |reason: String| DataError::Damaged { file: source.file.clone(), kind: source.kind, reason };
     let cursor = std::io::Cursor::new(bytes);
     let mut book = calamine::open_workbook_auto_from_rs(cursor).map_err(|error| damaged(error.to_string()))?;
     for name in book.sheet_names() {
         let sheet = book.worksheet_range(&name).map_err(|error| damaged(error.to_string()))?;
         if sheet.used_cells().any(|(.., cell)| matches!(cell, Data::Float(_) | Data::Int(_))) {
-            return Ok(lines(&sheet));
+            let text = Text::of(Content::of(lines(&sheet).into_bytes())).map_err(|error| source.unread(error))?;
+            return text.ok_or_else(|| DataError::Foreign { file: source.file.clone() });
         }
     }
     Err(damaged("no sheet has numbers".into()))
@@ -25,7 +29,7 @@ pub(super) fn text(source: &Source, bytes: Vec<u8>) -> Result<String, DataError>
 
 /// Refuses the file.
 #[cfg(not(feature = "formats"))]
-pub(super) fn text(source: &Source, _bytes: Vec<u8>) -> Result<String, DataError> {
+pub(super) fn text(source: &Source, _bytes: Vec<u8>) -> Result<Text, DataError> {
     Err(DataError::LeftOut { file: source.file.clone(), kind: source.kind })
 }
 

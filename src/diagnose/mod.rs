@@ -17,7 +17,7 @@ pub use crate::estimation::{Noise, Observation};
 pub use candidates::same_effect;
 pub use compare::{
     Bounds, Comparison, Error, Estimate, Fail, Held, Judged, Left, NOISE_RATIO, Options, Over, Place, Side, Verdict,
-    compare,
+    compare, compare_posed,
 };
 pub use fit::{Evidence, Fit, Form, best_as_given, fit, is_evident, refit};
 pub use judge::{Target, Timing};
@@ -26,5 +26,5 @@ pub use piece::Piece;
 pub use remarks::{Remark, remarks};
 pub use verdict::{
     ADEQUATE, Addition, Candidate, Clock, Diagnosis, Doubt, Finding, Improvement, LEVEL, Law, Posed, StageDiagnosis,
-    Step, Switched, WORTH, WindowError, diagnose_stages, improved_model,
+    Step, Switched, WORTH, WindowError, diagnose_stages, improved_model, refitted_model,
 };

@@ -2,6 +2,7 @@
 
 use super::piece::Piece;
 use crate::law::{Effect, State};
+use std::f64::consts::PI;
 
 /// How large and how fast the recorded motion is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,6 +17,8 @@ pub struct Scale {
     pub frequency: [f64; 2],
     /// Shortest time between samples, s.
     pub sample_time: f64,
+    /// Longest time without a gap, s.
+    pub duration: f64,
 }
 
 impl Scale {
@@ -39,6 +42,18 @@ impl Scale {
             velocity: largest(|state| state.qd),
             frequency: [(qd / q).sqrt(), (accelerations / qd).sqrt()],
             sample_time: times.fold(f64::INFINITY, f64::min),
+            duration: pieces.iter().map(|piece| piece.t[piece.t.len() - 1] - piece.t[0]).fold(0.0, f64::max),
+        }
+    }
+
+    /// Whether the record shows such an effect as what it is. A resonance whose half-power width 2ζω is less than the record's resolution
+    /// 2π ÷ its duration is a single line of its spectrum: any disturbance of that frequency, too.
+    pub fn resolves(&self, effect: Effect) -> bool {
+        match effect {
+            Effect::HiddenResonator { frequency, damping_ratio } => {
+                damping_ratio.value() * frequency.value() * self.duration >= PI
+            }
+            _ => true,
         }
     }
 

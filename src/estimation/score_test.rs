@@ -8,7 +8,7 @@
 use super::filter::{Channel, Innovation};
 use super::information::{Information, Solution};
 use super::pass::{Observation, Pass, gains};
-use crate::law::{Catalogue, Effect, Motion, State, Term};
+use crate::law::{Catalogue, Effect, Entry, Motion, State, Term};
 use serde::{Deserialize, Serialize};
 
 /// Evidence, nats, from which an effect is named: odds of 22 000 to one after the price of the number of candidates.
@@ -30,6 +30,13 @@ pub struct Missing {
     pub entry: usize,
     /// Log-likelihood that it would gain, less the logarithm of the number of candidates, nats.
     pub evidence: f64,
+}
+
+impl Missing {
+    /// The effect.
+    pub fn effect(&self) -> &'static Entry {
+        &Catalogue::ENTRIES[self.entry]
+    }
 }
 
 /// The candidates beside a run.

@@ -7,6 +7,7 @@ use super::recording::Recording;
 use super::report::{Coefficient, SensorState};
 use super::sample::Skipped;
 use super::settings::{Method, Settings};
+use crate::estimation::Missing;
 use crate::law::{Hold, Model, Term, equation};
 use std::ops::Range;
 
@@ -40,6 +41,8 @@ pub struct Stage {
     pub explained: Option<f64>,
     /// What its data could not determine.
     pub unidentifiable: Vec<String>,
+    /// The effect that its law lacked at its end; `None` where no evidence stood out.
+    pub missing: Option<Missing>,
 }
 
 impl Stage {
@@ -98,6 +101,8 @@ pub struct Identification {
     pub known_laws: SavedLaws,
     /// The sensors' faults, in the order of their start.
     pub sensors: Vec<SensorFault>,
+    /// What the excitation does between samples, by the record; `None` where it does not tell and the law depends on it.
+    pub hold: Option<Hold>,
     /// The samples that were not used, and why.
     pub skipped: Vec<Skipped>,
 }
@@ -112,9 +117,13 @@ const HOLD_TRIALS: [usize; 3] = [1500, 3000, 6000];
 const BEATEN: f64 = 500.0;
 
 /// The hold under which the first stretch of the recording has the largest likelihood; a straight line where none gives
-/// a law, which errs least where nothing is known. Always by our method: the publication's states no likelihood. Of a
+/// a law, which errs least where nothing is known, and of a free
+/// motion, where nothing is held. Always by our method: the publication's states no likelihood. Of a
 /// model with numbers only, all are estimated.
 pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) -> Hold {
+    if !recording.channels().excitation {
+        return Hold::Linear;
+    }
     let numbers_only = model.check_free(true).is_err();
     let freed = numbers_only.then(|| model.freed());
     let model = freed.as_ref().unwrap_or(model);
@@ -139,7 +148,11 @@ pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) ->
             break;
         }
     }
-    let tried = rivals.iter().filter_map(|(hold, identifier)| Some((*hold, identifier.likelihood()?)));
+    // a rival finds by itself where the stream has another hold than its own
+    let found = |(hold, identifier): &(Hold, Identifier)| {
+        Some((identifier.output().hold.unwrap_or(*hold), identifier.likelihood()?))
+    };
+    let tried = rivals.iter().filter_map(found);
     tried.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(Hold::Linear, |(hold, _)| hold)
 }
 
@@ -184,6 +197,7 @@ pub fn identify_knowing(
         noise_force: None,
         known_laws: known.clone(),
         sensors: Vec::new(),
+        hold: Some(settings.hold),
         skipped: Vec::new(),
     };
     for piece in recording.pieces() {
@@ -222,6 +236,7 @@ fn follow(
     present.unidentifiable = identifier.unidentifiable();
     found.stages.push(present);
     found.known_laws = identifier.known_laws();
+    found.hold = identifier.output().hold;
     found.noise_q = identifier.output().noise_q.or(found.noise_q);
     found.noise_force = identifier.output().noise_force.or(found.noise_force);
     found.noise_qd = identifier.output().noise_qd.or(found.noise_qd);
@@ -256,6 +271,7 @@ fn begin(identifier: &Identifier, start: f64) -> Stage {
         explained: None,
         coefficients: identifier.coefficients().to_vec(),
         unidentifiable: identifier.unidentifiable(),
+        missing: None,
     }
 }
 
@@ -265,5 +281,6 @@ fn renew(stage: &mut Stage, identifier: &Identifier, t: f64) {
     stage.identified = output.identified_time;
     (stage.law_number, stage.recognised) = (output.law_number, output.recognised);
     (stage.drifting, stage.valid, stage.explained) = (output.drifting, output.valid, output.explained);
+    stage.missing = output.missing;
     stage.coefficients.copy_from_slice(identifier.coefficients());
 }

@@ -2,19 +2,21 @@
 
 use super::Term;
 
-/// Writes `1.000 q̈ + 0.300 q̇ + 4.00 q + 2.00 q³ = F`; coefficients have as many digits as their std supports, 3
+/// Writes `1.000 q̈ + 0.300 q̇ + 4.00 q + 2.00 q³ = F`; coefficients have as many digits as their std supports, 2
 /// significant ones at least. Terms whose coefficient is 0 are left out; `forced` puts `F` on the right, else 0.
 pub fn equation(terms: &[(Term, f64, Option<f64>)], forced: bool) -> String {
     let mut line = String::new();
-    for (term, value, std) in terms.iter().filter(|(_, value, _)| *value != 0.0) {
-        let sign = if *value < 0.0 { "− " } else { "+ " };
+    let (inertia, others): (Vec<_>, Vec<_>) =
+        terms.iter().filter(|(_, value, _)| *value != 0.0).partition(|(term, ..)| *term == Term::Inertia);
+    for &(term, value, std) in inertia.into_iter().chain(others) {
+        let sign = if value < 0.0 { "− " } else { "+ " };
         if !line.is_empty() {
             line.push(' ');
             line.push_str(sign);
-        } else if *value < 0.0 {
+        } else if value < 0.0 {
             line.push('−');
         }
-        line.push_str(&significant(value.abs(), *std));
+        line.push_str(&significant(value.abs(), std));
         let symbol = term.symbol();
         if !symbol.is_empty() {
             line.push(' ');
@@ -28,10 +30,13 @@ pub fn equation(terms: &[(Term, f64, Option<f64>)], forced: bool) -> String {
     line
 }
 
-/// `value` ≥ 0 with 3 to 6 significant digits, down to a tenth of its std where that is known.
+/// `value` ≥ 0 with 2 to 6 significant digits, down to the second one of its std where that is known.
 fn significant(value: f64, std: Option<f64>) -> String {
     let digits = match std {
-        Some(std) if std > 0.0 && value > 0.0 => ((value / std).log10().ceil() as i32 + 2).clamp(3, 6),
+        Some(std) if std > 0.0 && value > 0.0 => {
+            let [value, std] = [value, std].map(|number| number.log10().floor() as i32);
+            (value - std + 2).clamp(2, 6)
+        }
         _ => 4,
     };
     let exponent = if value > 0.0 { value.log10().floor() as i32 } else { 0 };

@@ -2,6 +2,9 @@
 
 use super::thin;
 
+/// Length of the longest bar ÷ that of the shortest one up to which both are seen on one linear axis.
+const SEEN: f64 = 20.0;
+
 /// A figure: panels one below the other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Figure {
@@ -44,6 +47,13 @@ impl Axis {
     /// A logarithmic axis.
     pub fn log(label: &str) -> Axis {
         Axis { label: label.into(), log: true }
+    }
+
+    /// An axis for bars of these lengths: from zero, where the shortest of them is to be seen beside the longest.
+    pub fn of_bars(label: &str, lengths: impl Iterator<Item = f64>) -> Axis {
+        let [least, most] =
+            lengths.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], length| [least.min(length), most.max(length)]);
+        Axis { label: label.into(), log: least > 0.0 && most > SEEN * least }
     }
 }
 
@@ -104,7 +114,28 @@ impl Layer {
 }
 
 #[cfg(feature = "pictures")]
+impl Layer {
+    /// Whether it is drawn in a colour of its own.
+    pub(super) fn is_coloured(&self) -> bool {
+        !matches!(self, Layer::Band { .. } | Layer::Mark { .. })
+    }
+
+    /// Its name in the legend; empty where it has none.
+    pub(super) fn name(&self) -> &str {
+        match self {
+            Layer::Line { name, .. } | Layer::Points { name, .. } | Layer::Area { name, .. } => name,
+            Layer::Bars(_) | Layer::Band { .. } | Layer::Mark { .. } => "",
+        }
+    }
+}
+
+#[cfg(feature = "pictures")]
 impl Panel {
+    /// How many of its layers have a name: one needs no legend.
+    pub(super) fn named(&self) -> usize {
+        self.layers.iter().filter(|layer| !layer.name().is_empty()).count()
+    }
+
     /// The extents of what is drawn: x from, to, y from, to; finite and not empty.
     pub(super) fn extents(&self) -> [f64; 4] {
         let mut extents = [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::NEG_INFINITY];

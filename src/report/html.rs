@@ -3,7 +3,7 @@
 use super::figure::{Axis, Figure, Layer, Panel};
 use plotly::common::{Fill, Line, Marker, Mode, Orientation, Title};
 use plotly::layout::{Annotation, AxisType, Layout, Margin, Shape, ShapeLayer, ShapeLine, ShapeType};
-use plotly::{Bar, Plot, Scatter};
+use plotly::{Bar, Plot, Scatter, Trace};
 
 /// Colours of curves, as in the SVG.
 const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"];
@@ -12,12 +12,17 @@ const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9
 const PANEL: usize = 300;
 const BAR: usize = 34;
 
-/// The figure's panels as parts of a page, each a plot of its own; `id` tells the figures of a page apart.
+/// The figure's panels as parts of a page, each a plot of its own; `id` tells the figures of a page apart. What a plot shows stands
+/// beside its place; the page's [`script`] draws it once it comes into view, so that a long page is at hand as soon as a short one.
 pub fn html(figure: &Figure, id: &str) -> String {
     let panels = figure.panels.iter().enumerate().map(|(index, panel)| {
         let height = height(panel);
-        let plot = plot(panel, height).to_inline_html(Some(&format!("{id}-{index}")));
-        format!("<div style=\"height:{height}px\">{plot}</div>\n")
+        // a name that ends the element would end it
+        let plot = plot(panel, height).to_json().replace("</", "<\\/");
+        format!(
+            "<div class=\"plot\" id=\"{id}-{index}\" style=\"height:{height}px\">\
+             <script type=\"application/json\">{plot}</script></div>\n"
+        )
     });
     let caption = if figure.caption.is_empty() {
         String::new()
@@ -27,11 +32,31 @@ pub fn html(figure: &Figure, id: &str) -> String {
     format!("<h2>{}</h2>\n{}{caption}", escaped(&figure.title), panels.collect::<String>())
 }
 
-/// The JavaScript that draws, as an element of a page.
+/// Draws a plot when it comes into view, and all of them before the page is printed.
+const DRAW: &str = r#"<script>
+addEventListener("DOMContentLoaded", () => {
+  const plots = [...document.querySelectorAll(".plot")];
+  const draw = place => {
+    const text = place.querySelector("script");
+    if (!text) return;
+    text.remove();
+    const { data, layout } = JSON.parse(text.textContent);
+    Plotly.newPlot(place, data, layout, { responsive: true, displaylogo: false });
+  };
+  const seen = new IntersectionObserver(
+    entries => entries.filter(entry => entry.isIntersecting).forEach(entry => draw(entry.target)),
+    { rootMargin: "300px" }
+  );
+  plots.forEach(place => seen.observe(place));
+  addEventListener("beforeprint", () => plots.forEach(draw));
+});
+</script>"#;
+
+/// The JavaScript that draws, as elements of a page.
 pub(super) fn script() -> String {
     let all = Plot::offline_js_sources();
     let end = all.find("</script>").map_or(all.len(), |at| at + "</script>".len());
-    all[..end].to_string()
+    format!("{}\n{DRAW}", &all[..end])
 }
 
 /// Text as HTML shows it.
@@ -48,49 +73,67 @@ fn height(panel: &Panel) -> usize {
 fn plot(panel: &Panel, height: usize) -> Plot {
     let mut plot = Plot::new();
     let mut colours = COLOURS.iter().cycle();
-    let (mut shapes, mut notes) = (Vec::new(), Vec::new());
-    let mut shade = 0;
     for layer in &panel.layers {
-        let mut next = || colours.next().copied().unwrap_or("#000");
-        match layer {
-            Layer::Line { name, points } => plot.add_trace(curve(name, points, Mode::Lines, next())),
-            Layer::Points { name, points } => plot.add_trace(curve(name, points, Mode::Markers, next())),
-            Layer::Area { name, edges } => {
-                let colour = next();
-                let edge = |at: usize| edges.iter().map(|edge| [edge[0], edge[at]]).collect::<Vec<_>>();
-                plot.add_trace(curve("", &edge(1), Mode::Lines, colour).show_legend(false));
-                plot.add_trace(curve(name, &edge(2), Mode::Lines, colour).fill(Fill::ToNextY));
-            }
-            Layer::Bars(bars) => {
-                let names: Vec<String> = bars.iter().rev().map(|bar| bar.0.clone()).collect();
-                let values: Vec<f64> = bars.iter().rev().map(|bar| bar.1).collect();
-                let texts: Vec<String> = bars.iter().rev().map(|bar| bar.2.clone()).collect();
-                let bar = Bar::new(values, names).orientation(Orientation::Horizontal).text_array(texts);
-                plot.add_trace(bar.marker(Marker::new().color(next())));
-            }
-            Layer::Band { from, to, label } => {
-                let opacity = if shade % 2 == 0 { 0.05 } else { 0.11 };
-                shade += 1;
-                shapes.push(upright(*from, *to).fill_color("#000").opacity(opacity).layer(ShapeLayer::Below));
-                notes.push(note(0.5 * (from + to), label, panel.x.log));
-            }
-            Layer::Mark { at, label } => {
-                let line = ShapeLine::new().color("#be3c28").width(1.5);
-                shapes.push(upright(*at, *at).line(line));
-                notes.push(note(*at, label, panel.x.log));
-            }
+        let colour = if layer.is_coloured() { colours.next().copied().unwrap_or("#000") } else { "#000" };
+        for trace in traces(layer, colour) {
+            plot.add_trace(trace);
         }
     }
+    let (shapes, notes) = upright_layers(panel);
     let layout = Layout::new()
         .title(Title::with_text(&panel.title))
         .height(height)
         .margin(Margin::new().top(50).bottom(50).right(20).auto_expand(true))
+        .show_legend(panel.named() > 1)
         .x_axis(axis(&panel.x))
         .y_axis(axis(&panel.y).auto_margin(true))
         .shapes(shapes)
         .annotations(notes);
     plot.set_layout(layout);
     plot
+}
+
+/// What a layer is to plotly; none of one that is a shape.
+fn traces(layer: &Layer, colour: &'static str) -> Vec<Box<dyn Trace>> {
+    match layer {
+        Layer::Line { name, points } => vec![curve(name, points, Mode::Lines, colour)],
+        Layer::Points { name, points } => vec![curve(name, points, Mode::Markers, colour)],
+        Layer::Area { name, edges } => {
+            let edge = |at: usize| edges.iter().map(|edge| [edge[0], edge[at]]).collect::<Vec<_>>();
+            vec![
+                curve("", &edge(1), Mode::Lines, colour).show_legend(false),
+                curve(name, &edge(2), Mode::Lines, colour).fill(Fill::ToNextY),
+            ]
+        }
+        Layer::Bars(bars) => {
+            let names: Vec<String> = bars.iter().rev().map(|bar| bar.0.clone()).collect();
+            let values: Vec<f64> = bars.iter().rev().map(|bar| bar.1).collect();
+            let texts: Vec<String> = bars.iter().rev().map(|bar| bar.2.clone()).collect();
+            let bar = Bar::new(values, names).orientation(Orientation::Horizontal).text_array(texts);
+            vec![bar.marker(Marker::new().color(colour))]
+        }
+        Layer::Band { .. } | Layer::Mark { .. } => Vec::new(),
+    }
+}
+
+/// Bands and marks: their shapes, and the words above them.
+fn upright_layers(panel: &Panel) -> (Vec<Shape>, Vec<Annotation>) {
+    let (mut shapes, mut notes) = (Vec::new(), Vec::new());
+    for (shade, layer) in panel.layers.iter().filter(|layer| !layer.is_coloured()).enumerate() {
+        match layer {
+            Layer::Band { from, to, label } => {
+                let opacity = if shade % 2 == 0 { 0.05 } else { 0.11 };
+                shapes.push(upright(*from, *to).fill_color("#000").opacity(opacity).layer(ShapeLayer::Below));
+                notes.push(note(0.5 * (from + to), label, panel.x.log));
+            }
+            Layer::Mark { at, label } => {
+                shapes.push(upright(*at, *at).line(ShapeLine::new().color("#be3c28").width(1.5)));
+                notes.push(note(*at, label, panel.x.log));
+            }
+            Layer::Line { .. } | Layer::Points { .. } | Layer::Area { .. } | Layer::Bars(_) => {}
+        }
+    }
+    (shapes, notes)
 }
 
 fn curve(name: &str, points: &[[f64; 2]], mode: Mode, colour: &'static str) -> Box<Scatter<f64, Option<f64>>> {

@@ -3,6 +3,10 @@
 //! A [`Figure`] is panels of layers in data coordinates; who draws knows nothing of laws, who describes nothing of pixels. SVG is
 //! drawn by plotters, PNG by resvg from it, HTML by plotly with its JavaScript in the page.
 
+#[cfg(feature = "pictures")]
+mod bars;
+#[cfg(feature = "pictures")]
+mod curves;
 mod figure;
 #[cfg(feature = "pictures")]
 mod html;

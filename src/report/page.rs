@@ -45,12 +45,19 @@ fn part(block: &Block, index: usize) -> String {
         Block::Text(text) => format!("<p>{}</p>\n", escaped(text)),
         Block::Verbatim(text) => format!("<pre>{}</pre>\n", escaped(text)),
         Block::Law { terms, right } => {
-            let terms: Vec<String> =
-                terms.iter().map(|[value, feature]| format!("{} <i>{}</i>", escaped(value), raised(feature))).collect();
+            let terms: Vec<String> = terms
+                .iter()
+                .map(|[value, feature]| format!("{} <i>{}</i>", escaped(&bracketed(value)), raised(feature)))
+                .collect();
             format!("<p class=\"law\">{} = <i>{}</i></p>\n", terms.join(" + "), escaped(right))
         }
         Block::Figure(figure) => html(figure, &format!("figure-{index}")),
     }
+}
+
+/// A value with its std as one factor.
+fn bracketed(value: &str) -> String {
+    if value.contains('±') && !value.starts_with('(') { format!("({value})") } else { value.into() }
 }
 
 /// `q^3` with its exponent raised.

@@ -3,19 +3,20 @@
 /// Most points of a series that are drawn as they are.
 pub const MOST: usize = 4000;
 
-/// The series itself, or the smallest and the largest value of each of half as many bins, in the order in which they come. Gaps stay
-/// gaps.
+/// The series itself, or its first point, the smallest and the largest value of each of half as many bins, in the order in which
+/// they come, and its last point. Gaps stay gaps.
 pub(super) fn envelope(x: &[f64], y: &[f64]) -> Vec<[f64; 2]> {
     let count = x.len().min(y.len());
     if count <= MOST {
         return x.iter().zip(y).map(|(x, y)| [*x, *y]).collect();
     }
-    let bins = MOST / 2;
+    let bins = MOST / 2 - 1;
     let bin = |index: usize| {
         let range = index * count / bins..(index + 1) * count / bins;
         let by_value = |a: &usize, b: &usize| y[*a].total_cmp(&y[*b]);
-        let ends = [range.clone().min_by(by_value), range.max_by(by_value)];
-        let mut ends: Vec<usize> = ends.into_iter().flatten().collect();
+        let ends = [range.clone().min_by(by_value), range.clone().max_by(by_value)];
+        let outermost = [0, count - 1].into_iter().filter(|index| range.contains(index));
+        let mut ends: Vec<usize> = ends.into_iter().flatten().chain(outermost).collect();
         ends.sort_unstable();
         ends.dedup();
         ends
@@ -42,6 +43,7 @@ mod tests {
         let points = envelope(&x, &y);
         assert!(points.len() <= MOST);
         assert!(points.contains(&[54_321.0, 9.0]) && points.contains(&[12_345.0, -7.0]));
+        assert_eq!([points[0][0], points[points.len() - 1][0]], [0.0, 99_999.0]);
         assert!(points.windows(2).all(|pair| pair[0][0] < pair[1][0]));
         assert_eq!(envelope(&x[..10], &y[..10]).len(), 10);
         assert!(sampled(&x, &y).len() <= MOST);

@@ -13,3 +13,4 @@ mod limits;
 mod looked;
 mod sensors;
 mod units;
+mod voice;

@@ -18,6 +18,17 @@ pub fn cargo(arguments: &[&str]) -> Command {
     command
 }
 
+/// The command line, built in release mode.
+///
+/// # Errors
+/// What [`run`] says.
+pub fn built_switchid() -> Result<PathBuf, Error> {
+    let mut command = cargo(&["build", "--quiet", "--release", "--package", "switchid", "--bin", "switchid"]);
+    run(&mut command, "install Rust from https://rustup.rs")?;
+    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
+    Ok(target.join("release").join(format!("switchid{}", std::env::consts::EXE_SUFFIX)))
+}
+
 /// Runs the command to its end.
 ///
 /// # Errors

@@ -43,6 +43,8 @@ usage: cargo xtask CHORE
   effects [--help]   the benchmark of hidden effects: which a diagnosis finds, at what strength and noise
   faults [--seeds N] [--first SEED] [--only TEXT] [--threads N] [--cells]
                      what faults of sensors, clocks and masters do to `valid`, switches and delays
+  large [--rows N]   memory and time of the commands on a recording of five million rows, beside its columns and
+                     the identifier alone
   known-laws [SEEDS] how soon laws that return are known
   dropbear FOLDER [PICTURE.svg]
                      a real record that switches and drifts, FOLDER that of dropbear.csv
@@ -84,6 +86,7 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         (program @ ("figures" | "study" | "effects" | "faults" | "known-laws" | "dropbear"), rest) => {
             cargo(&["run", "--quiet", "--release", "--package", MEASURE, "--bin", program, "--"], rest)
         }
+        ("large", rest) => large(rest),
         ("real", rest) => real::real(rest),
         ("picture", []) => picture::picture(),
         ("--help" | "-h" | "help", _) => {
@@ -92,6 +95,13 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         }
         _ => Err(Error::Usage { text: format!("no such chore: \"{}\"", arguments.join(" ")) }),
     }
+}
+
+fn large(arguments: &[String]) -> Result<(), Error> {
+    let switchid = command::built_switchid()?.display().to_string();
+    let program =
+        ["run", "--quiet", "--release", "--package", MEASURE, "--bin", "large", "--", "--switchid", &switchid];
+    cargo(&program, arguments)
 }
 
 fn cargo(chore: &[&str], arguments: &[String]) -> Result<(), Error> {

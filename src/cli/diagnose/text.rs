@@ -2,9 +2,9 @@
 
 use super::super::input::Input;
 use super::found::Found;
-use crate::cli::words::{chance, effect_of, number, percent};
+use crate::cli::words::{chance, digits, effect_of, percent, quantity, quoted};
 use crate::diagnose::{Candidate, Clock, Diagnosis, Doubt, Finding, Law, StageDiagnosis, WORTH};
-use crate::law::{Catalogue, SiUnit, Units, equation};
+use crate::law::{Catalogue, SiUnit, Units, equation, unit_of};
 use std::fmt::Write;
 
 /// Candidates that are listed, at most.
@@ -27,7 +27,7 @@ pub(in crate::cli) fn text(found: &Found, input: &Input) -> String {
         text += &stage_text(index, stage, input);
     }
     if let (Finding::Missing, Some(effect)) = (found.finding, &found.principal.effect) {
-        let (model, data) = (&input.file, input.named());
+        let (model, data) = (quoted(&input.file), input.arguments());
         let _ = writeln!(text, "\nnext: `switchid add {effect} --model {model} --data {data} -o BETTER.toml`");
     }
     text
@@ -95,11 +95,7 @@ fn trapped(diagnosis: &Diagnosis) -> Option<&Candidate> {
 
 /// `20.35 ± 0.05 N`, in brackets where a unit follows both.
 fn with_unit(candidate: &Candidate, input: &Input) -> String {
-    let number = number(candidate.coefficient, candidate.std);
-    match input.unit(candidate.term).as_str() {
-        "" => number,
-        unit => format!("({number}){unit}"),
-    }
+    quantity(candidate.coefficient, candidate.std, unit_of(candidate.term, &input.units))
 }
 
 /// `(20.35 ± 0.05) N · sign(q̇) e^(−|q̇|/v), speed 0.02 m/s`.
@@ -247,7 +243,9 @@ fn inner(candidate: &Candidate, units: &Units) -> Vec<String> {
     let described = candidate.term.effect().map_or(&[][..], |effect| effect.inner());
     let pairs = candidate.inner.iter().zip(described);
     pairs
-        .map(|((name, value), described)| format!("{name} {value:.4}{}", spaced(units.inner(described.unit))))
+        .map(|((name, value), described)| {
+            format!("{name} {}{}", digits(*value, 4), spaced(units.inner(described.unit)))
+        })
         .collect()
 }
 

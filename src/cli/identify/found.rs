@@ -2,11 +2,13 @@
 
 use crate::cli::stage_limit::StageLimit;
 use crate::data::Opened;
-use crate::identify::{Identification, Settings, Stage};
+use crate::identify::{Identification, Missing, Settings, Stage};
 
 /// What the run rested on.
 pub(super) struct Run {
     pub(super) opened: Opened,
+    /// The model's file.
+    pub(super) file: String,
     pub(super) settings: Settings,
     /// Who chose the hold.
     pub(super) hold_from: &'static str,
@@ -20,6 +22,12 @@ pub(super) struct Run {
 /// Stages with their limits.
 pub(super) fn stages(run: &Run) -> impl Iterator<Item = (&Stage, Option<&StageLimit>)> {
     run.found.stages.iter().zip(run.limits.iter().map(Option::as_ref))
+}
+
+/// The stage whose law lacks an effect most evidently, from 0, with what it lacks.
+pub(super) fn missing(found: &Identification) -> Option<(usize, Missing)> {
+    let lacking = found.stages.iter().enumerate().filter_map(|(index, stage)| Some((index, stage.missing?)));
+    lacking.max_by(|a, b| a.1.evidence.total_cmp(&b.1.evidence))
 }
 
 /// Estimated std of the sensors' noise by channel.

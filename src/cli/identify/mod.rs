@@ -15,9 +15,14 @@ use super::pictures::PictureArguments;
 use super::progress::{Progress, Waiting};
 use super::stage_limit::{force_limits, stage_limits};
 use super::trace::Trace;
+use super::words::seconds;
 use crate::data::{self, DataError};
+#[cfg(feature = "pictures")]
+use crate::identify::Coefficient;
 use crate::identify::{self, BuildError, Gap, Identification, Method, Recording, Settings};
 use crate::law::{Hold, Model};
+#[cfg(feature = "pictures")]
+use crate::law::{Term, unit_of};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use found::Run;
@@ -119,7 +124,12 @@ pub(super) fn told(data: &str, model: &super::input::ModelArguments) -> Result<T
     let (run, course) = run_over(&arguments, None)?;
     let known = run.found.stages.last().map_or_else(Vec::new, |stage| stage.known().collect());
     let told = known.iter().filter(|(coefficient, _)| coefficient.value != 0.0);
-    let law = told.map(|(known, std)| [super::words::number(known.value, *std), known.term.symbol()]).collect();
+    let (inertia, others): (Vec<_>, Vec<_>) = told.partition(|(known, _)| known.term == Term::Inertia);
+    let term = |(known, std): &(&Coefficient, f64)| {
+        let unit = unit_of(known.term, &run.opened.units);
+        [super::words::quantity(known.value, *std, unit), known.term.symbol()]
+    };
+    let law = inertia.into_iter().chain(others).map(term).collect();
     Ok(Told { text: text::text(&run), figure: figures::stages(&run.opened, &run.found, &course), law })
 }
 
@@ -154,7 +164,8 @@ fn run_over(arguments: &Arguments, trace: Option<Target>) -> Result<(Run, Course
         false => stage_limits(&found, &opened.recording, &settings),
     });
     let gives_force = model.is_force_law();
-    Ok((Run { opened, settings, hold_from, gives_force, found, limits }, course))
+    let file = arguments.model.display().to_string();
+    Ok((Run { opened, file, settings, hold_from, gives_force, found, limits }, course))
 }
 
 fn identify(
@@ -236,7 +247,7 @@ fn settings(
 
 /// One by one where there are few.
 fn gap_warnings(source: &str, gaps: &[Gap]) -> Vec<String> {
-    let hole = |gap: &Gap| format!("no samples from {} s to {} s", gap.start, gap.end);
+    let hole = |gap: &Gap| format!("no samples from {} s to {} s", seconds(gap.start), seconds(gap.end));
     match gaps {
         [first, .., last] if gaps.len() > GAPS_TOLD => vec![format!(
             "{source}: {} gaps, the first with {}, the last with {}: identified anew after each, nothing is carried over \

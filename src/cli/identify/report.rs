@@ -1,10 +1,10 @@
 //! The JSON document of `switchid identify`.
 
-use super::found::{Run, noise, stages};
+use super::found::{Run, missing, noise, stages};
 use crate::cli::output::Pairs;
 use crate::cli::stage_limit::StageLimit;
-use crate::identify::{SensorFault, Stage};
-use crate::law::{Units, unit_of};
+use crate::identify::{Missing, SensorFault, Stage};
+use crate::law::{Hold, Units, unit_of};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -13,10 +13,14 @@ use std::collections::BTreeMap;
 pub(super) struct Report {
     /// What the law gives: `F`, or the motion.
     output: &'static str,
+    /// The effect that a stage's law lacks most evidently; null where none does.
+    missing: Option<&'static str>,
     stages: Vec<StageReport>,
     noise: Pairs,
     sensors: Vec<SensorReport>,
     hold: &'static str,
+    /// What the record says of it; null where it does not tell and the law depends on it.
+    hold_found: Option<&'static str>,
     gaps: Vec<[f64; 2]>,
     skipped: usize,
 }
@@ -45,11 +49,27 @@ struct StageReport {
     units: BTreeMap<String, String>,
     /// Share of the force's variance that the coefficients explain; null for a law of motion that states its own std.
     explained: Option<f64>,
+    /// What the law lacks at the stage's end; null where no evidence stands out.
+    missing: Option<MissingReport>,
     /// Whether the coefficients were moving at the stage's end.
     drifting: bool,
     unidentifiable: Vec<String>,
     /// What any method could reach on this stage; null where that is not known.
     limit: Option<LimitReport>,
+}
+
+/// An effect that a law lacks.
+#[derive(Serialize)]
+struct MissingReport {
+    effect: &'static str,
+    /// Log-likelihood that it would gain, less that of chance, nats.
+    evidence: f64,
+}
+
+impl MissingReport {
+    fn of(missing: Missing) -> MissingReport {
+        MissingReport { effect: missing.effect().id, evidence: missing.evidence }
+    }
 }
 
 /// A sensor's fault.
@@ -86,10 +106,12 @@ impl Report {
         let forced = settings.channels.excitation;
         Report {
             output: if run.gives_force { "F" } else { "motion" },
+            missing: missing(found).map(|(_, missing)| missing.effect().id),
             stages: stages(run).map(|(stage, limit)| StageReport::of(stage, limit, forced, &opened.units)).collect(),
             noise: Pairs(noise(found)),
             sensors: found.sensors.iter().map(SensorReport::of).collect(),
             hold: settings.hold.id(),
+            hold_found: found.hold.map(Hold::id),
             gaps: opened.recording.gaps().into_iter().map(|gap| [gap.start, gap.end]).collect(),
             skipped: found.skipped.len(),
         }
@@ -117,6 +139,7 @@ impl StageReport {
                 .filter_map(|(known, _)| Some((known.term.name(), unit_of(known.term, units)?)))
                 .collect(),
             explained: stage.explained,
+            missing: stage.missing.map(MissingReport::of),
             drifting: stage.drifting,
             unidentifiable: stage.unidentifiable.clone(),
             limit: limit.map(|limit| LimitReport::of(stage, limit)),

@@ -2,8 +2,9 @@
 
 use super::found::{Run, noise, stages};
 use crate::cli::stage_limit::StageLimit;
-use crate::cli::words::percent;
-use crate::identify::Stage;
+use crate::cli::words::{self, percent, quantity, quoted, seconds};
+use crate::data::Section;
+use crate::identify::{Coefficient, Missing, Stage};
 use crate::law::{Term, Units, unit_of};
 use std::fmt::Write;
 
@@ -36,8 +37,26 @@ pub(super) fn text(run: &Run) -> String {
         let drifting = if stage.drifting { " (drifting; its last coefficients)" } else { "" };
         let again = again(&run.found.stages[..index], stage);
         let _ = write!(text, "\nstage {}{again}{drifting}: {law}", index + 1);
+        text += &stage.missing.map_or_else(String::new, |missing| lacks(missing, run, stage));
     }
     text
+}
+
+/// What the law lacks, and what tells more of it.
+fn lacks(missing: Missing, run: &Run, stage: &Stage) -> String {
+    let (effect, nats, model) = (missing.effect().id, missing.evidence, quoted(&run.file));
+    let source = run.opened.recording.source();
+    let data = match run.found.stages.len() {
+        1 => source.to_string(),
+        _ => format!("{}@{:.3}:{:.3}", file(source), stage.start, stage.end),
+    };
+    let data = quoted(&data);
+    format!("  this law lacks {effect} ({nats:.0} nats): run `switchid diagnose {data} --model {model}`\n")
+}
+
+/// A recording's file, without the section that was taken of it.
+fn file(source: &str) -> String {
+    Section::parse(source).map_or_else(|_| source.into(), |section| section.path.display().to_string())
 }
 
 /// ` (law 1 again)` where the law was known when the stage began.
@@ -49,18 +68,27 @@ fn again(before: &[Stage], stage: &Stage) -> String {
 fn head(run: &Run) -> String {
     let recording = &run.opened.recording;
     let (first, last) = (recording.sample(0).t, recording.sample(recording.count() - 1).t);
-    let mut text = format!("{}: {} samples from {first} s to {last} s\n", recording.source(), recording.count());
+    let (source, count, first, last) = (recording.source(), recording.count(), seconds(first), seconds(last));
+    let mut text = format!("{source}: {count} samples from {first} s to {last} s\n");
     for column in &run.opened.columns {
         let _ = writeln!(text, "  {column}");
     }
     text += &match run.gives_force {
         true => "F is the output: F = law(q, q̇)\n".into(),
-        false => format!("between samples: {} ({})\n", run.settings.hold, run.hold_from),
+        false => format!("between samples: {} ({}){}\n", run.settings.hold, run.hold_from, otherwise(run)),
     };
-    let noise: Vec<String> = noise(&run.found).iter().map(|(channel, std)| format!("{channel} {std:.3e}")).collect();
-    let noise = if noise.is_empty() { "not known".into() } else { noise.join(", ") };
-    let _ = writeln!(text, "sensor noise (std): {noise}");
+    let noise = words::noise(&noise(&run.found), &run.opened.units);
+    let _ = writeln!(text, "sensor noise (std): {}", if noise.is_empty() { "not known" } else { &noise });
     text
+}
+
+/// What the record says of the hold, where it is not that of the settings.
+fn otherwise(run: &Run) -> String {
+    match run.found.hold {
+        Some(hold) if hold == run.settings.hold => String::new(),
+        Some(hold) => format!("; the record says: {hold}"),
+        None => "; the record does not tell, and the law depends on it".into(),
+    }
 }
 
 /// The law on one line, its coefficients with their std, units and what any method could reach, and what is not known.
@@ -69,15 +97,23 @@ fn law(stage: &Stage, limit: Option<&StageLimit>, forced: bool, units: &Units) -
     let mut text = stage.law(forced).unwrap_or_else(|| unknown.into()) + "\n";
     let longest = stage.known().map(|(known, _)| known.term.name().chars().count()).max();
     let width = longest.unwrap_or(0).max(TERM);
-    let unit_width = stage.known().map(|(known, _)| unit(known.term, units).chars().count()).max().unwrap_or(0);
-    for (known, std) in stage.known() {
-        let line = format!(
-            "  {:<width$} {:>14.6e} ± {std:.1e} {:<unit_width$}{}",
-            known.term.name(),
-            known.value,
-            unit(known.term, units),
-            times_limit(known.term, std, limit)
-        );
+    let value = |known: &Coefficient, std: f64| match known.value == 0.0 && std == 0.0 {
+        true => "0: the record does not speak for it".into(),
+        false => quantity(known.value, std, unit_of(known.term, units)),
+    };
+    let known: Vec<(&Coefficient, f64, String)> =
+        stage.known().map(|(known, std)| (known, std, value(known, std))).collect();
+    let uncertain = || known.iter().filter_map(|(.., value)| value.split_once('±'));
+    let [before, behind] = [
+        uncertain().map(|(value, _)| value.chars().count()).max().unwrap_or(0),
+        uncertain().map(|(_, std)| std.chars().count()).max().unwrap_or(0),
+    ];
+    for (known, std, value) in &known {
+        let value = match value.split_once('±') {
+            Some((value, std)) => format!("{value:>before$}±{std:<behind$}"),
+            None => value.clone(),
+        };
+        let line = format!("  {:<width$} {value}{}", known.term.name(), times_limit(known.term, *std, limit));
         text = text + line.trim_end() + "\n";
     }
     let open: Vec<String> = stage
@@ -135,10 +171,6 @@ fn more(seconds: f64, last: f64) -> String {
 fn times_limit(term: Term, std: f64, limit: Option<&StageLimit>) -> String {
     let least = limit.filter(|limit| limit.explained()).and_then(|limit| limit.std(term));
     least.map_or_else(String::new, |least| format!("  ({:.2} times the limit)", std / least))
-}
-
-fn unit(term: Term, units: &Units) -> String {
-    unit_of(term, units).filter(|unit| unit != "1").unwrap_or_default()
 }
 
 fn time(t: Option<f64>) -> String {

@@ -1,9 +1,9 @@
 //! The limits as text and as JSON.
 
 use super::super::output::Pairs;
-use super::super::words::{number, percent};
+use super::super::words::{noise, percent, quantity, seconds};
 use super::found::Limits;
-use crate::law::{Hold, Term, equation};
+use crate::law::{Hold, Term, equation, unit_of};
 use crate::limits::Detection;
 use serde::Serialize;
 use std::fmt::Write;
@@ -82,7 +82,11 @@ fn std<'a>(found: &'a Limits) -> impl Iterator<Item = (Term, f64, Option<f64>)> 
 /// The smallest std of each coefficient that is determined, ÷ its value, with both in words.
 pub(super) fn bars(found: &Limits) -> Vec<(String, f64, String)> {
     let known = std(found).filter_map(|(term, value, std)| Some((term, value, std?)));
-    known.map(|(term, value, std)| (term.name(), 100.0 * (std / value).abs(), number(value, std))).collect()
+    known
+        .map(|(term, value, std)| {
+            (term.name(), 100.0 * (std / value).abs(), quantity(value, std, unit_of(term, &found.input.units)))
+        })
+        .collect()
 }
 
 fn together(terms: &[Term]) -> String {
@@ -106,7 +110,7 @@ pub(super) fn text(found: &Limits) -> String {
 
 /// The first line.
 fn coefficients(found: &Limits) -> String {
-    let record = format!("{:.4} s of record", duration(found));
+    let record = format!("{} s of record", seconds(duration(found)));
     match found.bound.relative_error {
         Some(error) => format!(
             "coefficients: no method errs less than e = {error:.2e} ({} rms) on these {record}",
@@ -169,11 +173,11 @@ fn table(found: &Limits) -> String {
     for (index, (term, value)) in pairs.into_iter().enumerate() {
         let row = found.law.sought().iter().position(|sought| *sought == index);
         let line = match row.map(|row| found.bound.std[row]) {
-            None => format!("{value:.6e} (known)"),
+            None => format!("{} (known)", quantity(value, 0.0, unit_of(term, &found.input.units))),
             Some(None) => "not determined".into(),
             Some(Some(std)) => {
-                let (number, unit) = (number(value, std), found.input.unit(term));
-                format!("{number}{unit}  {}", percent((std / value).abs()))
+                let known = quantity(value, std, unit_of(term, &found.input.units));
+                format!("{known}  {}", percent((std / value).abs()))
             }
         };
         let _ = writeln!(text, "  {:<20} {line}", term.name());
@@ -183,12 +187,11 @@ fn table(found: &Limits) -> String {
 
 /// What the limits rest on, and what was left out.
 fn notes(found: &Limits) -> String {
-    let noise: Vec<String> = found.noise.iter().map(|(channel, std)| format!("{channel} {std:.3e}")).collect();
     let between = match found.hold {
         None => "F is the output, the motion counts as known".into(),
         Some(hold) => format!("between samples: {hold}"),
     };
-    let mut text = format!("sensor noise (std): {}; {between}\n", noise.join(", "));
+    let mut text = format!("sensor noise (std): {}; {between}\n", noise(&found.noise, &found.input.units));
     for open in &found.bound.open {
         let _ = writeln!(text, "nothing on this record determines {}", together(open));
     }

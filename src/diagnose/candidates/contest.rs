@@ -193,10 +193,12 @@ fn column(record: &Record, equation: &Equation, term: Term) -> (Column, bool) {
 
 fn is_within(term: Term, scale: &Scale) -> bool {
     let Term::Effect(effect) = term else { return true };
-    effect.inner_values().iter().enumerate().all(|(index, value)| {
-        let [from, to] = scale.limits(effect, index);
-        effect.inner()[index].name == "power" || (from..=to).contains(value)
-    })
+    let inner = effect.inner_values();
+    scale.resolves(effect)
+        && inner.iter().enumerate().all(|(index, value)| {
+            let [from, to] = scale.limits(effect, index);
+            effect.inner()[index].name == "power" || (from..=to).contains(value)
+        })
 }
 
 impl Contender {

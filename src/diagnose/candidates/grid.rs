@@ -58,8 +58,8 @@ fn with_grid(term: Term, scale: &Scale) -> Vec<Variant> {
     for grid in &grids {
         points = points.iter().flat_map(|point| grid.iter().map(move |value| extended(point, *value))).collect();
     }
-    let variant = |point: &Vec<f64>| Some(Variant { term: Term::Effect(effect.with_inner(point).ok()?), spacing });
-    points.iter().filter_map(variant).collect()
+    let with = |point: &Vec<f64>| effect.with_inner(point).ok().filter(|effect| scale.resolves(*effect));
+    points.iter().filter_map(with).map(|effect| Variant { term: Term::Effect(effect), spacing }).collect()
 }
 
 /// Whether both are the same effect, whatever its inner parameters.

@@ -84,6 +84,8 @@ pub struct Side {
 pub struct Comparison {
     /// Where each recording came from.
     pub sources: Vec<String>,
+    /// What the excitation of each did between samples.
+    pub holds: Vec<Hold>,
     /// Estimated std of the sensors of q and q̇ in each recording; 0 where not measured.
     pub noise: Vec<[f64; 2]>,
     /// Length of the windows of the weak residual, s.
@@ -172,6 +174,19 @@ impl Comparison {
 
 /// Compares a model with recordings, each with what its excitation did between samples. `recordings` holds at least one.
 pub fn compare(model: &Model, recordings: &[(&Recording, Hold)], options: &Options) -> Comparison {
+    let all: Vec<&Recording> = recordings.iter().map(|(recording, _)| *recording).collect();
+    let posed = Posed::new(&model.freed(), &all, recordings.first().map(|(_, hold)| *hold));
+    compare_posed(model, recordings, posed.as_ref(), options)
+}
+
+/// The same where the best of the model's form, [`Model::freed`], has been put to the recordings already; without it the judge says
+/// nothing.
+pub fn compare_posed(
+    model: &Model,
+    recordings: &[(&Recording, Hold)],
+    posed: Option<&Posed>,
+    options: &Options,
+) -> Comparison {
     let terms: Vec<_> = model.terms.iter().map(|entry| entry.term).collect();
     let records: Vec<Record> =
         recordings.iter().map(|(recording, hold)| Record::new(recording, *hold, &terms, &model.expressions)).collect();
@@ -183,11 +198,10 @@ pub fn compare(model: &Model, recordings: &[(&Recording, Hold)], options: &Optio
         |held: &Held| side(best_coefficients(held, &rows), &records, &model.expressions, [window, options.horizon]);
     let mut best = side(&free);
     let mut given = if as_given == free { best.clone() } else { side(&as_given) };
-    if let Some([of_given, of_best]) = judged(model, recordings, &given.law) {
-        // a model without numbers is the best of its form
-        given.judged = Some(if as_given == free { of_best } else { of_given });
-        best.judged = Some(of_best);
-    }
+    best.judged = posed.and_then(judged);
+    // a model without numbers is the best of its form
+    given.judged =
+        if as_given == free { best.judged } else { posed.and_then(|posed| judged_as_given(posed, &given.law)) };
     for side in [&mut given, &mut best] {
         if side.judged.is_some_and(|judged| judged.adequate) {
             side.fails.clear();
@@ -195,6 +209,7 @@ pub fn compare(model: &Model, recordings: &[(&Recording, Hold)], options: &Optio
     }
     Comparison {
         sources: records.iter().map(|record| record.source.clone()).collect(),
+        holds: recordings.iter().map(|(_, hold)| *hold).collect(),
         noise: records.iter().map(|record| record.noise).collect(),
         window,
         horizon: options.horizon,
@@ -206,16 +221,19 @@ pub fn compare(model: &Model, recordings: &[(&Recording, Hold)], options: &Optio
     }
 }
 
-/// What the judge says of a law as given and of the best of the model's form.
-fn judged(model: &Model, recordings: &[(&Recording, Hold)], given: &Estimate) -> Option<[Judged; 2]> {
-    let all: Vec<&Recording> = recordings.iter().map(|(recording, _)| *recording).collect();
-    let posed = Posed::new(&model.freed(), &all, recordings.first().map(|(_, hold)| *hold))?;
-    let (best, errors) = posed.law()?;
+/// What the judge says of the best of a form.
+fn judged(posed: &Posed) -> Option<Judged> {
+    let (law, errors) = posed.law()?;
+    Some(Judged { errors, adequate: are_adequate(&errors), target: law.target })
+}
+
+/// What it says of a law whose numbers are held.
+fn judged_as_given(posed: &Posed, given: &Estimate) -> Option<Judged> {
+    let (best, _) = posed.law()?;
     let target = best.target;
-    let own = Judged { errors, adequate: are_adequate(&errors), target };
     let law = Law { terms: given.terms.clone(), coefficients: given.coefficients.clone(), ..best };
     let (errors, adequate) = posed.errors_of(&law)?;
-    Some([Judged { errors, adequate, target }, own])
+    Some(Judged { errors, adequate, target })
 }
 
 /// What is summed over recordings before errors are formed.

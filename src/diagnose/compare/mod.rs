@@ -16,6 +16,6 @@ mod trajectory;
 mod window;
 
 pub use coefficients::{Estimate, Held};
-pub use comparison::{Comparison, Error, Judged, NOISE_RATIO, Options, Side, Verdict, compare};
+pub use comparison::{Comparison, Error, Judged, NOISE_RATIO, Options, Side, Verdict, compare, compare_posed};
 pub use force::{Left, Place};
 pub use locate::{Bounds, Fail, Over};

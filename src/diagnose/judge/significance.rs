@@ -7,7 +7,7 @@
 
 use super::held_out::HeldOut;
 use super::record::Record;
-use super::windows::{COUNT, PRINCIPAL};
+use super::windows::{COUNT, PRINCIPAL, Windows};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -48,22 +48,28 @@ impl Blocks {
         self.count.unwrap_or(BLOCKS[BLOCKS.len() - 1])
     }
 
-    /// ½ ln(loss before ÷ loss after) in every block, the mean over the window lengths.
+    /// ½ ln(loss before ÷ loss after) in every block, the mean over window lengths and their test functions: each function sees a band of
+    /// frequencies, and where the error is small a little less of it says as much as a lot less where it is large.
     pub(in crate::diagnose) fn gains(&self, record: &Record, before: &HeldOut, after: &HeldOut) -> Vec<f64> {
         let mut gains = vec![0.0; self.len()];
-        for which in 0..COUNT {
-            let [before, after] = [before, after].map(|held| self.losses(record, which, held));
-            let pairs = before.iter().zip(&after).zip(&mut gains);
-            let told = pairs.filter(|((before, after), _)| **before > 0.0 && **after > 0.0);
-            told.for_each(|((before, after), gain)| *gain += 0.5 * (before / after).ln() / COUNT as f64);
+        for (which, windows) in record.windows.iter().enumerate() {
+            for function in 0..windows.functions {
+                let [before, after] =
+                    [before, after].map(|held| self.losses(windows, function, &held.residuals[which]));
+                let own = log_ratios(&before, &after);
+                let share = 0.5 / (COUNT * windows.functions) as f64;
+                gains.iter_mut().zip(own).for_each(|(gain, own)| *gain += share * own);
+            }
         }
         gains
     }
 
-    fn losses(&self, record: &Record, which: usize, held: &HeldOut) -> Vec<f64> {
+    /// Σ residual² of one test function in every block.
+    fn losses(&self, windows: &Windows, function: usize, residuals: &[f64]) -> Vec<f64> {
         let mut losses = vec![0.0; self.len()];
-        for (row, value) in held.residuals[which].iter().enumerate().filter(|(_, value)| value.is_finite()) {
-            losses[self.of(record.windows[which].centre(row))] += value * value;
+        let own = residuals.iter().enumerate().skip(function).step_by(windows.functions);
+        for (row, value) in own.filter(|(_, value)| value.is_finite()) {
+            losses[self.of(windows.centre(row))] += value * value;
         }
         losses
     }
@@ -87,6 +93,15 @@ impl Blocks {
         }
         Some(reached.into_iter().map(|reached| reached / (DRAWS + 1) as f64).collect())
     }
+}
+
+/// ln(before ÷ after) of every block's loss, which is its own and the usual one's mean: what a few readings of slow motion say of the error's
+/// size is little, and one bad stretch does not decide either (the log loss of a Student distribution, whose variance has the record's as its
+/// prior: Gelman et al., Bayesian Data Analysis, 2013, sect. 2.6).
+fn log_ratios(before: &[f64], after: &[f64]) -> Vec<f64> {
+    let usual = after.iter().sum::<f64>() / after.len() as f64;
+    let ratio = |(before, after): (&f64, &f64)| ((before + usual) / (after + usual)).ln();
+    if usual > 0.0 { before.iter().zip(after).map(ratio).collect() } else { vec![0.0; before.len()] }
 }
 
 /// How long residuals of the principal windows belong together, s.

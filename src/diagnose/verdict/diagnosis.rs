@@ -19,7 +19,7 @@ pub const LEVEL: f64 = 0.01;
 /// Mean ratio of errors that is worth the word: 5 %.
 pub const WORTH: f64 = 0.95;
 
-/// Ratio of errors in every window that needs no test: a third of the error's energy.
+/// Ratio of errors beyond the sensors' in every window that needs no test: a third of the energy is gone.
 pub(super) const LARGE: f64 = 0.816;
 
 /// Ratio of errors in one window that disqualifies: 2 % worse.
@@ -297,11 +297,13 @@ pub(super) fn doubt_of_gain(
     (!(is_large(before, after, floor) || significant)).then_some(Doubt::Chance)
 }
 
-/// Whether a gain takes a third of the error's energy in every window that leaves more than the sensors do, of two at least.
+/// Whether a gain takes a third of the energy that the sensors do not explain in every window that has such, in two at least.
 pub(super) fn is_large(before: &HeldOut, after: &HeldOut, floor: &[f64; COUNT]) -> bool {
     let errors = before.errors.iter().zip(&after.errors).zip(floor);
-    let beyond = errors.filter(|((before, _), floor)| **before > ADEQUATE * **floor);
-    let ratios: Vec<f64> = beyond.map(|((before, after), _)| after / before).collect();
+    let told = errors.filter(|((before, _), floor)| **before > ADEQUATE * **floor);
+    let beyond = |error: f64, floor: f64| (error * error - floor * floor).max(0.0).sqrt();
+    let ratios: Vec<f64> =
+        told.map(|((before, after), floor)| beyond(*after, *floor) / beyond(*before, *floor)).collect();
     let told = after.ratios(before).len();
     ratios.len() >= told.min(2) && !ratios.is_empty() && ratios.iter().all(|ratio| *ratio <= LARGE)
 }
@@ -326,10 +328,11 @@ fn smallest(case: &Case, standing: &Standing, entries: &[Entry], best: usize) ->
     (0..entries.len()).find(|index| may_stand(*index)).unwrap_or(best)
 }
 
-/// Those that are at least as good as the winner, it first; one that the law's own terms nearly are cannot win alone, but may be what is there.
+/// Those that are at least as good as the winner, it first. Once something is missing a tied one need not prove it again; one that the law's
+/// own terms nearly are cannot win alone, but may be what is there.
 fn ties(case: &Case, entries: &[Entry], winner: usize) -> Vec<Vec<String>> {
     let best = entries[winner].contender.score;
-    let stands = |entry: &&Entry| matches!(entry.doubt, None | Some(Doubt::Trap));
+    let stands = |entry: &&Entry| matches!(entry.doubt, None | Some(Doubt::Trap | Doubt::Chance));
     let near = |entry: &&Entry| stands(entry) && entry.contender.score <= best + TIE * COUNT as f64;
     let others = entries.iter().enumerate().filter(|(index, entry)| *index != winner && near(entry));
     let first = std::iter::once(effect_name(entries[winner].contender.term, &case.record.expressions));

@@ -18,7 +18,7 @@ pub use diagnosis::{Candidate, Diagnosis, Doubt, Finding, LEVEL, WORTH};
 pub use errors::{ADEQUATE, WindowError, are_adequate};
 pub use improve::{Addition, Improvement, Step};
 pub use law::Law;
-pub use model::improved_model;
+pub use model::{improved_model, refitted_model};
 pub use posed::Posed;
 pub use stages::{StageDiagnosis, Switched, diagnose_stages};
 pub use timing::Clock;

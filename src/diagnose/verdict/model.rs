@@ -19,6 +19,18 @@ pub fn improved_model(model: &Model, law: &Law) -> Model {
     Model { terms: terms.collect(), expressions: law.expressions.clone(), hold, ..model.clone() }
 }
 
+/// The same with its coefficients to be fitted anew, as the streaming identifier wants them; numbers that the model held are kept.
+pub fn refitted_model(model: &Model, law: &Law) -> Model {
+    let improved = improved_model(model, law).freed();
+    let held = |term: Term| {
+        let own = model.terms.iter().find(|entry| same(entry.term, term));
+        own.map(|entry| entry.given).filter(|given| matches!(given, Given::Known(_)))
+    };
+    let terms = improved.terms.iter();
+    let terms = terms.map(|entry| ModelTerm { given: held(entry.term).unwrap_or(Given::Fit), ..entry.clone() });
+    Model { terms: terms.collect(), ..improved }
+}
+
 /// Whether both are one term, whatever its inner parameters.
 fn same(one: Term, other: Term) -> bool {
     crate::diagnose::candidates::same_effect(one, other)

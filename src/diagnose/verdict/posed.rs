@@ -12,6 +12,7 @@ use crate::diagnose::candidates::contender;
 use crate::diagnose::judge::{COUNT, delay_of};
 use crate::identify::Recording;
 use crate::law::{Effect, Given, Hold, Inner, Model, ModelTerm, Term};
+use std::cell::OnceCell;
 
 /// A model on recordings of one system.
 #[derive(Clone, Debug)]
@@ -20,6 +21,8 @@ pub struct Posed {
     terms: Vec<Term>,
     /// How much the displacement of each recording wandered, m, before that was taken out; empty where none does.
     wandering: Vec<f64>,
+    /// Its law with the errors, once they were asked for.
+    law: OnceCell<Option<(Law, [WindowError; COUNT])>>,
 }
 
 impl Posed {
@@ -40,9 +43,13 @@ impl Posed {
             model.terms.iter().filter(|entry| entry.given == Given::Maybe).map(|entry| entry.term).collect();
         let terms = without_idle(&case, terms, &maybe)?;
         Some(match steadied(&case, recordings, &terms, posed) {
-            Some((case, drifts)) => Posed { case, terms, wandering: drifts.iter().map(wandering).collect() },
-            None => Posed { case, terms, wandering: Vec::new() },
+            Some((case, drifts)) => Posed::of(case, terms, drifts.iter().map(wandering).collect()),
+            None => Posed::of(case, terms, Vec::new()),
         })
+    }
+
+    fn of(case: Case, terms: Vec<Term>, wandering: Vec<f64>) -> Posed {
+        Posed { case, terms, wandering, law: OnceCell::new() }
     }
 
     /// Which effect the model lacks.
@@ -62,8 +69,11 @@ impl Posed {
 
     /// The law of the model's form, and its held-out errors by window length (before and after alike).
     pub fn law(&self) -> Option<(Law, [WindowError; COUNT])> {
-        let standing = self.case.settled(self.case.stand(&self.terms)?);
-        Some((self.case.law(&standing), self.case.errors_of(&standing)))
+        let found = || {
+            let standing = self.case.settled(self.case.stand(&self.terms)?);
+            Some((self.case.law(&standing), self.case.errors_of(&standing)))
+        };
+        self.law.get_or_init(found).clone()
     }
 
     /// Held-out errors of a law of these terms on the recordings, by window length. None where they are too short for it.

@@ -8,7 +8,8 @@ use crate::estimation::{Channel, Filter};
 use crate::identify::reading::Reading;
 use crate::identify::report::SensorState;
 use crate::identify::sample::Sample;
-use crate::law::{Drive, Hold};
+use crate::identify::timing::Timing;
+use crate::law::{Drive, State};
 use serde::{Deserialize, Serialize};
 
 /// Samples held at most: what has no name by then has the likeliest one.
@@ -61,6 +62,8 @@ pub struct Quarantine {
     first: usize,
     waiting: usize,
     last: Option<Sample>,
+    /// The excitation before that.
+    earlier: f64,
     repetitions: [Repetition; 2],
     /// Bursts so far by channel, and samples.
     bursts: [f64; 2],
@@ -99,6 +102,7 @@ impl Quarantine {
             first: 0,
             waiting: 0,
             last: None,
+            earlier: 0.0,
             repetitions: [Repetition::default(); 2],
             bursts: [0.0; 2],
             samples: 0.0,
@@ -116,7 +120,7 @@ impl Quarantine {
         &mut self,
         mut reading: Reading,
         measured: [bool; 2],
-        hold: Hold,
+        timing: Timing,
         pace: f64,
         law: Option<(Expected, Filter)>,
     ) {
@@ -125,7 +129,10 @@ impl Quarantine {
         let before = self.last.replace(reading.sample);
         self.samples += 1.0;
         self.sensors = self.standing();
-        let arrival = before.map(|before| self.arrival(reading, &before, measured, hold));
+        let arrival = before.map(|before| {
+            let course = law.map_or([f64::INFINITY; 2], |(law, filter)| self.course(&law, filter, before, reading));
+            self.arrival(reading, &before, measured, timing, course)
+        });
         match (law, arrival) {
             (Some((law, filter)), Some(arrival)) if arrival.dt < OUTAGE * pace => {
                 let law = Expected { noise: law.noise_with(reading.unseen, filter.mean[0]), ..law };
@@ -181,12 +188,26 @@ impl Quarantine {
         self.sensors
     }
 
-    fn arrival(&mut self, reading: Reading, before: &Sample, measured: [bool; 2], hold: Hold) -> Arrival {
+    /// What q and q̇ have moved by at least since the sample before, by the law.
+    fn course(&self, law: &Expected, filter: Filter, before: Sample, reading: Reading) -> [f64; 2] {
+        let filter = if self.count == 0 { filter } else { self.weighing.hypothesis(0).filter() };
+        let dt = reading.sample.t - before.t;
+        let qdd = law.motion.acceleration(State { q: filter.mean[0], qd: filter.mean[1] }, before.excitation);
+        let speed = filter.mean[1].abs() - UNEXPECTED * filter.covariance[1][1].sqrt();
+        [speed * dt, qdd.abs() * dt - UNEXPECTED * (law.noise.process * dt).sqrt()]
+    }
+
+    fn arrival(
+        &mut self,
+        reading: Reading,
+        before: &Sample,
+        measured: [bool; 2],
+        timing: Timing,
+        course: [f64; 2],
+    ) -> Arrival {
         let sample = reading.sample;
-        let drive = match hold {
-            Hold::Zero => Drive::Held(before.excitation),
-            Hold::Linear | Hold::BandLimited => Drive::Line(before.excitation, sample.excitation),
-        };
+        let earlier = std::mem::replace(&mut self.earlier, before.excitation);
+        let drive = timing.drive([earlier, before.excitation, sample.excitation]);
         let dt = sample.t - before.t;
         let event = (dt / SELDOM).min(OVER);
         let runs = self.repetitions.map(|repetition| repetition.run());
@@ -194,7 +215,7 @@ impl Quarantine {
             let index = channel as usize;
             let value = [sample.q, sample.qd][index];
             let start = event.max(self.bursts[index] / self.samples);
-            let repeats = self.repetitions[index].take(value);
+            let repeats = self.repetitions[index].take(value, course[index]);
             measured[index].then_some(Value { value, repeats, start })
         });
         Arrival { reading, dt, drive, values, runs }

@@ -9,6 +9,8 @@ const RARE: f64 = 0.01;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Repetition {
     last: Option<f64>,
+    /// The smallest step that it has made: a rounded channel's resolution.
+    resolution: Option<f64>,
     readings: f64,
     repeated: f64,
     /// What the rare repetitions in a row so far have cost, nats.
@@ -19,9 +21,16 @@ pub struct Repetition {
 
 impl Repetition {
     /// Takes a reading; returns −ln of how often the channel repeats a value, nats, where this one does and that is
-    /// rare.
-    pub fn take(&mut self, value: f64) -> Option<f64> {
-        let repeats = self.last.replace(value) == Some(value);
+    /// rare. `course` is what the channel has moved by at least since the last one, as far as is known: one that moves
+    /// by less than its resolution repeats itself, and that says nothing.
+    pub fn take(&mut self, value: f64, course: f64) -> Option<f64> {
+        let step = self.last.replace(value).map(|last| (value - last).abs());
+        let repeats = step == Some(0.0);
+        if repeats && self.resolution.is_none_or(|resolution| course < resolution) {
+            return None;
+        }
+        let moved = step.filter(|step| *step > 0.0);
+        self.resolution = self.resolution.into_iter().chain(moved).reduce(f64::min);
         let rate = (self.repeated + 0.5) / (self.readings + 1.0);
         let rare = repeats && rate < RARE;
         self.run = if rare { self.run - rate.ln() } else { 0.0 };
@@ -52,14 +61,22 @@ mod tests {
     #[test]
     fn a_channel_that_always_varied_repeats_by_a_fault() {
         let mut channel = Repetition::default();
-        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index)), None));
-        assert!(channel.take(999.0).unwrap() > 7.0);
-        assert_eq!(channel.take(5.0), None);
+        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index), 1.0), None));
+        assert!(channel.take(999.0, 1.0).unwrap() > 7.0);
+        assert_eq!(channel.take(5.0, 1.0), None);
     }
 
     #[test]
     fn a_coarse_sensor_repeats_all_the_time() {
         let mut channel = Repetition::default();
-        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index / 3)), None));
+        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index / 3), 1.0), None));
+    }
+
+    #[test]
+    fn a_rounded_channel_repeats_where_it_hardly_moves() {
+        let mut channel = Repetition::default();
+        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index), 1.0), None));
+        (0..20).for_each(|_| assert_eq!(channel.take(999.0, 0.1), None));
+        assert!(channel.take(999.0, 1.0).unwrap() > 7.0);
     }
 }

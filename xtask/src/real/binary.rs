@@ -1,7 +1,7 @@
 //! The command line under measurement: started, timed, its JSON read.
 
 use super::clock;
-use crate::command::{cargo, root, run};
+use crate::command::built_switchid;
 use crate::error::Error;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -40,7 +40,7 @@ impl Binary {
     /// [`Error::Failed`] when it cannot be built, [`Error::File`] when there is no such program or no folder for its
     /// files.
     pub fn new(given: Option<&Path>) -> Result<Binary, Error> {
-        let program = given.map_or_else(built, |path| Ok(path.to_path_buf()))?;
+        let program = given.map_or_else(built_switchid, |path| Ok(path.to_path_buf()))?;
         let program = program.canonicalize().map_err(file("find", &program))?;
         let folder = tempfile::tempdir().map_err(file("create", &std::env::temp_dir()))?;
         Ok(Binary { program, folder })
@@ -70,13 +70,6 @@ impl Binary {
         })?;
         Ok(Answer { document: document(&output), seconds })
     }
-}
-
-fn built() -> Result<PathBuf, Error> {
-    let mut command = cargo(&["build", "--quiet", "--release", "--package", "switchid", "--bin", "switchid"]);
-    run(&mut command, "install Rust from https://rustup.rs")?;
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from);
-    Ok(target.join("release").join(format!("switchid{}", std::env::consts::EXE_SUFFIX)))
 }
 
 /// The one JSON document of a run that ended well.

@@ -1,0 +1,161 @@
+//! Panels of curves, points and bands, as SVG.
+
+use super::figure::{Axis, Layer, Panel};
+use super::svg::{Area, COLOURS, MARK, said};
+use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Where a legend may stand, with the middle of that corner in shares of the panel's width and height.
+const CORNERS: [(SeriesLabelPosition, [f64; 2]); 4] = [
+    (SeriesLabelPosition::UpperRight, [0.85, 0.8]),
+    (SeriesLabelPosition::UpperLeft, [0.15, 0.8]),
+    (SeriesLabelPosition::LowerRight, [0.85, 0.2]),
+    (SeriesLabelPosition::LowerLeft, [0.15, 0.2]),
+];
+
+/// Half the width and half the height of a corner, as shares of the panel's.
+const CORNER: [f64; 2] = [0.15, 0.25];
+
+type Chart<'a, 'b, X, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>;
+
+/// Draws a panel over these ranges of its axes.
+pub(super) fn curves<X, Y>(area: &Area, panel: &Panel, x: X, y: Y) -> Result<(), String>
+where
+    X: AsRangedCoord<Value = f64>,
+    Y: AsRangedCoord<Value = f64>,
+    X::CoordDescType: ValueFormatter<f64>,
+    Y::CoordDescType: ValueFormatter<f64>,
+{
+    let mut builder = ChartBuilder::on(area);
+    if !panel.title.is_empty() {
+        builder.caption(&panel.title, ("sans-serif", 13));
+    }
+    builder.margin(8).margin_right(18).x_label_area_size(34).y_label_area_size(70);
+    let mut chart = builder.build_cartesian_2d(x, y).map_err(said)?;
+    let [from, to, low, high] = panel.extents();
+    let across = |value: &f64| tick(*value, to - from, &panel.x);
+    let upwards = |value: &f64| tick(*value, high - low, &panel.y);
+    let mut mesh = chart.configure_mesh();
+    mesh.light_line_style(TRANSPARENT).x_desc(&panel.x.label).y_desc(&panel.y.label);
+    mesh.x_label_formatter(&across).y_label_formatter(&upwards);
+    mesh.draw().map_err(said)?;
+    bands(&mut chart, panel)?;
+    let mut colours = COLOURS.iter().cycle();
+    for layer in &panel.layers {
+        let colour = if layer.is_coloured() { colours.next().copied().unwrap_or(BLACK) } else { MARK };
+        draw(&mut chart, layer, colour, [low, high])?;
+    }
+    if panel.named() > 1 { legend(&mut chart, panel) } else { Ok(()) }
+}
+
+/// Stretches of the x axis, shaded by turns.
+fn bands<X, Y>(chart: &mut Chart<X, Y>, panel: &Panel) -> Result<(), String>
+where
+    X: Ranged<ValueType = f64>,
+    Y: Ranged<ValueType = f64>,
+{
+    let [.., low, high] = panel.extents();
+    let rise = high - low;
+    let bottom = if panel.y.log { (low - rise).max(f64::MIN_POSITIVE) } else { low - rise };
+    let bands = panel.layers.iter().filter_map(|layer| match layer {
+        Layer::Band { from, to, label } => Some((*from, *to, label)),
+        _ => None,
+    });
+    for (shade, (from, to, label)) in bands.enumerate() {
+        let colour = BLACK.mix(if shade % 2 == 0 { 0.05 } else { 0.11 });
+        chart.draw_series([Rectangle::new([(from, bottom), (to, high + rise)], colour.filled())]).map_err(said)?;
+        let style = ("sans-serif", 11).into_font().color(&BLACK.mix(0.6));
+        let style = style.pos(Pos::new(HPos::Center, VPos::Bottom));
+        let at = EmptyElement::at((0.5 * (from + to), high));
+        chart.draw_series([at + Text::new(label.clone(), (0, 10), style)]).map_err(said)?;
+    }
+    Ok(())
+}
+
+/// Draws a layer in that colour; a mark from below to above.
+fn draw<X, Y>(chart: &mut Chart<X, Y>, layer: &Layer, colour: RGBColor, [low, high]: [f64; 2]) -> Result<(), String>
+where
+    X: Ranged<ValueType = f64>,
+    Y: Ranged<ValueType = f64>,
+{
+    let is_finite = |point: &&[f64; 2]| point.iter().all(|value| value.is_finite());
+    match layer {
+        Layer::Line { points, .. } => {
+            for part in points.split(|point| !is_finite(&point)) {
+                let line = part.iter().map(|[x, y]| (*x, *y)).collect::<Vec<_>>();
+                chart.draw_series([PathElement::new(line, colour.stroke_width(1))]).map_err(said)?;
+            }
+        }
+        Layer::Points { points, .. } => {
+            let dot = |[x, y]: &[f64; 2]| Circle::new((*x, *y), 1, colour.mix(0.5).filled());
+            chart.draw_series(points.iter().filter(is_finite).map(dot)).map_err(said)?;
+        }
+        Layer::Area { edges, .. } => {
+            let upper = edges.iter().map(|[x, _, high]| (*x, *high));
+            let lower = edges.iter().rev().map(|[x, low, _]| (*x, *low));
+            let ring: Vec<(f64, f64)> = upper.chain(lower).collect();
+            chart.draw_series([Polygon::new(ring, colour.mix(0.25).filled())]).map_err(said)?;
+        }
+        Layer::Mark { at, label } => {
+            let line = PathElement::new(vec![(*at, low), (*at, high)], colour.stroke_width(1));
+            chart.draw_series([line]).map_err(said)?;
+            let style = ("sans-serif", 11).into_font().color(&colour);
+            let word = EmptyElement::at((*at, high)) + Text::new(label.clone(), (3, 2), style);
+            chart.draw_series([word]).map_err(said)?;
+        }
+        Layer::Band { .. } | Layer::Bars(_) => {}
+    }
+    entry(chart, layer.name(), colour)
+}
+
+/// An entry of the legend.
+fn entry<X, Y>(chart: &mut Chart<X, Y>, name: &str, colour: RGBColor) -> Result<(), String>
+where
+    X: Ranged<ValueType = f64>,
+    Y: Ranged<ValueType = f64>,
+{
+    if name.is_empty() {
+        return Ok(());
+    }
+    let nothing = chart.draw_series(std::iter::empty::<Circle<(f64, f64), i32>>()).map_err(said)?;
+    nothing.label(name).legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 14, y)], colour.stroke_width(2)));
+    Ok(())
+}
+
+/// The names of layers, in the corner in which fewest points lie.
+fn legend<'a, 'b: 'a, X, Y>(chart: &mut Chart<'a, 'b, X, Y>, panel: &Panel) -> Result<(), String>
+where
+    X: Ranged<ValueType = f64>,
+    Y: Ranged<ValueType = f64>,
+{
+    let [from, to, low, high] = panel.extents();
+    let points = panel.layers.iter().flat_map(|layer| match layer {
+        Layer::Line { points, .. } | Layer::Points { points, .. } => points.as_slice(),
+        _ => &[],
+    });
+    let shares: Vec<[f64; 2]> = points.map(|[x, y]| [(x - from) / (to - from), (y - low) / (high - low)]).collect();
+    let inside =
+        |share: &[f64; 2], middle: [f64; 2]| (0..2).all(|axis| (share[axis] - middle[axis]).abs() < CORNER[axis]);
+    let hidden = |middle: [f64; 2]| shares.iter().filter(|share| inside(share, middle)).count();
+    let emptiest = CORNERS.into_iter().min_by_key(|(_, middle)| hidden(*middle));
+    let position = emptiest.map_or(SeriesLabelPosition::UpperRight, |(position, _)| position);
+    let mut labels = chart.configure_series_labels();
+    let style = labels.background_style(WHITE.mix(0.8)).border_style(BLACK.mix(0.3)).label_font(("sans-serif", 11));
+    style.position(position).draw().map_err(said)
+}
+
+/// A number at an axis, with as many decimals as its range needs.
+pub(super) fn tick(value: f64, range: f64, axis: &Axis) -> String {
+    let size = if axis.log { value.abs() } else { range.abs() };
+    if size == 0.0 || !size.is_finite() {
+        return format!("{value}");
+    }
+    if !(1e-3..1e5).contains(&size) || value.abs() >= 1e6 {
+        return if axis.log { format!("{value:.0e}") } else { format!("{value:.2e}") };
+    }
+    let decimals = (2.0 - size.log10().floor()).clamp(0.0, 6.0) as usize;
+    let text = format!("{value:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".into() } else { text.into() }
+}
