@@ -3,10 +3,10 @@
 use super::FmuError;
 use super::description::describe;
 use crate::law::{Catalogue, Entry, InnerParameter, InnerRange, InnerUnit};
-use crate::simulate::{Excitation, ParametricLaw};
-use switchid_fmu_package::variables::{at_least, choice, input, output, real, variable};
+use crate::simulate::{Excitation, ParametricLaw, is_smooth};
+use switchid_fmu_package::variables::{at_least, choice, derivative, input, output, real, variable};
 use switchid_fmu_package::{Fmu, documentation};
-use switchid_fmu_slave::{Description, Enumeration, Kind, Variability, Variable};
+use switchid_fmu_slave::{Causality, Description, Enumeration, Kind, Variability, Variable};
 
 /// The law file of the Duffing oscillator, eq. (5).
 pub const DUFFING: &str = include_str!("laws/duffing.toml");
@@ -25,8 +25,41 @@ pub(super) const NEVER: f64 = 1e30;
 /// # Errors
 /// [`FmuError`] where the law is refused or its name is no identifier.
 pub fn plant(law_file: &str) -> Result<Fmu, FmuError> {
-    pack(plant_description(&ParametricLaw::from_toml(law_file)?), law_file)
+    let law = ParametricLaw::from_toml(law_file)?;
+    let description = plant_description(&law);
+    let smooth = law.terms().into_iter().all(is_smooth);
+    pack(if smooth { with_equations(description) } else { description }, law_file)
 }
+
+/// The description of a plant that a host can integrate too: q and q̇ are its continuous states.
+pub(super) fn with_equations(mut description: Description) -> Description {
+    let known = |variable: &&Variable| matches!(variable.causality, Causality::Parameter | Causality::Input);
+    let names = description.variables.iter().filter(known).map(|variable| variable.name.clone());
+    let acceleration = real("der(true.qd)", 0.0, None, "Derivative of true.qd in time: the acceleration without noise");
+    let velocity = real("der(true.q)", 0.0, None, "Derivative of true.q in time");
+    let derivatives = [
+        Variable { depends_on: vec!["qd0".into()], ..derivative(velocity, "true.q", &["true.qd"]) },
+        Variable {
+            depends_on: names.collect(),
+            ..derivative(acceleration, "true.qd", &["true.q", "true.qd", "excitation.F"])
+        },
+    ];
+    for (name, state) in [("q", "true.q"), ("qd", "true.qd"), ("true.q", "true.q"), ("true.qd", "true.qd")] {
+        let outputs = description.variables.iter_mut().filter(|variable| variable.name == name);
+        outputs.for_each(|variable| variable.follows = vec![state.into()]);
+    }
+    description.variables.extend(derivatives);
+    description.model_exchange = true;
+    description
+}
+
+const INTEGRATED: &str = "<p>In model exchange your solver integrates <code>true.q</code> and <code>true.qd</code>. Stages begin, and an \
+     excitation of the plant's own and the sensors' noise change, in time events; with <code>excitation.kind</code> = input or none \
+     and without noise there are no others, and <code>excitation.F</code> acts at any time. <code>F</code> shows it as it was at the last \
+     event. Hidden effects with memory, delay or dry friction are for co-simulation only.</p>";
+
+const NOT_INTEGRATED: &str = "<p>This plant is for co-simulation only: its law has memory, a delay or dry friction, whose kinks only its own \
+     integration meets.</p>";
 
 /// A plant of that interface.
 pub(super) fn pack(description: Description, law_file: &str) -> Result<Fmu, FmuError> {
@@ -45,9 +78,10 @@ pub(super) fn pack(description: Description, law_file: &str) -> Result<Fmu, FmuE
                 <code>stage[i].time</code>, counted from the start of the simulation; 1e30 = it does not occur. The inner \
                 integration does not depend on the communication step. <code>hidden.*</code> are effects \
                 besides the law's terms, for a model to lack.</p>";
+    let exchange = if description.model_exchange { INTEGRATED } else { NOT_INTEGRATED };
     let picture = documentation::PICTURE;
     let text = format!(
-        "{picture}\n{start}<h2>The law</h2>\n<p>{law}; the coefficients are those of the present stage.</p>\n{text}"
+        "{picture}\n{start}<h2>The law</h2>\n<p>{law}; the coefficients are those of the present stage.</p>\n{text}\n{exchange}"
     );
     let page = documentation::page(&description, &text);
     Ok(Fmu::new(description, vec![("plant.toml".into(), law_file.as_bytes().to_vec())], page)?)

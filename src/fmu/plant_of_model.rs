@@ -3,11 +3,11 @@
 //! Terms without inner parameters are parameters of every stage. Those with inner ones are the plant's `hidden.*` effects, whose
 //! start values are then the model's: the law file has no place for a gap.
 
-use super::plant::{pack, plant_description};
+use super::plant::{pack, plant_description, with_equations};
 use super::specimen::{pack_specimen, specimen_description};
 use super::{Fmu, FmuError, ports};
 use crate::law::{Given, Model, ModelTerm, SiUnit, Term, Units, equation};
-use crate::simulate::ParametricLaw;
+use crate::simulate::{ParametricLaw, is_smooth};
 use switchid_fmu_slave::{Description, Kind};
 
 /// A plant of the model's law, still without binaries; it starts at rest under a sine of amplitude 1. Of a model
@@ -27,7 +27,12 @@ pub fn plant_of_model(name: &str, model: &Model) -> Result<Fmu, FmuError> {
     let numbers = numbers(model)?;
     let law_file = law_file(name, model, &numbers);
     let law = ParametricLaw::from_toml(&law_file)?;
-    let mut description = if moves { plant_description(&law) } else { specimen_description(&law) };
+    let smooth = model.terms.iter().all(|entry| is_smooth(entry.term));
+    let mut description = match (moves, smooth) {
+        (true, true) => with_equations(plant_description(&law)),
+        (true, false) => plant_description(&law),
+        (false, _) => specimen_description(&law),
+    };
     start(&mut description, "q0", 0.0);
     for (entry, value) in numbers.iter().filter(|(entry, _)| has_inner(entry)) {
         let effect = format!("hidden.{}", entry.term.name());

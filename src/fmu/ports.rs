@@ -6,7 +6,7 @@ use switchid_fmu_slave::{Description, Unit};
 
 /// Variables that are a displacement, a velocity, an excitation.
 const DISPLACEMENTS: [&str; 6] = ["q", "noise.q", "q0", "true.q", "prediction.q", "noise_estimate.q"];
-const VELOCITIES: [&str; 6] = ["qd", "noise.qd", "qd0", "true.qd", "prediction.qd", "noise_estimate.qd"];
+const VELOCITIES: [&str; 7] = ["qd", "noise.qd", "qd0", "true.qd", "der(true.q)", "prediction.qd", "noise_estimate.qd"];
 const EXCITATIONS: [&str; 7] =
     ["F", "excitation.F", "excitation.rms", "true.F", "noise.F", "prediction.F", "noise_estimate.F"];
 

@@ -74,7 +74,11 @@ struct Instant<'h, H> {
     excitation: f64,
 }
 
-impl<H: History> Instant<'_, H> {
+impl<'h, H: History> Instant<'h, H> {
+    fn at(t: f64, history: &'h H) -> Instant<'h, H> {
+        Instant { history, from: t, to: t, which: 0, excitation: history.over(t, t)[0] }
+    }
+
     fn t(&self) -> f64 {
         [self.from, 0.5 * (self.from + self.to), self.to][self.which]
     }
@@ -124,6 +128,15 @@ impl<'a> Dynamics<'a> {
         })
     }
 
+    /// q̈ at time `t`, s, under that excitation; 0 where dry friction holds it.
+    pub fn acceleration<H: History>(&self, phase: &Phase, t: f64, history: &H) -> f64 {
+        let direction = self.is_dry().then(|| match phase.state.qd {
+            0.0 => self.direction(phase, t, history),
+            qd => qd.signum(),
+        });
+        self.slope(phase, Instant::at(t, history), direction).state.qd
+    }
+
     fn is_dry(&self) -> bool {
         let mut acting = self.motion.terms.iter().zip(self.motion.coefficients).filter(|(_, value)| **value != 0.0);
         acting.any(|(term, _)| term.effect().is_some_and(Effect::is_dry))
@@ -148,7 +161,7 @@ impl<'a> Dynamics<'a> {
             let Some(share) = self.rest_within(&phase, &end, [from, to], history, direction) else { return end };
             let share = refined(share, |share| {
                 let (end, t) = (go(share), until(share));
-                end.state.qd / (self.acceleration(&end, t, history, direction) * (to - from))
+                end.state.qd / (self.sliding(&end, t, history, direction) * (to - from))
             });
             (phase, from) = (go(share).at_rest(), until(share));
             direction = self.direction(&phase, from, history);
@@ -164,19 +177,18 @@ impl<'a> Dynamics<'a> {
         history: &H,
         direction: f64,
     ) -> Option<f64> {
-        let rate = |phase: &Phase, t: f64| (times[1] - times[0]) * self.acceleration(phase, t, history, direction);
+        let rate = |phase: &Phase, t: f64| (times[1] - times[0]) * self.sliding(phase, t, history, direction);
         rest_within(direction, [start.state.qd, end.state.qd], [rate(start, times[0]), rate(end, times[1])])
     }
 
     /// q̈ of a motion that slides in a direction.
-    fn acceleration<H: History>(&self, phase: &Phase, t: f64, history: &H, direction: f64) -> f64 {
-        let instant = Instant { history, from: t, to: t, which: 0, excitation: history.over(t, t)[0] };
-        self.slope(phase, instant, Some(direction)).state.qd
+    fn sliding<H: History>(&self, phase: &Phase, t: f64, history: &H, direction: f64) -> f64 {
+        self.slope(phase, Instant::at(t, history), Some(direction)).state.qd
     }
 
     /// q̈ from rest if it slid forward and if it slid backward.
     fn pulls<H: History>(&self, phase: &Phase, t: f64, history: &H) -> [f64; 2] {
-        [1.0, -1.0].map(|direction| self.acceleration(&phase.at_rest(), t, history, direction))
+        [1.0, -1.0].map(|direction| self.sliding(&phase.at_rest(), t, history, direction))
     }
 
     fn direction<H: History>(&self, phase: &Phase, t: f64, history: &H) -> f64 {

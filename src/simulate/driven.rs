@@ -115,6 +115,11 @@ impl DrivenPlant {
         self.past.present()
     }
 
+    /// q̈ now, m/s², under the excitation that acted last.
+    pub fn acceleration(&self) -> f64 {
+        self.law.acceleration(&self.scenario, self.truth().stage, &self.phase, self.t, &self.past)
+    }
+
     /// What is measured now; the excitation is the one that acted last.
     pub fn reading(&self) -> Reading {
         let noise = sensor_noise(&self.scenario, self.t);

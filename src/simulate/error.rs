@@ -30,6 +30,15 @@ pub enum ScenarioError {
         /// The term.
         term: Term,
     },
+    /// A term whose law has events that no host is told of.
+    #[error(
+        "\"{term}\" has memory, a delay or dry friction: only the FMU's own integration meets its kinks, so use it for co-simulation, \
+         or leave the term out"
+    )]
+    NotSmooth {
+        /// The term.
+        term: Term,
+    },
     /// F on both sides of a law that gives F.
     #[error("terms: \"{term}\" depends on F, which a law without inertia gives: leave it out, or add \"qdd\"")]
     OutputAmongTerms {

@@ -86,7 +86,11 @@ pub(super) fn diverged(phase: &Phase, t: f64) -> Result<(), PlantError> {
 
 /// The sensors' noise at time t, drawn once per interval of the excitation's grid.
 pub(super) fn sensor_noise(scenario: &Scenario, t: f64) -> SensorNoise {
-    let index = interval(scenario, t);
+    noise_of(scenario, interval(scenario, t))
+}
+
+/// The sensors' noise in that interval of the excitation's grid.
+pub(super) fn noise_of(scenario: &Scenario, index: u64) -> SensorNoise {
     let noise = |std: f64, stream| match std {
         0.0 => 0.0,
         std => std * standard_normal(scenario.seed, stream, index),
@@ -99,15 +103,15 @@ pub(super) fn sensor_noise(scenario: &Scenario, t: f64) -> SensorNoise {
 }
 
 /// The interval of the excitation's grid to which t belongs.
-fn interval(scenario: &Scenario, t: f64) -> u64 {
+pub(super) fn interval(scenario: &Scenario, t: f64) -> u64 {
     (t / scenario.excitation.sample_time + Scenario::TIME_JITTER).floor().max(0.0) as u64
 }
 
 /// A plant: its scenario, which does not change, and where it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Plant {
-    scenario: Scenario,
-    law: Law,
+    pub(super) scenario: Scenario,
+    pub(super) law: Law,
     /// Phases of the multisine, rad.
     phases: Vec<f64>,
     /// Last point of the inner grid that was reached, and the phase there.
@@ -123,8 +127,8 @@ pub struct Plant {
 pub(super) struct Law {
     terms: Vec<Term>,
     coefficients: Vec<Vec<f64>>,
-    /// Whether the state and the excitation alone determine the force, which does not jump.
-    smooth: bool,
+    /// Whether no term keeps it from being smooth.
+    pub(super) smooth: bool,
 }
 
 impl Law {
@@ -132,8 +136,12 @@ impl Law {
         let Scenario { terms, hidden, stages, .. } = scenario;
         let terms: Vec<Term> = terms.iter().copied().chain(hidden.terms()).collect();
         let all = stages.iter().map(|stage| stage.coefficients.iter().copied().chain(hidden.coefficients()).collect());
-        let smooth = |term: &Term| term.is_pointwise() && !term.effect().is_some_and(Effect::is_dry);
-        Law { smooth: terms.iter().all(smooth), coefficients: all.collect(), terms }
+        Law { smooth: terms.iter().copied().all(is_smooth), coefficients: all.collect(), terms }
+    }
+
+    /// A term that keeps it from being smooth.
+    pub(super) fn rough(&self) -> Option<Term> {
+        self.terms.iter().copied().find(|term| !is_smooth(*term))
     }
 
     pub(super) fn motion(&self, stage: usize) -> Motion<'_> {
@@ -147,6 +155,19 @@ impl Law {
             _ => 0.0,
         };
         self.terms.iter().map(delay).fold(0.0, f64::max)
+    }
+
+    /// q̈ at time t, s.
+    pub(super) fn acceleration(
+        &self,
+        scenario: &Scenario,
+        stage: usize,
+        phase: &Phase,
+        t: f64,
+        history: &impl History,
+    ) -> f64 {
+        let dynamics = Dynamics::new(self.motion(stage), scenario.hidden.expressions());
+        dynamics.map_or(f64::NAN, |dynamics| dynamics.acceleration(phase, t, history))
     }
 
     /// From one time to another, within which neither law nor excitation changes.
@@ -166,6 +187,11 @@ impl Law {
         let dynamics = Dynamics::new(motion, scenario.hidden.expressions());
         dynamics.map_or(NOWHERE, |dynamics| dynamics.step(phase, from, to - from, history))
     }
+}
+
+/// Whether the state and the excitation alone determine the term's force, which does not jump.
+pub fn is_smooth(term: Term) -> bool {
+    term.is_pointwise() && !term.effect().is_some_and(Effect::is_dry)
 }
 
 /// Where the motion goes that a law has no numbers for.
@@ -228,13 +254,20 @@ impl Plant {
         Truth { stage, coefficients: &self.scenario.stages[stage].coefficients, state: self.phase.state }
     }
 
+    /// q̈ now, m/s², under the excitation that is held from now on.
+    pub fn acceleration(&self) -> f64 {
+        let excitation = self.held(interval(&self.scenario, self.t));
+        let held = HeldFrom { plant: self, from: self.t, excitation };
+        self.law.acceleration(&self.scenario, self.truth().stage, &self.phase, self.t, &held)
+    }
+
     /// The scenario it was built from.
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
     }
 
     /// Differences of time that rounding explains, s.
-    fn resolution(&self, t: f64) -> f64 {
+    pub(super) fn resolution(&self, t: f64) -> f64 {
         Scenario::ROUNDING * self.scenario.excitation.sample_time + 4.0 * f64::EPSILON * t.abs()
     }
 
@@ -256,7 +289,7 @@ impl Plant {
 
     /// The excitation that is held over an interval of the grid. Its amplitude and frequency are those of the stage
     /// at the interval's start: where a switch falls between two grid points, they follow at the next one.
-    fn held(&self, interval: u64) -> f64 {
+    pub(super) fn held(&self, interval: u64) -> f64 {
         let excitation = self.scenario.excitation;
         let t = interval as f64 * excitation.sample_time;
         match excitation.kind {

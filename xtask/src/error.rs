@@ -108,6 +108,14 @@ pub enum Error {
         /// The FMU.
         fmu: String,
     },
+    /// A platform's binary is not as it must be.
+    #[error("{path} {what}")]
+    Binary {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        what: String,
+    },
     /// What was measured cannot be written as JSON.
     #[error("no JSON of what was measured: {0}")]
     Json(#[from] serde_json::Error),

@@ -6,6 +6,7 @@ mod error;
 mod files;
 mod fmu;
 mod importers;
+mod inspect;
 mod libclang;
 mod licences;
 mod picture;
@@ -31,7 +32,8 @@ usage: cargo xtask CHORE
   fmu [--platforms]  builds SwitchedIdentifier.fmu, Duffing.fmu, VanDerPol.fmu into target/fmu, for this
                      machine or for Linux (x86-64, ARM) and Windows, and modelDescription.xml at the root
                      and the list of licences anew
-  wine               steps the Windows binaries that `fmu --platforms` built under Wine, beside the Linux ones
+  wine [--quick]     steps the Windows binaries that `fmu --platforms` built under Wine, beside the Linux ones;
+                     quickly: the identifier alone, built for it, after `fmu`
   importers          plant and identifier in fmpy, fmpy.ssp, ecospy and libcosimpy: equal trajectories
   bench [ARGUMENT..] cost per sample by phase, terms and window; arguments go to the
                      benchmark (--help lists them)
@@ -78,6 +80,7 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         ("fmu", []) => fmu::renew(false),
         ("fmu", [platforms]) if platforms == "--platforms" => fmu::renew(true),
         ("wine", []) => wine::compare(),
+        ("wine", [quick]) if quick == "--quick" => wine::compare_quickly(),
         ("importers", []) => importers::importers(),
         ("bench", rest) => cargo(&["bench", "--package", MEASURE, "--bench", "step", "--"], rest),
         (program @ ("figures" | "study" | "effects" | "faults" | "known-laws" | "dropbear"), rest) => {

@@ -2,15 +2,17 @@
 //!
 //! They need a C library no newer than [`GLIBC`], hold no path of the building machine and no symbol but the standard's.
 
-use crate::command::{cargo, root, run};
+use crate::command::{root, run};
 use crate::error::Error;
 use crate::files::{file, write};
+use crate::inspect::{functions, inspect};
 use crate::python;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use switchid_fmu_package::{AARCH64_LINUX, LINUX64, Platform, WIN64};
 
-/// The oldest C library that the Linux binaries run with, of 2012.
-const GLIBC: &str = "2.17";
+/// The oldest C library that the Linux binaries run with is 2.17, of 2012.
+const GLIBC: u32 = 17;
 
 /// Platform, and Rust's name of it.
 const TARGETS: [(Platform, &str); 3] = [
@@ -25,7 +27,7 @@ const TARGETS: [(Platform, &str); 3] = [
 /// What rustup, pip and cargo say.
 pub fn build(packages: &[&str]) -> Result<(), Error> {
     let environment = python::platforms()?;
-    let mut targets = std::process::Command::new("rustup");
+    let mut targets = Command::new("rustup");
     run(targets.args(["--quiet", "target", "add"]).args(TARGETS.map(|(_, target)| target)), RUSTUP)?;
     for (platform, target) in TARGETS {
         build_one(&environment, platform, target, packages)?;
@@ -36,38 +38,90 @@ pub fn build(packages: &[&str]) -> Result<(), Error> {
 const RUSTUP: &str = "install Rust from https://rustup.rs";
 
 fn build_one(environment: &Path, platform: Platform, target: &str, packages: &[&str]) -> Result<(), Error> {
-    let packages_named: Vec<&str> = packages.iter().flat_map(|package| ["--package", package]).collect();
-    let built = zigbuild(environment, platform, target, &packages_named)?;
     for package in packages {
-        let (built, kept) = (built.join(platform.file(package)), path(platform, package));
+        let exchange = package.ends_with("-plant");
+        let mut library = vec!["--package", package, "--lib", "--crate-type", "cdylib"];
+        let list = format!("link-arg={}", exports_file(exchange)?.display());
+        if platform == WIN64 {
+            library.extend(["--", "-C", &list]);
+        }
+        let built = zigbuild(environment, platform, target, &library)?.join(platform.file(package));
+        let content = std::fs::read(&built).map_err(file("read", &built))?;
+        inspect(&built, &content, exchange, GLIBC)?;
+        let kept = path(platform, package);
         let folder = kept.parent().unwrap_or(&kept);
         std::fs::create_dir_all(folder).map_err(file("create", folder))?;
-        write(&kept, &std::fs::read(&built).map_err(file("read", &built))?)?;
+        write(&kept, &content)?;
     }
     Ok(())
 }
 
-/// Builds for a platform; the folder of what was built.
-fn zigbuild(environment: &Path, platform: Platform, target: &str, arguments: &[&str]) -> Result<PathBuf, Error> {
-    let wanted = if platform == WIN64 { target.to_string() } else { format!("{target}.{GLIBC}") };
-    let directory = root().join("target/platforms");
-    let mut command = cargo(&["zigbuild", "--quiet", "--profile", "fmu", "--target", &wanted, "--target-dir"]);
-    command.arg(&directory).args(arguments);
-    command.env("PATH", path_with(environment)).env("CARGO_ENCODED_RUSTFLAGS", flags());
-    run(&mut command, RUSTUP)?;
-    Ok(directory.join(target).join("fmu"))
+/// The list of what a Windows library exports, as its linker reads it: without one it exports everything.
+fn exports_file(exchange: bool) -> Result<PathBuf, Error> {
+    let folder = root().join("target/platforms");
+    std::fs::create_dir_all(&folder).map_err(file("create", &folder))?;
+    let path = folder.join(if exchange { "exchange.def" } else { "slave.def" });
+    write(&path, format!("EXPORTS\n{}\n", functions(exchange).join("\n")).as_bytes())?;
+    Ok(path)
 }
 
-/// The program that steps an FMU and prints its outputs, for a platform.
+/// Builds one crate for a platform as it is shipped; the folder of what was built.
+fn zigbuild(environment: &Path, platform: Platform, target: &str, arguments: &[&str]) -> Result<PathBuf, Error> {
+    zigbuild_as("fmu", environment, platform, target, arguments)
+}
+
+fn zigbuild_as(
+    profile: &str,
+    environment: &Path,
+    platform: Platform,
+    target: &str,
+    arguments: &[&str],
+) -> Result<PathBuf, Error> {
+    let wanted = if platform == WIN64 { target.to_string() } else { format!("{target}.2.{GLIBC}") };
+    let directory = root().join("target/platforms");
+    let mut command = Command::new(environment.join("bin/cargo-zigbuild"));
+    command.args(["rustc", "--quiet", "--profile", profile, "--target", &wanted, "--target-dir"]);
+    command.arg(&directory).args(arguments).current_dir(root());
+    command.env("PATH", path_with(environment)).env("CARGO_ENCODED_RUSTFLAGS", flags());
+    run(&mut command, RUSTUP)?;
+    Ok(directory.join(target).join(profile))
+}
+
+/// What builds the program that steps an FMU and prints its outputs.
+const REPLAY: [&str; 6] = ["--package", "switchid-fmu-slave", "--features", "host", "--bin", "switchid-fmu-replay"];
+
+/// That program for a platform.
 ///
 /// # Errors
 /// What pip and cargo say.
 pub fn build_replay(platform: Platform) -> Result<PathBuf, Error> {
     let environment = python::platforms()?;
     let target = TARGETS.into_iter().find(|(own, _)| *own == platform).map_or("", |(_, target)| target);
-    let arguments = ["--package", "switchid-fmu-slave", "--features", "host", "--bin", "switchid-fmu-replay"];
-    let folder = zigbuild(&environment, platform, target, &arguments)?;
+    let folder = zigbuild(&environment, platform, target, &REPLAY)?;
     Ok(folder.join(if platform == WIN64 { "switchid-fmu-replay.exe" } else { "switchid-fmu-replay" }))
+}
+
+/// That program and a package's library for Windows, built to be tried and not to be shipped.
+///
+/// # Errors
+/// What rustup, pip and cargo say.
+pub fn build_for_wine(package: &str) -> Result<(PathBuf, PathBuf), Error> {
+    let environment = python::platforms()?;
+    let (platform, target) = TARGETS[2];
+    run(Command::new("rustup").args(["--quiet", "target", "add", target]), RUSTUP)?;
+    let build = |arguments: &[&str]| zigbuild_as("tried", &environment, platform, target, arguments);
+    let library = build(&["--package", package, "--lib", "--crate-type", "cdylib"])?.join(platform.file(package));
+    Ok((build(&REPLAY)?.join("switchid-fmu-replay.exe"), library))
+}
+
+/// The C compiler that comes with zig.
+///
+/// # Errors
+/// What pip says.
+pub fn zig_compiler() -> Result<Command, Error> {
+    let mut command = Command::new(python::platforms()?.join("bin/python"));
+    command.args(["-m", "ziglang", "cc"]);
+    Ok(command)
 }
 
 /// What was built of a package.

@@ -1,10 +1,11 @@
 //! Every exported function has the type of `fmi2FunctionTypes.h`: a mismatch does not compile.
 //!
-//! `fmi2Instantiate` is left out: its callbacks are a struct of their own on either side; that it works is shown by every
-//! instance that the other tests make.
+//! `fmi2Instantiate` and `fmi2NewDiscreteStates` are left out: callbacks and event info are structs of their own on either side; that
+//! they work is shown by every instance that the other tests make.
 
 use fmi_sys::fmi2::*;
 use switchid_fmu_identifier::functions;
+use switchid_fmu_plant::exchange_functions;
 
 #[test]
 fn signatures_are_those_of_the_headers() {
@@ -41,4 +42,17 @@ fn signatures_are_those_of_the_headers() {
     let _: fmi2GetIntegerStatusTYPE = Some(functions::fmi2GetIntegerStatus);
     let _: fmi2GetBooleanStatusTYPE = Some(functions::fmi2GetBooleanStatus);
     let _: fmi2GetStringStatusTYPE = Some(functions::fmi2GetStringStatus);
+}
+
+#[test]
+fn signatures_of_model_exchange_are_those_of_the_headers() {
+    let _: fmi2EnterEventModeTYPE = Some(exchange_functions::fmi2EnterEventMode);
+    let _: fmi2EnterContinuousTimeModeTYPE = Some(exchange_functions::fmi2EnterContinuousTimeMode);
+    let _: fmi2CompletedIntegratorStepTYPE = Some(exchange_functions::fmi2CompletedIntegratorStep);
+    let _: fmi2SetTimeTYPE = Some(exchange_functions::fmi2SetTime);
+    let _: fmi2SetContinuousStatesTYPE = Some(exchange_functions::fmi2SetContinuousStates);
+    let _: fmi2GetDerivativesTYPE = Some(exchange_functions::fmi2GetDerivatives);
+    let _: fmi2GetEventIndicatorsTYPE = Some(exchange_functions::fmi2GetEventIndicators);
+    let _: fmi2GetContinuousStatesTYPE = Some(exchange_functions::fmi2GetContinuousStates);
+    let _: fmi2GetNominalsOfContinuousStatesTYPE = Some(exchange_functions::fmi2GetNominalsOfContinuousStates);
 }

@@ -22,6 +22,9 @@ const THIRD_PARTY: &str = include_str!("../assets/third-party-licenses.txt");
 /// The picture that a simulator shows.
 const ICON: &[u8] = include_bytes!("../assets/model.png");
 
+/// Deflate's level of the smallest archive.
+const SMALLEST: i64 = 9;
+
 /// Why an FMU cannot be packed.
 #[derive(Debug, Error)]
 pub enum PackageError {
@@ -115,6 +118,7 @@ impl Fmu {
             let mode = if path.starts_with("binaries/") { 0o755 } else { 0o644 };
             let options = SimpleFileOptions::default()
                 .compression_method(CompressionMethod::Deflated)
+                .compression_level(Some(SMALLEST))
                 .last_modified_time(DateTime::default())
                 .unix_permissions(mode);
             archive.start_file(path, options)?;

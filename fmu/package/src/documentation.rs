@@ -22,8 +22,11 @@ fn row(variable: &Variable) -> String {
         Causality::Parameter => "parameter",
         Causality::Input => "input",
         Causality::Output => "output",
+        Causality::Local => "local",
+        Causality::Independent => "time",
     };
-    let start = if variable.causality == Causality::Output { String::new() } else { start_text(&variable.kind) };
+    let is_given = matches!(variable.causality, Causality::Parameter | Causality::Input);
+    let start = if is_given { start_text(&variable.kind) } else { String::new() };
     let unit = match &variable.kind {
         Kind::Real { unit: Some(unit), .. } => unit.as_str(),
         _ => "",

@@ -11,6 +11,8 @@ pub fn real(name: impl Into<String>, start: f64, unit: Option<&str>, description
         variability: Variability::Discrete,
         kind: Kind::Real { start, min: None, max: None, unit: unit.map(Into::into) },
         depends_on: Vec::new(),
+        derivative_of: None,
+        follows: Vec::new(),
     }
 }
 
@@ -41,6 +43,19 @@ pub fn input(variable: Variable) -> Variable {
 pub fn output(variable: Variable, depends_on: &[&str]) -> Variable {
     let depends_on = depends_on.iter().map(|name| (*name).into()).collect();
     Variable { causality: Causality::Output, depends_on, ..variable }
+}
+
+/// The time.
+pub fn time() -> Variable {
+    let (causality, variability) = (Causality::Independent, Variability::Continuous);
+    Variable { causality, variability, ..real("time", 0.0, Some("s"), "Simulation time") }
+}
+
+/// The variable as the derivative in time of that state; at the same instant it depends on those.
+pub fn derivative(variable: Variable, state: &str, follows: &[&str]) -> Variable {
+    let follows = follows.iter().map(|name| (*name).into()).collect();
+    let (causality, variability) = (Causality::Local, Variability::Continuous);
+    Variable { causality, variability, derivative_of: Some(state.into()), follows, ..variable }
 }
 
 /// The units among seconds and radians per second that the variables name.

@@ -34,12 +34,15 @@ fn write(description: &Description, guid: &str) -> io::Result<String> {
     let mut xml = Writer::new_with_indent(Vec::new(), b' ', 2);
     xml.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
     element(&mut xml, "fmiModelDescription", head(description, guid), |xml| {
+        if description.model_exchange {
+            empty(xml, "ModelExchange", equations(description))?;
+        }
         empty(xml, "CoSimulation", capabilities(description))?;
         write_units(xml, &description.units)?;
         write_enumerations(xml, &description.enumerations)?;
         write_log_categories(xml)?;
         empty(xml, "DefaultExperiment", experiment(description))?;
-        element(xml, "ModelVariables", vec![], |xml| write_variables(xml, &description.variables))?;
+        element(xml, "ModelVariables", vec![], |xml| write_variables(xml, description))?;
         element(xml, "ModelStructure", vec![], |xml| write_structure(xml, description))
     })?;
     String::from_utf8(xml.into_inner()).map(|text| text + "\n").map_err(io::Error::other)
@@ -85,6 +88,21 @@ fn capabilities(description: &Description) -> Attributes {
         flag("canInterpolateInputs", false),
         ("maxOutputDerivativeOrder", "0".into()),
         flag("canRunAsynchronuously", false),
+        flag("canBeInstantiatedOnlyOncePerProcess", false),
+        flag("canNotUseMemoryManagementFunctions", true),
+        flag("canGetAndSetFMUstate", true),
+        flag("canSerializeFMUstate", true),
+        flag("providesDirectionalDerivative", false),
+    ]
+}
+
+/// What a host may do that integrates it.
+fn equations(description: &Description) -> Attributes {
+    let flag = |name, value: bool| (name, value.to_string());
+    vec![
+        ("modelIdentifier", description.name.clone()),
+        flag("needsExecutionTool", false),
+        flag("completedIntegratorStepNotNeeded", true),
         flag("canBeInstantiatedOnlyOncePerProcess", false),
         flag("canNotUseMemoryManagementFunctions", true),
         flag("canGetAndSetFMUstate", true),
@@ -167,10 +185,10 @@ fn write_log_categories(xml: &mut Xml) -> io::Result<()> {
     })
 }
 
-fn write_variables(xml: &mut Xml, variables: &[Variable]) -> io::Result<()> {
-    variables.iter().enumerate().try_for_each(|(reference, variable)| {
+fn write_variables(xml: &mut Xml, description: &Description) -> io::Result<()> {
+    description.variables.iter().enumerate().try_for_each(|(reference, variable)| {
         element(xml, "ScalarVariable", scalar_variable(reference, variable), |xml| {
-            let (name, attributes) = type_element(variable);
+            let (name, attributes) = type_element(description, variable);
             empty(xml, name, attributes)
         })
     })
@@ -183,6 +201,9 @@ fn scalar_variable(reference: usize, variable: &Variable) -> Attributes {
         (Causality::Input, Variability::Continuous) => ("input", "continuous", None),
         (Causality::Output, Variability::Discrete) => ("output", "discrete", Some("calculated")),
         (Causality::Output, Variability::Continuous) => ("output", "continuous", Some("calculated")),
+        (Causality::Independent, _) => ("independent", "continuous", None),
+        (Causality::Local, Variability::Discrete) => ("local", "discrete", Some("calculated")),
+        (Causality::Local, Variability::Continuous) => ("local", "continuous", Some("calculated")),
     };
     let mut attributes = vec![
         ("name", variable.name.clone()),
@@ -195,13 +216,15 @@ fn scalar_variable(reference: usize, variable: &Variable) -> Attributes {
     attributes
 }
 
-fn type_element(variable: &Variable) -> (&'static str, Attributes) {
+fn type_element(description: &Description, variable: &Variable) -> (&'static str, Attributes) {
     let mut attributes = Attributes::new();
     let (name, start) = match &variable.kind {
         Kind::Real { start, min, max, unit } => {
             attributes.extend(unit.clone().map(|unit| ("unit", unit)));
             attributes.extend(min.map(|min| ("min", number(min))));
             attributes.extend(max.map(|max| ("max", number(max))));
+            let state = variable.derivative_of.as_deref().and_then(|state| description.position(state));
+            attributes.extend(state.map(|position| ("derivative", (position + 1).to_string())));
             attributes.extend(nominal(*start).map(|nominal| ("nominal", number(nominal))));
             ("Real", number(*start))
         }
@@ -217,7 +240,7 @@ fn type_element(variable: &Variable) -> (&'static str, Attributes) {
         Kind::Boolean { start } => ("Boolean", start.to_string()),
         Kind::String { start } => ("String", start.clone()),
     };
-    if variable.causality != Causality::Output {
+    if matches!(variable.causality, Causality::Parameter | Causality::Input) {
         attributes.push(("start", start));
     }
     (name, attributes)
@@ -228,24 +251,36 @@ fn nominal(start: f64) -> Option<f64> {
     Some(start.abs()).filter(|size| *size > 0.0 && *size < 1e20 && *size != 1.0)
 }
 
-/// Outputs after a step do not depend on inputs at the same instant, hence no dependencies; indices count from 1.
+/// No output depends on an input at the same instant; indices count from 1. That outputs depend on the time must be said: FMI Library
+/// takes a list in which nothing depends on anything for one that says nothing.
 fn write_structure(xml: &mut Xml, description: &Description) -> io::Result<()> {
-    let outputs: Vec<(usize, &Variable)> = (1..).zip(&description.variables).filter(is_output).collect();
-    if outputs.is_empty() {
-        return Ok(());
-    }
-    element(xml, "Outputs", vec![], |xml| {
-        outputs.iter().try_for_each(|(index, _)| unknown(xml, *index, String::new()))
-    })?;
-    element(xml, "InitialUnknowns", vec![], |xml| {
-        outputs
-            .iter()
-            .try_for_each(|(index, variable)| unknown(xml, *index, indices(description, &variable.depends_on)))
-    })
+    let time = description.time().map(|place| description.variables[place].name.clone());
+    let now = |variable: &Variable| variable.follows.clone();
+    let later = |variable: &Variable| variable.follows.iter().chain(&time).cloned().collect();
+    let at_first = |variable: &Variable| variable.depends_on.clone();
+    let is_output = |variable: &Variable| variable.causality == Causality::Output;
+    let is_derivative = |variable: &Variable| variable.derivative_of.is_some();
+    write_unknowns(xml, description, "Outputs", is_output, later)?;
+    write_unknowns(xml, description, "Derivatives", is_derivative, now)?;
+    write_unknowns(xml, description, "InitialUnknowns", |own| is_output(own) || is_derivative(own), at_first)
 }
 
-fn is_output((_, variable): &(usize, &Variable)) -> bool {
-    variable.causality == Causality::Output
+/// A list of those variables that belong to it, each with the variables that it depends on; none where it would be empty.
+fn write_unknowns(
+    xml: &mut Xml,
+    description: &Description,
+    list: &str,
+    belongs: impl Fn(&Variable) -> bool,
+    depends_on: impl Fn(&Variable) -> Vec<String>,
+) -> io::Result<()> {
+    let unknowns: Vec<(usize, &Variable)> =
+        (1..).zip(&description.variables).filter(|(_, variable)| belongs(variable)).collect();
+    if unknowns.is_empty() {
+        return Ok(());
+    }
+    element(xml, list, vec![], |xml| {
+        unknowns.iter().try_for_each(|(index, own)| unknown(xml, *index, indices(description, &depends_on(own))))
+    })
 }
 
 fn unknown(xml: &mut Xml, index: usize, dependencies: String) -> io::Result<()> {

@@ -1,7 +1,7 @@
 //! The XML, its GUID, the archive.
 
 use std::io::{Cursor, Read};
-use switchid::fmu::{DUFFING, FmuError, STAGES, VAN_DER_POL, identifier, plant};
+use switchid::fmu::{DUFFING, FmuError, STAGES, VAN_DER_POL, identifier, plant, plant_of_model};
 use switchid::identify::{Outputs, Parameter};
 use switchid::law::{Given, Model, Term};
 use switchid_fmu_package::{Fmu, LINUX64, PackageError};
@@ -55,13 +55,51 @@ fn read(xml: &str) -> (Vec<&str>, Vec<usize>, Vec<usize>) {
 fn structure_counts_from_one_and_names_every_output() {
     for fmu in [default_identifier(), plant(DUFFING).unwrap(), plant(VAN_DER_POL).unwrap()] {
         let (_, outputs, initial) = read(fmu.xml());
-        let causalities = fmu.xml().split("<ScalarVariable ").skip(1).zip(1..);
-        let expected: Vec<usize> = causalities
-            .filter(|(variable, _)| variable.contains("causality=\"output\""))
-            .map(|(_, index): (_, usize)| index)
-            .collect();
-        assert_eq!(outputs, expected);
-        assert_eq!(initial, expected);
+        let with = |part: &str| -> Vec<usize> {
+            let variables = fmu.xml().split("<ScalarVariable ").skip(1).zip(1..);
+            variables.filter(|(variable, _)| variable.contains(part)).map(|(_, index)| index).collect()
+        };
+        assert_eq!(outputs, with("causality=\"output\""));
+        assert_eq!(initial, [outputs, with(" derivative=\"")].concat());
+    }
+}
+
+#[test]
+fn outputs_depend_on_the_time_and_on_no_input() {
+    for fmu in [default_identifier(), plant(DUFFING).unwrap()] {
+        let (names, outputs, _) = read(fmu.xml());
+        let time = names.iter().position(|name| *name == "time").unwrap() + 1;
+        let list = fmu.xml().split("<Outputs>").nth(1).unwrap().split("</Outputs>").next().unwrap();
+        let depends_on = |unknown: &str| -> Vec<usize> {
+            let indices = unknown.split("dependencies=\"").nth(1).unwrap().split('"').next().unwrap();
+            indices.split(' ').map(|index| index.parse().unwrap()).collect()
+        };
+        let unknowns: Vec<Vec<usize>> = list.split("<Unknown ").skip(1).map(depends_on).collect();
+        assert_eq!(unknowns.len(), outputs.len());
+        let variables: Vec<&str> = fmu.xml().split("<ScalarVariable ").skip(1).collect();
+        let is_input = |index: &usize| variables[index - 1].contains("causality=\"input\"");
+        assert!(unknowns.iter().all(|own| own.contains(&time) && !own.iter().any(is_input)), "{unknowns:?}");
+    }
+}
+
+#[test]
+fn only_a_plant_without_kinks_can_be_integrated_by_its_host() {
+    let smooth = plant(DUFFING).unwrap();
+    let (names, ..) = read(smooth.xml());
+    let position = |name: &str| names.iter().position(|known| *known == name).unwrap() + 1;
+    let [q, qd, force] = ["true.q", "true.qd", "excitation.F"].map(position);
+    let derivatives = [("der(true.q)", q, format!("{qd}")), ("der(true.qd)", qd, format!("{force} {q} {qd}"))];
+    for (name, state, depends_on) in derivatives {
+        let variable = smooth.xml().split("<ScalarVariable ").nth(position(name)).unwrap();
+        assert!(variable.contains(&format!("derivative=\"{state}\"")), "{variable}");
+        let unknown = format!("<Unknown index=\"{}\" dependencies=\"{depends_on}\"/>", position(name));
+        assert!(smooth.xml().contains(&unknown), "{unknown}");
+    }
+    let rough = Model::from_toml("[terms]\nqdd = 1.0\nq = 4.0\ncoulomb_friction = 0.2\n").unwrap();
+    let rough = plant_of_model("Rough", &rough).unwrap();
+    for (fmu, can) in [(smooth, true), (rough, false), (default_identifier(), false)] {
+        assert_eq!(fmu.xml().contains("<ModelExchange "), can);
+        assert_eq!(fmu.xml().contains("<Derivatives>"), can);
     }
 }
 

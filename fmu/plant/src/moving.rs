@@ -3,7 +3,7 @@
 use crate::places::Places;
 use serde::{Deserialize, Serialize};
 use switchid::simulate::{DrivenPlant, Plant, PlantError, Reading, Scenario, ScenarioError, Truth};
-use switchid_fmu_slave::{Value, Values};
+use switchid_fmu_slave::Values;
 
 /// Where its excitation comes from.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -55,16 +55,17 @@ impl Moving {
         }
     }
 
+    fn acceleration(&self) -> f64 {
+        match self {
+            Moving::Scheduled(plant) => plant.acceleration(),
+            Moving::Driven(plant) => plant.acceleration(),
+        }
+    }
+
     /// Writes every output.
     pub fn show(&self, places: &Places, values: &mut Values) {
-        let (reading, truth) = (self.reading(), self.truth());
-        let motion = [reading.q, reading.qd, reading.excitation, truth.state.q, truth.state.qd];
-        for (reference, value) in places.motion.iter().zip(motion) {
-            values.put(*reference, Value::Real(value));
-        }
-        for (reference, value) in places.coefficients.iter().zip(truth.coefficients) {
-            values.put(*reference, Value::Real(*value));
-        }
-        values.put(places.stage, Value::Integer(truth.stage as i32 + 1));
+        // q̈ costs as much as an inner step: only where a variable shows it
+        let acceleration = if places.shows_derivatives() { self.acceleration() } else { 0.0 };
+        places.show(&self.reading(), &self.truth(), acceleration, values);
     }
 }

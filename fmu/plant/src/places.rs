@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 use switchid::law::{Catalogue, Entry, InnerError, InnerParameter, State, Term};
-use switchid::simulate::{Excitation, ExcitationKind, Hidden, ParametricLaw, Scenario, SensorNoise, Stage};
-use switchid_fmu_slave::{Description, ValueError, Values};
+use switchid::simulate::{
+    Excitation, ExcitationKind, Hidden, ParametricLaw, Reading, Scenario, SensorNoise, Stage, Truth,
+};
+use switchid_fmu_slave::{Description, Value, ValueError, Values};
 use thiserror::Error;
 
 /// A start from which on a stage does not occur, s.
@@ -43,11 +45,13 @@ pub struct Places {
     /// Coefficient and inner parameters of each effect of the catalogue.
     hidden: Vec<(usize, Vec<usize>)>,
     /// `q`, `qd`, `F`, `true.q`, `true.qd`.
-    pub motion: [usize; 5],
+    motion: [usize; 5],
     /// `true.stage`.
-    pub stage: usize,
+    stage: usize,
     /// `true.coef.*`, in the order of the law's terms.
-    pub coefficients: Vec<usize>,
+    coefficients: Vec<usize>,
+    /// `der(true.q)`, `der(true.qd)`, where a host can integrate it.
+    derivatives: Option<[usize; 2]>,
 }
 
 /// What multisine and sweep are made of.
@@ -91,6 +95,7 @@ impl Places {
             motion: [find("q")?, find("qd")?, find("F")?, find("true.q")?, find("true.qd")?],
             stage: find("true.stage")?,
             coefficients: coefficients.collect::<Result<_, _>>()?,
+            derivatives: description.position("der(true.q)").zip(description.position("der(true.qd)")).map(Into::into),
         })
     }
 
@@ -113,7 +118,30 @@ impl Places {
 
     /// What drives the plant from outside; `None` where it has an excitation of its own.
     pub fn input(&self, values: &Values) -> Option<f64> {
-        (values.integer(self.kind) == INPUT).then(|| values.real(self.input))
+        (values.integer(self.kind) == INPUT).then(|| self.outside(values))
+    }
+
+    /// Whether variables show the derivatives of the state.
+    pub fn shows_derivatives(&self) -> bool {
+        self.derivatives.is_some()
+    }
+
+    /// What the input brings, whether it acts or not.
+    pub fn outside(&self, values: &Values) -> f64 {
+        values.real(self.input)
+    }
+
+    /// Writes what is measured and what is the case.
+    pub fn show(&self, reading: &Reading, truth: &Truth, acceleration: f64, values: &mut Values) {
+        let motion = [reading.q, reading.qd, reading.excitation, truth.state.q, truth.state.qd];
+        let derivatives = self.derivatives.into_iter().flatten().zip([truth.state.qd, acceleration]);
+        for (reference, value) in self.motion.into_iter().zip(motion).chain(derivatives) {
+            values.put(reference, Value::Real(value));
+        }
+        for (reference, value) in self.coefficients.iter().zip(truth.coefficients) {
+            values.put(*reference, Value::Real(*value));
+        }
+        values.put(self.stage, Value::Integer(truth.stage as i32 + 1));
     }
 
     fn excitation(&self, values: &Values) -> Excitation {

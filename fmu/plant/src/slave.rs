@@ -1,12 +1,13 @@
 //! The plant behind the slave's trait.
 
+use crate::equations::Equations;
 use crate::moving::Moving;
 use crate::places::Places;
 use crate::specimen::SpecimenPlaces;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use switchid::simulate::{ParametricLaw, ParametricLawError, Specimen};
-use switchid_fmu_slave::{Category, Description, Log, Slave, SlaveError, Values, seconds};
+use switchid_fmu_slave::{Category, Continuous, Description, Log, Slave, SlaveError, Values, seconds};
 use thiserror::Error;
 
 /// The law's file in the resources.
@@ -46,6 +47,8 @@ pub struct PlantSlave {
 enum Kind {
     /// With inertia: F moves the plant.
     Plant { places: Box<Places>, plant: Option<Box<Moving>> },
+    /// The same while the host integrates it.
+    Equations(Box<Equations>),
     /// Without: q and qd are imposed, F answers; the readings so far.
     Specimen { places: SpecimenPlaces, specimen: Option<Box<Specimen>>, readings: u64 },
 }
@@ -77,8 +80,25 @@ impl Slave for PlantSlave {
                 places.show(&begun, 0.0, 0, values);
                 (*specimen, *readings) = (Some(Box::new(begun)), 0);
             }
+            Kind::Equations(_) => {}
         }
         Ok(())
+    }
+
+    fn start_continuous(&mut self, time: f64, values: &mut Values, _log: &mut Log) -> Result<(), SlaveError> {
+        if let Kind::Plant { places, .. } = &self.kind {
+            let begun = Equations::new(places, places.scenario(&self.law, values)?, values, time)?;
+            begun.show(values);
+            self.kind = Kind::Equations(Box::new(begun));
+        }
+        Ok(())
+    }
+
+    fn continuous(&mut self) -> Option<&mut dyn Continuous> {
+        match &mut self.kind {
+            Kind::Equations(equations) => Some(equations.as_mut()),
+            _ => None,
+        }
     }
 
     fn step(&mut self, time: f64, step: f64, values: &mut Values, log: &mut Log) -> Result<(), SlaveError> {

@@ -1,5 +1,6 @@
 //! `fmi2Instantiate` from its arguments on: where the resources are, whether they belong to this host's XML.
 
+use crate::ctypes::{CO_SIMULATION, MODEL_EXCHANGE};
 use crate::description::{INTERFACE_FILE, Interface};
 use crate::location;
 use crate::slave::{Slave, SlaveError};
@@ -9,9 +10,15 @@ use thiserror::Error;
 /// Why there is no instance.
 #[derive(Debug, Error)]
 pub enum CreationError {
-    /// Model exchange was asked for.
+    /// Model exchange was asked for where there is none.
     #[error("this FMU is for co-simulation only: instantiate it with fmi2CoSimulation")]
     NotCoSimulation,
+    /// Neither of the two.
+    #[error("fmuType is {found}: it must be fmi2ModelExchange, 0, or fmi2CoSimulation, 1")]
+    UnknownType {
+        /// What was passed.
+        found: u32,
+    },
     /// The host passed no resource location.
     #[error("fmuResourceLocation is NULL: this FMU reads its variables from there; pass file:///…/resources")]
     NoLocation,
@@ -48,8 +55,8 @@ pub enum CreationError {
 
 /// What the host passes, as Rust reads it.
 pub struct Request<'a> {
-    /// Whether co-simulation is asked for.
-    pub co_simulation: bool,
+    /// `fmi2ModelExchange` or `fmi2CoSimulation`.
+    pub kind: u32,
     /// GUID that the host read in the XML.
     pub guid: &'a str,
     /// The resource location, if any.
@@ -61,14 +68,17 @@ pub struct Request<'a> {
 /// # Errors
 /// [`CreationError`].
 pub fn read<S: Slave>(request: &Request) -> Result<(Interface, S), CreationError> {
-    if !request.co_simulation {
-        return Err(CreationError::NotCoSimulation);
+    if ![CO_SIMULATION, MODEL_EXCHANGE].contains(&request.kind) {
+        return Err(CreationError::UnknownType { found: request.kind });
     }
     let resources = find_resources(request.location.ok_or(CreationError::NoLocation)?);
     let interface = read_interface(&resources, request)?;
     let bare = |guid: &str| guid.trim_matches(['{', '}']).to_string();
     if bare(&interface.guid) != bare(request.guid) {
         return Err(CreationError::Guid { given: request.guid.into(), expected: interface.guid });
+    }
+    if request.kind == MODEL_EXCHANGE && !interface.description.model_exchange {
+        return Err(CreationError::NotCoSimulation);
     }
     let slave = S::instantiate(&resources, &interface.description).map_err(CreationError::Slave)?;
     Ok((interface, slave))

@@ -34,6 +34,8 @@ pub const WARNING: Status = 1;
 /// `fmi2Error`.
 pub const ERROR: Status = 3;
 
+/// `fmi2ModelExchange`.
+pub const MODEL_EXCHANGE: FmuType = 0;
 /// `fmi2CoSimulation`.
 pub const CO_SIMULATION: FmuType = 1;
 
@@ -45,6 +47,24 @@ pub const PENDING_STATUS: StatusKind = 1;
 pub const LAST_SUCCESSFUL_TIME: StatusKind = 2;
 /// `fmi2Terminated`.
 pub const TERMINATED: StatusKind = 3;
+
+/// `fmi2EventInfo`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct EventInfo {
+    /// `newDiscreteStatesNeeded`.
+    pub new_discrete_states_needed: Boolean,
+    /// `terminateSimulation`.
+    pub terminate_simulation: Boolean,
+    /// `nominalsOfContinuousStatesChanged`.
+    pub nominals_changed: Boolean,
+    /// `valuesOfContinuousStatesChanged`.
+    pub states_changed: Boolean,
+    /// `nextEventTimeDefined`.
+    pub next_event_time_defined: Boolean,
+    /// `nextEventTime`.
+    pub next_event_time: Real,
+}
 
 /// `fmi2CallbackLogger`: environment, instance name, status, category, printf format, its arguments.
 pub type LoggerCallback = unsafe extern "C" fn(*mut c_void, Text, Status, Text, Text, ...);

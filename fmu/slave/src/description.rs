@@ -32,6 +32,9 @@ pub struct Description {
     pub default_duration: f64,
     /// Units that the variables refer to.
     pub units: Vec<Unit>,
+    /// Whether it can be integrated by the host too: model exchange beside co-simulation.
+    #[serde(default)]
+    pub model_exchange: bool,
     /// Enumerations that the variables refer to.
     pub enumerations: Vec<Enumeration>,
     /// The variables; position is value reference.
@@ -66,6 +69,10 @@ pub enum Causality {
     Input,
     /// Written by the slave.
     Output,
+    /// Written by the slave, and no port: to look at.
+    Local,
+    /// The time.
+    Independent,
 }
 
 /// When an input or output may change; a parameter never does.
@@ -136,12 +143,23 @@ pub struct Variable {
     pub kind: Kind,
     /// For an output: names of the parameters that its value before the first step depends on.
     pub depends_on: Vec<String>,
+    /// Name of the continuous state whose derivative in time it is.
+    #[serde(default)]
+    pub derivative_of: Option<String>,
+    /// Names of the continuous states and inputs that it depends on at the same instant.
+    #[serde(default)]
+    pub follows: Vec<String>,
 }
 
 impl Description {
     /// Position, and so value reference, of the variable of that name.
     pub fn position(&self, name: &str) -> Option<usize> {
         self.variables.iter().position(|variable| variable.name == name)
+    }
+
+    /// Position of the time, where it is a variable.
+    pub fn time(&self) -> Option<usize> {
+        self.variables.iter().position(|variable| variable.causality == Causality::Independent)
     }
 
     /// How many items the enumeration has.

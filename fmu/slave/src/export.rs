@@ -1,10 +1,10 @@
-//! The 34 names of FMI 2.0 for co-simulation.
+//! The 34 names of FMI 2.0 for co-simulation, and ten more for model exchange.
 
 /// Exports the FMI 2.0 co-simulation interface of a [`Slave`](crate::Slave): once per dynamic library.
 #[macro_export]
 macro_rules! export {
     ($slave:ty) => {
-        $crate::export! { @functions
+        $crate::export! { @functions functions interface
             fmi2GetTypesPlatform() -> Text = types_platform();
             fmi2GetVersion() -> Text = version();
             fmi2SetDebugLogging(c: Component, on: Boolean, n: usize, names: *const Text) -> Status
@@ -67,12 +67,12 @@ macro_rules! export {
                 = instantiate::<$slave>(name, kind, guid, location, functions, logging_on);
         }
     };
-    (@functions $($name:ident($($argument:ident: $type:ty),* $(,)?) -> $result:ty = $call:expr;)*) => {
+    (@functions $module:ident $interface:ident $($name:ident($($argument:ident: $type:ty),* $(,)?) -> $result:ty = $call:expr;)*) => {
         /// The functions of `fmi2Functions.h`.
-        pub mod functions {
+        pub mod $module {
             use super::*;
             use $crate::ctypes::*;
-            use $crate::interface::*;
+            use $crate::$interface::*;
             $(
                 #[doc = concat!("`", stringify!($name), "` of FMI 2.0.")]
                 ///
@@ -83,6 +83,33 @@ macro_rules! export {
                     unsafe { $call }
                 }
             )*
+        }
+    };
+}
+
+/// Exports what FMI 2.0 for model exchange has besides, of a [`Slave`](crate::Slave) whose equations are
+/// [`Continuous`](crate::Continuous): once per dynamic library, beside [`export!`](crate::export).
+#[macro_export]
+macro_rules! export_exchange {
+    ($slave:ty) => {
+        $crate::export! { @functions exchange_functions exchange_interface
+            fmi2EnterEventMode(c: Component) -> Status = enter_event_mode::<$slave>(c);
+            fmi2NewDiscreteStates(c: Component, info: *mut EventInfo) -> Status
+                = new_discrete_states::<$slave>(c, info);
+            fmi2EnterContinuousTimeMode(c: Component) -> Status = enter_continuous_time_mode::<$slave>(c);
+            fmi2CompletedIntegratorStep(c: Component, _no_set_state_prior: Boolean, event: *mut Boolean,
+                ends: *mut Boolean) -> Status
+                = completed_integrator_step::<$slave>(c, event, ends);
+            fmi2SetTime(c: Component, time: Real) -> Status = set_time::<$slave>(c, time);
+            fmi2SetContinuousStates(c: Component, x: *const Real, n: usize) -> Status
+                = set_continuous_states::<$slave>(c, x, n);
+            fmi2GetDerivatives(c: Component, dx: *mut Real, n: usize) -> Status = get_derivatives::<$slave>(c, dx, n);
+            fmi2GetEventIndicators(c: Component, _z: *mut Real, n: usize) -> Status
+                = get_event_indicators::<$slave>(c, n);
+            fmi2GetContinuousStates(c: Component, x: *mut Real, n: usize) -> Status
+                = get_continuous_states::<$slave>(c, x, n);
+            fmi2GetNominalsOfContinuousStates(c: Component, x: *mut Real, n: usize) -> Status
+                = get_nominals::<$slave>(c, x, n);
         }
     };
 }

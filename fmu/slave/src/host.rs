@@ -2,6 +2,10 @@
 //!
 //! It is no simulator: it does what it is told, also what the standard forbids, and keeps every message.
 
+mod exchange;
+
+pub use exchange::Exchange;
+
 use crate::ctypes::*;
 use std::ffi::{CStr, CString, c_void};
 use std::ptr::null_mut;
@@ -10,36 +14,41 @@ use std::sync::Mutex;
 type Vr = *const ValueReference;
 
 macro_rules! function_table {
-    ($($field:ident = $symbol:ident: ($($argument:ty),*) -> $result:ty;)*) => {
-        /// The 34 functions of a slave.
+    ($(#[$text:meta])* $table:ident $linked:ident: $($field:ident = $symbol:ident: ($($argument:ty),*) -> $result:ty;)*) => {
+        $(#[$text])*
         #[derive(Clone, Copy)]
-        pub struct Functions {
+        pub struct $table {
             $(#[doc = concat!("`", stringify!($symbol), "`.")] pub $field: unsafe extern "C" fn($($argument),*) -> $result,)*
         }
 
-        impl Functions {
+        impl $table {
+            /// Their names.
+            pub const NAMES: &[&str] = &[$(stringify!($symbol)),*];
+
             /// The functions of a dynamic library, which stays loaded.
             ///
             /// # Errors
             /// The library or the function that is missing.
-            pub fn load(path: &std::path::Path) -> Result<Functions, libloading::Error> {
+            pub fn load(path: &std::path::Path) -> Result<$table, libloading::Error> {
                 // SAFETY: the library is an FMU's, of which FMI says what it exports; it is never unloaded.
                 unsafe {
                     let library = Box::leak(Box::new(libloading::Library::new(path)?));
-                    Ok(Functions { $($field: *library.get(concat!(stringify!($symbol), "\0").as_bytes())?,)* })
+                    Ok($table { $($field: *library.get(concat!(stringify!($symbol), "\0").as_bytes())?,)* })
                 }
             }
         }
 
-        /// The `Functions` that `export!` made in that module, which must be in scope.
+        /// That table of what `export!` or `export_exchange!` made in a module, which must be in scope.
         #[macro_export]
-        macro_rules! linked_functions {
-            ($module:ident) => { $crate::host::Functions { $($field: $module::$symbol,)* } };
+        macro_rules! $linked {
+            ($module:ident) => { $crate::host::$table { $($field: $module::$symbol,)* } };
         }
     };
 }
 
 function_table! {
+    /// The 34 functions of a slave.
+    Functions linked_functions:
     types_platform = fmi2GetTypesPlatform: () -> Text;
     version = fmi2GetVersion: () -> Text;
     set_debug_logging = fmi2SetDebugLogging: (Component, Boolean, usize, *const Text) -> Status;
@@ -75,6 +84,21 @@ function_table! {
     get_integer_status = fmi2GetIntegerStatus: (Component, StatusKind, *mut Integer) -> Status;
     get_boolean_status = fmi2GetBooleanStatus: (Component, StatusKind, *mut Boolean) -> Status;
     get_string_status = fmi2GetStringStatus: (Component, StatusKind, *mut Text) -> Status;
+}
+
+function_table! {
+    /// The ten functions that model exchange has besides.
+    ExchangeFunctions linked_exchange_functions:
+    enter_event_mode = fmi2EnterEventMode: (Component) -> Status;
+    new_discrete_states = fmi2NewDiscreteStates: (Component, *mut EventInfo) -> Status;
+    enter_continuous_time_mode = fmi2EnterContinuousTimeMode: (Component) -> Status;
+    completed_integrator_step = fmi2CompletedIntegratorStep: (Component, Boolean, *mut Boolean, *mut Boolean) -> Status;
+    set_time = fmi2SetTime: (Component, Real) -> Status;
+    set_states = fmi2SetContinuousStates: (Component, *const Real, usize) -> Status;
+    derivatives = fmi2GetDerivatives: (Component, *mut Real, usize) -> Status;
+    event_indicators = fmi2GetEventIndicators: (Component, *mut Real, usize) -> Status;
+    states = fmi2GetContinuousStates: (Component, *mut Real, usize) -> Status;
+    nominals = fmi2GetNominalsOfContinuousStates: (Component, *mut Real, usize) -> Status;
 }
 
 /// What a slave said: status, category, text.

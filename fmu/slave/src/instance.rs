@@ -3,7 +3,7 @@
 //! Invariant: a refused call changes nothing.
 
 use crate::calls::{Call, Phase};
-use crate::description::{Causality, Interface};
+use crate::description::{Causality, Interface, Variability};
 use crate::log::{Category, Log, seconds};
 use crate::seal::{self, SealError};
 use crate::slave::{Slave, SlaveError};
@@ -104,6 +104,28 @@ pub enum CallError {
     /// The state cannot be written.
     #[error("the state cannot be serialised: {0}")]
     Serialise(postcard::Error),
+    /// An array of states that is not as long as there are states.
+    #[error("{given} values for {needed} continuous states: modelDescription.xml has as many derivatives")]
+    StateCount {
+        /// Length of the host's array.
+        given: usize,
+        /// How many states there are.
+        needed: usize,
+    },
+    /// States that are no numbers.
+    #[error("continuous state {number} is {value}: it must be a finite number")]
+    NotFinite {
+        /// Which one, from 1.
+        number: usize,
+        /// As given.
+        value: f64,
+    },
+    /// A present time that is none.
+    #[error("t = {time} s is no finite number")]
+    Time {
+        /// As given, s.
+        time: f64,
+    },
     /// Something the FMU does not offer.
     #[error("{what} is not offered by this FMU; modelDescription.xml says so")]
     NotOffered {
@@ -118,6 +140,11 @@ fn mend(call: Call, phase: Phase) -> &'static str {
         (Call::CancelStep, _) => ": every step is finished when fmi2DoStep returns",
         (_, Phase::Failed) => ": call fmi2Reset or set a saved state",
         (Call::DoStep, Phase::Instantiated | Phase::Initialization) => ": initialise first",
+        (Call::DoStep, Phase::Event | Phase::Continuous) => ": it was instantiated for model exchange",
+        (Call::NewDiscreteStates, Phase::Continuous) => ": call fmi2EnterEventMode first",
+        (Call::SetContinuousStates | Call::CompletedIntegratorStep, Phase::Event) => {
+            ": call fmi2EnterContinuousTimeMode first"
+        }
         (Call::DoStep, Phase::Terminated) => ": call fmi2Reset first",
         _ => "",
     }
@@ -130,20 +157,23 @@ const STOP_TOLERANCE: f64 = 1e-9;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Snapshot<S> {
     guid: String,
-    phase: Phase,
+    /// Whether the host integrates it.
+    exchange: bool,
+    pub(crate) phase: Phase,
     start_time: f64,
     stop_time: Option<f64>,
-    time: f64,
+    pub(crate) time: f64,
     /// Whether the outputs hold for the parameters as they are set.
     started: bool,
-    values: Values,
-    slave: S,
+    pub(crate) values: Values,
+    pub(crate) slave: S,
 }
 
 impl<S: Slave> Snapshot<S> {
-    fn fresh(interface: &Interface, slave: &S) -> Snapshot<S> {
+    fn fresh(interface: &Interface, slave: &S, exchange: bool) -> Snapshot<S> {
         Snapshot {
             guid: interface.guid.clone(),
+            exchange,
             phase: Phase::Instantiated,
             start_time: 0.0,
             stop_time: None,
@@ -159,7 +189,9 @@ impl<S: Slave> Snapshot<S> {
 pub struct Instance<S> {
     interface: Interface,
     fresh: S,
-    state: Snapshot<S>,
+    /// Where the time stands among the variables.
+    time_place: Option<usize>,
+    pub(crate) state: Snapshot<S>,
     states: States<Snapshot<S>>,
     /// Where the host's messages go.
     pub log: Log,
@@ -168,10 +200,18 @@ pub struct Instance<S> {
 }
 
 impl<S: Slave> Instance<S> {
-    /// An instance of a slave as read from its resources.
-    pub fn new(interface: Interface, slave: S, log: Log) -> Instance<S> {
-        let state = Snapshot::fresh(&interface, &slave);
-        Instance { interface, fresh: slave, state, states: States::new(), log, texts: Vec::new() }
+    /// An instance of a slave as read from its resources, for model exchange or for co-simulation.
+    pub fn new(interface: Interface, slave: S, log: Log, exchange: bool) -> Instance<S> {
+        let state = Snapshot::fresh(&interface, &slave, exchange);
+        Instance {
+            time_place: interface.description.time(),
+            interface,
+            fresh: slave,
+            state,
+            states: States::new(),
+            log,
+            texts: Vec::new(),
+        }
     }
 
     /// Refuses what the state machine forbids.
@@ -213,7 +253,7 @@ impl<S: Slave> Instance<S> {
         }
         self.state.start_time = start_time;
         self.state.stop_time = stop_time;
-        self.state.time = start_time;
+        self.show_time(start_time);
         self.state.started = false;
         Ok(())
     }
@@ -229,7 +269,7 @@ impl<S: Slave> Instance<S> {
     /// A parameter that is refused; the instance stays in initialization, where it can be mended.
     pub fn exit_initialization(&mut self) -> Result<(), CallError> {
         self.start().map_err(|source| CallError::Initialization { source: source.into() })?;
-        self.state.phase = Phase::Step;
+        self.state.phase = if self.state.exchange { Phase::Event } else { Phase::Step };
         Ok(())
     }
 
@@ -239,7 +279,11 @@ impl<S: Slave> Instance<S> {
         }
         self.state.values.check_parameters(&self.interface.description)?;
         let mut slave = self.fresh.clone();
-        slave.start(self.state.start_time, &mut self.state.values, &mut self.log)?;
+        let (time, values) = (self.state.start_time, &mut self.state.values);
+        match self.state.exchange {
+            true => slave.start_continuous(time, values, &mut self.log)?,
+            false => slave.start(time, values, &mut self.log)?,
+        }
         self.state.slave = slave;
         self.state.started = true;
         Ok(())
@@ -253,7 +297,7 @@ impl<S: Slave> Instance<S> {
     /// `fmi2Reset`: as after `fmi2Instantiate`.
     pub fn reset(&mut self) {
         let changed = self.state.values.changed_parameters(&self.interface.description);
-        self.state = Snapshot::fresh(&self.interface, &self.fresh);
+        self.state = Snapshot::fresh(&self.interface, &self.fresh, self.state.exchange);
         self.log.forget();
         if !changed.is_empty() {
             let text = format!("reset: {} at the default again, set anew what the next run needs", changed.join(", "));
@@ -274,16 +318,30 @@ impl<S: Slave> Instance<S> {
             return Err(CallError::BeyondStop { time, step, stop });
         }
         self.state.slave.step(time, step, &mut self.state.values, &mut self.log)?;
-        self.state.time = end;
+        self.show_time(end);
         Ok(())
     }
 
-    /// Makes the outputs fit the parameters, where these can still change.
+    /// Moves the time on, also as a variable.
+    pub(crate) fn show_time(&mut self, time: f64) {
+        self.state.time = time;
+        if let Some(place) = self.time_place {
+            self.state.values.put(place, Value::Real(time));
+        }
+    }
+
+    /// Makes the outputs fit the parameters, where these can still change, and in model exchange time and states.
     ///
     /// # Errors
     /// A parameter that is refused.
     pub fn refresh(&mut self) -> Result<(), CallError> {
-        if self.state.phase == Phase::Initialization { self.start() } else { Ok(()) }
+        if self.state.phase == Phase::Initialization {
+            self.start()?;
+        }
+        if let Some(continuous) = self.state.slave.continuous() {
+            continuous.show(&mut self.state.values);
+        }
+        Ok(())
     }
 
     /// The value at that reference as the call's type.
@@ -313,8 +371,15 @@ impl<S: Slave> Instance<S> {
         let variable = &self.interface.description.variables[reference];
         let name = || variable.name.clone();
         match (variable.causality, self.state.phase) {
-            (Causality::Output, _) => Err(ValueError::Output { name: name() }),
-            (Causality::Parameter, Phase::Step) if present != value => Err(ValueError::Fixed { name: name() }),
+            (Causality::Output | Causality::Local | Causality::Independent, _) => {
+                Err(ValueError::Output { name: name() })
+            }
+            (Causality::Parameter, phase) if phase.runs() && present != value => {
+                Err(ValueError::Fixed { name: name() })
+            }
+            (Causality::Input, Phase::Continuous) if variable.variability == Variability::Discrete => {
+                Err(ValueError::Discrete { name: name() })
+            }
             _ => Ok(()),
         }
     }
@@ -322,7 +387,7 @@ impl<S: Slave> Instance<S> {
     /// Sets a value that [`Instance::check_set`] let pass.
     pub fn set(&mut self, reference: usize, value: Value) {
         self.state.values.put(reference, value);
-        self.state.started &= self.state.phase == Phase::Step;
+        self.state.started &= self.state.phase.runs();
     }
 
     fn wrong_type(&self, reference: usize, value: &Value, asked: &'static str) -> ValueError {
@@ -389,6 +454,11 @@ impl<S: Slave> Instance<S> {
         let state = seal::open(bytes, &self.interface.guid)?;
         let state = lz4_flex::decompress_size_prepended(state).map_err(|error| content(error.to_string()))?;
         let saved: Snapshot<S> = postcard::from_bytes(&state).map_err(|error| content(error.to_string()))?;
+        if saved.exchange != self.state.exchange {
+            return Err(content(
+                "it is one of model exchange, and this instance for co-simulation, or the reverse".into(),
+            ));
+        }
         match saved.values.same_shape(&self.state.values) {
             true => Ok(saved),
             false => Err(content("its variables are others".into())),

@@ -1,4 +1,4 @@
-//! The 34 C functions, for any slave; [`crate::export!`] gives them their names.
+//! The 34 C functions that every FMU has, for any slave; [`crate::export!`] gives them their names.
 //!
 //! # Safety
 //! All of them trust the host as far as FMI 2.0 asks for: a component is one that `fmi2Instantiate` returned and that
@@ -17,7 +17,7 @@ use std::ffi::{CStr, CString};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Runs a call on an instance: refused calls are logged, panics end here.
-unsafe fn run<S: Slave>(
+pub(crate) unsafe fn run<S: Slave>(
     component: Component,
     call: Call,
     body: impl FnOnce(&mut Instance<S>) -> Result<(), CallError>,
@@ -44,7 +44,7 @@ fn panic_text(panic: &(dyn Any + Send)) -> &str {
 }
 
 /// The array as a slice; empty where its length is 0, whatever the pointer.
-unsafe fn slice<'a, T>(start: *const T, length: usize, what: &'static str) -> Result<&'a [T], CallError> {
+pub(crate) unsafe fn slice<'a, T>(start: *const T, length: usize, what: &'static str) -> Result<&'a [T], CallError> {
     match (start.is_null(), length) {
         (_, 0) => Ok(&[]),
         (true, _) => Err(CallError::Null { what }),
@@ -53,7 +53,11 @@ unsafe fn slice<'a, T>(start: *const T, length: usize, what: &'static str) -> Re
     }
 }
 
-unsafe fn slice_mut<'a, T>(start: *mut T, length: usize, what: &'static str) -> Result<&'a mut [T], CallError> {
+pub(crate) unsafe fn slice_mut<'a, T>(
+    start: *mut T,
+    length: usize,
+    what: &'static str,
+) -> Result<&'a mut [T], CallError> {
     match (start.is_null(), length) {
         (_, 0) => Ok(&mut []),
         (true, _) => Err(CallError::Null { what }),
@@ -62,7 +66,7 @@ unsafe fn slice_mut<'a, T>(start: *mut T, length: usize, what: &'static str) -> 
     }
 }
 
-unsafe fn target<'a, T>(pointer: *mut T, what: &'static str) -> Result<&'a mut T, CallError> {
+pub(crate) unsafe fn target<'a, T>(pointer: *mut T, what: &'static str) -> Result<&'a mut T, CallError> {
     // SAFETY: see the module.
     unsafe { pointer.as_mut() }.ok_or(CallError::Null { what })
 }
@@ -116,10 +120,13 @@ pub unsafe fn instantiate<S: Slave>(
     let name = c_text(&String::from_utf8_lossy(name.unwrap_or(b"unnamed")));
     let guid = unsafe { bytes(guid) }.map(String::from_utf8_lossy).unwrap_or_default();
     let location = unsafe { bytes(location) };
-    let request = Request { co_simulation: fmu_type == CO_SIMULATION, guid: &guid, location };
+    let request = Request { kind: fmu_type, guid: &guid, location };
     let log = Log::new(*callbacks, name, logging_on != 0);
     match catch_unwind(AssertUnwindSafe(|| read::<S>(&request))) {
-        Ok(Ok((interface, slave))) => Box::into_raw(Box::new(Instance::new(interface, slave, log))).cast(),
+        Ok(Ok((interface, slave))) => {
+            let instance = Instance::new(interface, slave, log, fmu_type == MODEL_EXCHANGE);
+            Box::into_raw(Box::new(instance)).cast()
+        }
         Ok(Err(error)) => refuse(&log, &error.to_string()),
         Err(panic) => refuse(&log, panic_text(panic.as_ref())),
     }

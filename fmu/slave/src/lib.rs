@@ -1,6 +1,8 @@
-//! The FMI 2.0 C interface of a co-simulation slave, once, for any slave written in Rust.
+//! The FMI 2.0 C interface of a co-simulation slave, once, for any slave written in Rust; of one that can be integrated from
+//! outside, that of model exchange too.
 //!
-//! A dynamic library implements [`Slave`] and calls [`export!`]; variables, names and GUID come from
+//! A dynamic library implements [`Slave`] and calls [`export!`], and [`export_exchange!`] where it is a [`Continuous`] too;
+//! variables, names and GUID come from
 //! `resources/interface.json` ([`description`]), so that one binary serves every model. All `unsafe` of the project is
 //! here. What the slave promises its hosts:
 //!
@@ -14,6 +16,9 @@ mod creation;
 #[doc(hidden)]
 pub mod ctypes;
 pub mod description;
+mod exchange;
+#[doc(hidden)]
+pub mod exchange_interface;
 mod export;
 #[cfg(feature = "host")]
 pub mod host;
@@ -32,5 +37,5 @@ pub use description::{
     Causality, Description, Enumeration, INTERFACE_FILE, Interface, Kind, Unit, Variability, Variable,
 };
 pub use log::{Category, Log, seconds};
-pub use slave::{Slave, SlaveError};
+pub use slave::{Continuous, Slave, SlaveError};
 pub use values::{Value, ValueError, Values};

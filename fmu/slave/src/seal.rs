@@ -8,7 +8,7 @@ use thiserror::Error;
 const MAGIC: &[u8; 8] = b"swidstat";
 
 /// Number of the format; it goes up whenever states of an earlier build can no longer be read.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 /// Why bytes are no state of this FMU.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

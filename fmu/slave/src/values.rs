@@ -57,7 +57,7 @@ pub enum ValueError {
         asked: &'static str,
     },
     /// An output cannot be set.
-    #[error("{name} is an output: it cannot be set")]
+    #[error("{name} is what the FMU computes: it cannot be set")]
     Output {
         /// The variable.
         name: String,
@@ -65,6 +65,12 @@ pub enum ValueError {
     /// A fixed parameter cannot be set once the simulation runs.
     #[error("{name} is a fixed parameter: set it before fmi2ExitInitializationMode, or reset first")]
     Fixed {
+        /// The variable.
+        name: String,
+    },
+    /// An input that may change at events only.
+    #[error("{name} is a discrete input: set it in event mode")]
+    Discrete {
         /// The variable.
         name: String,
     },

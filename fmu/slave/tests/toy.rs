@@ -3,16 +3,20 @@
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::ptr::{null, null_mut};
+use switchid_fmu_slave::ctypes::EventInfo;
 use switchid_fmu_slave::host::{Functions, Instance, Request, Saved};
 use switchid_fmu_slave::{
-    Causality, Description, INTERFACE_FILE, Interface, Kind, Log, Slave, SlaveError, Value, Values, Variability,
-    Variable,
+    Causality, Continuous, Description, INTERFACE_FILE, Interface, Kind, Log, Slave, SlaveError, Value, Values,
+    Variability, Variable,
 };
 
-/// y(t + h) = y(t) + gain · u(t); panics where u is 13, refuses a gain of 7.
+/// y(t + h) = y(t) + gain · u(t), in model exchange ẏ = gain · u and y(t₀) = t₀ with an event at every full second; panics where u is 13,
+/// refuses a gain of 7.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Toy {
     sum: f64,
+    time: f64,
+    integrated: bool,
 }
 
 #[derive(Debug, thiserror::Error)]
@@ -21,7 +25,7 @@ struct BadLuck;
 
 impl Slave for Toy {
     fn instantiate(_: &Path, _: &Description) -> Result<Toy, SlaveError> {
-        Ok(Toy { sum: 0.0 })
+        Ok(Toy { sum: 0.0, time: 0.0, integrated: false })
     }
 
     fn start(&mut self, time: f64, values: &mut Values, _: &mut Log) -> Result<(), SlaveError> {
@@ -31,6 +35,16 @@ impl Slave for Toy {
         self.sum = time;
         values.put(Y as usize, Value::Real(self.sum));
         Ok(())
+    }
+
+    fn start_continuous(&mut self, time: f64, values: &mut Values, log: &mut Log) -> Result<(), SlaveError> {
+        self.start(time, values, log)?;
+        (self.time, self.integrated) = (time, true);
+        Ok(())
+    }
+
+    fn continuous(&mut self) -> Option<&mut dyn Continuous> {
+        if self.integrated { Some(self) } else { None }
     }
 
     fn step(&mut self, _: f64, _: f64, values: &mut Values, log: &mut Log) -> Result<(), SlaveError> {
@@ -46,7 +60,36 @@ impl Slave for Toy {
     }
 }
 
+impl Continuous for Toy {
+    fn set_time(&mut self, time: f64) {
+        self.time = time;
+    }
+
+    fn states(&self) -> Vec<f64> {
+        vec![self.sum]
+    }
+
+    fn set_states(&mut self, states: &[f64]) {
+        self.sum = states[0];
+    }
+
+    fn derivatives(&self, values: &Values) -> Vec<f64> {
+        let u = values.real(U as usize);
+        assert!(u != 13.0, "thirteen");
+        vec![values.real(GAIN as usize) * u]
+    }
+
+    fn settle(&mut self, _: &Values, _: &mut Log) -> Option<f64> {
+        Some(self.time.floor() + 1.0)
+    }
+
+    fn show(&self, values: &mut Values) {
+        values.put(Y as usize, Value::Real(self.sum));
+    }
+}
+
 switchid_fmu_slave::export!(Toy);
+switchid_fmu_slave::export_exchange!(Toy);
 
 const U: u32 = 0;
 const GAIN: u32 = 1;
@@ -54,6 +97,7 @@ const COUNT: u32 = 2;
 const FLAG: u32 = 3;
 const NOTE: u32 = 4;
 const Y: u32 = 5;
+const MARK: u32 = 6;
 
 const OK: u32 = 0;
 const ERROR: u32 = 3;
@@ -64,24 +108,34 @@ fn toy_functions() -> Functions {
 }
 
 fn variable(name: &str, causality: Causality, kind: Kind) -> Variable {
-    let (description, variability, depends_on) = (String::new(), Variability::Discrete, Vec::new());
-    Variable { name: name.into(), description, causality, variability, kind, depends_on }
-}
-
-fn resources() -> tempfile::TempDir {
-    resources_with(GUID)
+    Variable {
+        name: name.into(),
+        description: String::new(),
+        causality,
+        variability: Variability::Discrete,
+        kind,
+        depends_on: Vec::new(),
+        derivative_of: None,
+        follows: Vec::new(),
+    }
 }
 
 fn resources_with(guid: &str) -> tempfile::TempDir {
+    resources_for(guid, true)
+}
+
+fn resources_for(guid: &str, model_exchange: bool) -> tempfile::TempDir {
     let real = |start| Kind::Real { start, min: None, max: Some(100.0), unit: None };
-    let variables = vec![
+    let mut variables = vec![
         variable("u", Causality::Input, real(0.0)),
         variable("gain", Causality::Parameter, real(2.0)),
         variable("count", Causality::Parameter, Kind::Integer { start: 1, min: Some(0), max: None }),
         variable("flag", Causality::Parameter, Kind::Boolean { start: true }),
         variable("note", Causality::Parameter, Kind::String { start: "größe".into() }),
         variable("y", Causality::Output, real(0.0)),
+        variable("mark", Causality::Input, real(0.0)),
     ];
+    variables[U as usize].variability = Variability::Continuous;
     let description = Description {
         name: "Toy".into(),
         description: String::new(),
@@ -89,6 +143,7 @@ fn resources_with(guid: &str) -> tempfile::TempDir {
         default_step: 1.0,
         default_duration: 1.0,
         units: vec![],
+        model_exchange,
         enumerations: vec![],
         variables,
     };
@@ -103,10 +158,18 @@ fn toy() -> Instance {
 }
 
 fn toy_with_guid(guid: &str) -> Instance {
+    toy_for(guid, true)
+}
+
+fn toy_for(guid: &str, co_simulation: bool) -> Instance {
     let resources = resources_with(guid);
     let location = format!("file://{}", resources.path().display());
-    let request = Request { co_simulation: true, guid, location: Some(&location), logging: true };
+    let request = Request { co_simulation, guid, location: Some(&location), logging: true };
     Instance::new(toy_functions(), &request).unwrap()
+}
+
+fn integrated() -> Instance {
+    toy_for(GUID, false)
 }
 
 fn running() -> Instance {
@@ -119,84 +182,161 @@ fn last_message(instance: &Instance) -> String {
     instance.messages().last().unwrap().2.clone()
 }
 
-/// A fresh instance in that state: i instantiated, n initialization, s step, t terminated, f failed.
-fn in_phase(phase: char) -> Instance {
-    let instance = toy();
+/// A fresh instance in that state: i instantiated, n initialization, s step, e event, c continuous, t terminated, f failed.
+fn in_phase(phase: char, instance: Instance) -> Instance {
+    let start = || assert_eq!(instance.initialize(0.0), OK);
     match phase {
         'i' => {}
         'n' => assert_eq!(instance.enter(), OK),
-        's' => assert_eq!(instance.initialize(0.0), OK),
-        't' => assert_eq!(instance.initialize(0.0).max(instance.terminate()), OK),
+        's' | 'e' => start(),
+        'c' => {
+            start();
+            assert_eq!(instance.call(|_, c| unsafe { exchange_functions::fmi2EnterContinuousTimeMode(c) }), OK);
+        }
+        't' => {
+            start();
+            assert_eq!(instance.terminate(), OK);
+        }
         _ => {
-            assert_eq!(instance.initialize(0.0).max(instance.set_reals(&[U], &[13.0])), OK);
-            assert_eq!(instance.step(0.0, 1.0), ERROR);
+            start();
+            assert_eq!(instance.set_reals(&[U], &[13.0]), OK);
+            instance.step(0.0, 1.0);
+            derivatives(&instance, 1);
         }
     }
     instance
 }
 
+fn derivatives(instance: &Instance, count: usize) -> u32 {
+    instance.call(|_, c| unsafe { exchange_functions::fmi2GetDerivatives(c, [f64::NAN; 3].as_mut_ptr(), count) })
+}
+
 type Action = fn(&Instance) -> u32;
 
-/// Which states allow the call.
-const TABLE: [(&str, &str, Action); 33] = [
-    ("set debug logging", "instf", |i| i.call(|f, c| unsafe { (f.set_debug_logging)(c, 1, 0, null()) })),
-    ("setup experiment", "i", |i| i.setup(0.0)),
-    ("enter initialization", "i", |i| i.enter()),
-    ("exit initialization", "n", |i| i.exit()),
-    ("terminate", "s", |i| i.terminate()),
-    ("reset", "instf", |i| i.reset()),
-    ("get real", "instf", |i| i.reals(&[Y]).err().unwrap_or(OK)),
-    ("get integer", "instf", |i| i.integer(COUNT).err().unwrap_or(OK)),
-    ("get boolean", "instf", |i| i.boolean(FLAG).err().unwrap_or(OK)),
-    ("get string", "instf", |i| i.text(NOTE).err().unwrap_or(OK)),
-    ("set real input", "ins", |i| i.set_reals(&[U], &[1.0])),
-    ("set real parameter", "in", |i| i.set_reals(&[GAIN], &[1.0])),
-    ("set integer parameter", "in", |i| i.set_integer(COUNT, 5)),
-    ("set boolean parameter", "in", |i| i.set_boolean(FLAG, 0)),
-    ("set string parameter", "in", |i| i.set_text(NOTE, "x")),
-    ("set an output", "", |i| i.set_reals(&[Y], &[1.0])),
-    ("get state", "instf", |i| i.save().map(|mut state| i.free(&mut state)).unwrap_or_else(|status| status)),
-    ("set state", "instf", |i| {
+/// Which states of a slave, and which of what is integrated, allow the call.
+const TABLE: [(&str, &str, &str, Action); 45] = [
+    ("set debug logging", "instf", "inectf", |i| i.call(|f, c| unsafe { (f.set_debug_logging)(c, 1, 0, null()) })),
+    ("setup experiment", "i", "i", |i| i.setup(0.0)),
+    ("enter initialization", "i", "i", |i| i.enter()),
+    ("exit initialization", "n", "n", |i| i.exit()),
+    ("terminate", "s", "ec", |i| i.terminate()),
+    ("reset", "instf", "inectf", |i| i.reset()),
+    ("get real", "instf", "inectf", |i| i.reals(&[Y]).err().unwrap_or(OK)),
+    ("get integer", "instf", "inectf", |i| i.integer(COUNT).err().unwrap_or(OK)),
+    ("get boolean", "instf", "inectf", |i| i.boolean(FLAG).err().unwrap_or(OK)),
+    ("get string", "instf", "inectf", |i| i.text(NOTE).err().unwrap_or(OK)),
+    ("set real input", "ins", "inec", |i| i.set_reals(&[U], &[1.0])),
+    ("set real parameter", "in", "in", |i| i.set_reals(&[GAIN], &[1.0])),
+    ("set integer parameter", "in", "in", |i| i.set_integer(COUNT, 5)),
+    ("set boolean parameter", "in", "in", |i| i.set_boolean(FLAG, 0)),
+    ("set string parameter", "in", "in", |i| i.set_text(NOTE, "x")),
+    ("set an output", "", "", |i| i.set_reals(&[Y], &[1.0])),
+    ("get state", "instf", "inectf", |i| i.save().map(|mut state| i.free(&mut state)).unwrap_or_else(|status| status)),
+    ("set state", "instf", "inectf", |i| {
         let mut state = i.save().unwrap();
         i.restore(state).max(i.free(&mut state))
     }),
-    ("serialise", "instf", |i| {
+    ("serialise", "instf", "inectf", |i| {
         let mut state = i.save().unwrap();
         i.pack(state).err().unwrap_or(OK).max(i.free(&mut state))
     }),
-    ("deserialise", "instf", |i| {
+    ("deserialise", "instf", "inectf", |i| {
         let mut state = i.save().unwrap();
         let mut copy = i.unpack(&i.pack(state).unwrap()).unwrap();
         i.free(&mut state).max(i.free(&mut copy))
     }),
-    ("directional derivative", "", |i| {
+    ("directional derivative", "", "", |i| {
         i.call(|f, c| unsafe { (f.directional_derivative)(c, null(), 0, null(), 0, null(), null_mut()) })
     }),
-    ("no input derivatives", "ins", |i| i.call(|f, c| unsafe { (f.input_derivatives)(c, null(), 0, null(), null()) })),
-    ("an input derivative", "", |i| i.call(|f, c| unsafe { (f.input_derivatives)(c, &U, 1, &1, &0.0) })),
-    ("no output derivatives", "st", |i| {
+    ("no input derivatives", "ins", "in", |i| {
+        i.call(|f, c| unsafe { (f.input_derivatives)(c, null(), 0, null(), null()) })
+    }),
+    ("an input derivative", "", "", |i| i.call(|f, c| unsafe { (f.input_derivatives)(c, &U, 1, &1, &0.0) })),
+    ("no output derivatives", "st", "t", |i| {
         i.call(|f, c| unsafe { (f.output_derivatives)(c, null(), 0, null(), null_mut()) })
     }),
-    ("an output derivative", "", |i| i.call(|f, c| unsafe { (f.output_derivatives)(c, &Y, 1, &1, &mut 0.0) })),
-    ("do step", "s", |i| i.step(0.0, 1.0)),
-    ("cancel step", "", |i| i.call(|f, c| unsafe { (f.cancel_step)(c) })),
-    ("status of the step", "stf", |i| i.call(|f, c| unsafe { (f.get_status)(c, 0, &mut 0) })),
-    ("last successful time", "stf", |i| i.call(|f, c| unsafe { (f.get_real_status)(c, 2, &mut 0.0) })),
-    ("an integer status", "", |i| i.call(|f, c| unsafe { (f.get_integer_status)(c, 0, &mut 0) })),
-    ("terminated", "stf", |i| i.call(|f, c| unsafe { (f.get_boolean_status)(c, 3, &mut 0) })),
-    ("pending status", "stf", |i| i.call(|f, c| unsafe { (f.get_string_status)(c, 1, &mut null()) })),
-    ("an unknown status", "", |i| i.call(|f, c| unsafe { (f.get_status)(c, 9, &mut 0) })),
+    ("an output derivative", "", "", |i| i.call(|f, c| unsafe { (f.output_derivatives)(c, &Y, 1, &1, &mut 0.0) })),
+    ("do step", "s", "", |i| i.step(0.0, 1.0)),
+    ("cancel step", "", "", |i| i.call(|f, c| unsafe { (f.cancel_step)(c) })),
+    ("status of the step", "stf", "tf", |i| i.call(|f, c| unsafe { (f.get_status)(c, 0, &mut 0) })),
+    ("last successful time", "stf", "tf", |i| i.call(|f, c| unsafe { (f.get_real_status)(c, 2, &mut 0.0) })),
+    ("an integer status", "", "", |i| i.call(|f, c| unsafe { (f.get_integer_status)(c, 0, &mut 0) })),
+    ("terminated", "stf", "tf", |i| i.call(|f, c| unsafe { (f.get_boolean_status)(c, 3, &mut 0) })),
+    ("pending status", "stf", "tf", |i| i.call(|f, c| unsafe { (f.get_string_status)(c, 1, &mut null()) })),
+    ("an unknown status", "", "", |i| i.call(|f, c| unsafe { (f.get_status)(c, 9, &mut 0) })),
+    ("set a discrete input", "ins", "ine", |i| i.set_reals(&[MARK], &[1.0])),
+    ("enter event mode", "", "ec", |i| i.call(|_, c| unsafe { exchange_functions::fmi2EnterEventMode(c) })),
+    ("new discrete states", "", "e", |i| {
+        i.call(|_, c| unsafe { exchange_functions::fmi2NewDiscreteStates(c, &mut EventInfo::default()) })
+    }),
+    ("enter continuous-time mode", "", "e", |i| {
+        i.call(|_, c| unsafe { exchange_functions::fmi2EnterContinuousTimeMode(c) })
+    }),
+    ("completed integrator step", "", "c", |i| {
+        i.call(|_, c| unsafe { exchange_functions::fmi2CompletedIntegratorStep(c, 1, &mut 0, &mut 0) })
+    }),
+    ("set time", "", "ec", |i| i.call(|_, c| unsafe { exchange_functions::fmi2SetTime(c, 0.5) })),
+    ("set states", "", "c", |i| i.call(|_, c| unsafe { exchange_functions::fmi2SetContinuousStates(c, &0.5, 1) })),
+    ("get derivatives", "", "nect", |i| derivatives(i, 1)),
+    ("no event indicators", "", "ectf", |i| {
+        i.call(|_, c| unsafe { exchange_functions::fmi2GetEventIndicators(c, null_mut(), 0) })
+    }),
+    ("an event indicator", "", "", |i| {
+        i.call(|_, c| unsafe { exchange_functions::fmi2GetEventIndicators(c, &mut 0.0, 1) })
+    }),
+    ("get states", "", "nectf", |i| {
+        i.call(|_, c| unsafe { exchange_functions::fmi2GetContinuousStates(c, &mut 0.0, 1) })
+    }),
+    ("get nominals", "", "nectf", |i| {
+        i.call(|_, c| unsafe { exchange_functions::fmi2GetNominalsOfContinuousStates(c, &mut 0.0, 1) })
+    }),
 ];
 
 #[test]
 fn every_call_is_allowed_where_the_standard_says_and_nowhere_else() {
-    for (name, allowed, action) in TABLE {
-        for phase in "instf".chars() {
-            let instance = in_phase(phase);
-            let expected = if allowed.contains(phase) { OK } else { ERROR };
-            assert_eq!(action(&instance), expected, "{name} in {phase}: {:?}", instance.messages());
+    for (name, slave, exchange, action) in TABLE {
+        for (phases, allowed, make) in [("instf", slave, toy as fn() -> Instance), ("inectf", exchange, integrated)] {
+            for phase in phases.chars() {
+                let instance = in_phase(phase, make());
+                let expected = if allowed.contains(phase) { OK } else { ERROR };
+                assert_eq!(action(&instance), expected, "{name} in {phase} of {phases}: {:?}", instance.messages());
+            }
         }
     }
+}
+
+#[test]
+fn what_is_integrated_shows_time_states_and_events() {
+    let instance = integrated();
+    assert_eq!(instance.initialize(2.5).max(instance.set_reals(&[U], &[3.0])), OK);
+    let mut info = EventInfo::default();
+    assert_eq!(instance.call(|_, c| unsafe { exchange_functions::fmi2NewDiscreteStates(c, &mut info) }), OK);
+    assert_eq!((info.next_event_time_defined, info.next_event_time), (1, 3.0));
+    let (mut x, mut slope) = (0.0, 0.0);
+    let statuses = instance.call(|_, c| unsafe {
+        [
+            exchange_functions::fmi2EnterContinuousTimeMode(c),
+            exchange_functions::fmi2SetTime(c, 2.75),
+            exchange_functions::fmi2GetContinuousStates(c, &mut x, 1),
+            exchange_functions::fmi2GetDerivatives(c, &mut slope, 1),
+            exchange_functions::fmi2SetContinuousStates(c, &7.0, 1),
+        ]
+    });
+    assert_eq!((statuses, x, slope, instance.reals(&[Y])), ([OK; 5], 2.5, 6.0, Ok(vec![7.0])));
+    assert_eq!(instance.call(|_, c| unsafe { exchange_functions::fmi2SetContinuousStates(c, &f64::NAN, 1) }), ERROR);
+    assert!(last_message(&instance).contains("state 1 is NaN"), "{:?}", instance.messages());
+    assert_eq!(derivatives(&instance, 2), ERROR);
+    assert!(last_message(&instance).contains("2 values for 1"), "{:?}", instance.messages());
+    assert_eq!(instance.reals(&[Y]), Ok(vec![7.0]));
+}
+
+#[test]
+fn a_state_of_one_kind_is_refused_by_the_other() {
+    let (slave, exchange) = (running(), integrated());
+    let mut state = slave.save().unwrap();
+    assert_eq!(exchange.unpack(&slave.pack(state).unwrap()), Err(ERROR));
+    assert!(last_message(&exchange).contains("model exchange"), "{:?}", exchange.messages());
+    assert_eq!(slave.free(&mut state), OK);
 }
 
 #[test]
@@ -387,7 +527,7 @@ fn null_pointers_are_refused() {
 
 #[test]
 fn an_instance_that_cannot_be_says_why() {
-    let resources = resources();
+    let resources = resources_for(GUID, false);
     let location = format!("file://{}/", resources.path().display());
     let good = Request { co_simulation: true, guid: GUID, location: Some(&location), logging: false };
     assert!(Instance::new(toy_functions(), &Request { guid: "{the-guid}", ..good.clone() }).is_ok());

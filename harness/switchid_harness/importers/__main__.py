@@ -6,7 +6,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-from . import by_cosim, by_ecos, by_fmpy
+from . import by_cosim, by_ecos, by_fmpy, by_solver, fmi_library
 from .case import CannotDo, Case, Fmus, cases
 
 IMPORTERS = {"fmpy.ssp": by_fmpy.ssp, "ecospy": by_ecos.simulate, "libcosimpy": by_cosim.simulate}
@@ -14,6 +14,10 @@ IMPORTERS = {"fmpy.ssp": by_fmpy.ssp, "ecospy": by_ecos.simulate, "libcosimpy": 
 
 CLOSE = 1e-6
 """Largest relative difference that passes where the last digits differ: an importer's clock may."""
+
+
+SOLVED = 1e-3
+"""Largest difference of the displacement under fmpy's solver: it holds an input over its step from the other end."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -30,7 +34,27 @@ def main(arguments: list[str] | None = None) -> int:
             said, good = _compare(simulate, fmus, case, references)
             failed += not good
             print(f"{'':<16}{name:<12}{said}", flush=True)
+    failed += _integrated(fmus) + _feed_through(fmus)
     print("all agree" if failed == 0 else f"{failed} differ")
+    return failed
+
+
+def _integrated(fmus: Fmus) -> int:
+    """The plant under fmpy's solver beside itself in co-simulation; how many cases differ."""
+    distances = by_solver.distances(fmus)
+    print(f"{'model exchange':<16}" + ", ".join(f"{name}: {distance:.1e}" for name, distance in distances.items()))
+    return sum(distance > SOLVED for distance in distances.values())
+
+
+def _feed_through(fmus: Fmus) -> int:
+    """Outputs that FMI Library takes to depend on an input at the same instant; how many FMUs have such, or say nothing."""
+    failed = 0
+    for path in (fmus.plant, fmus.identifier):
+        found = fmi_library.inputs_of_outputs(path)
+        through = None if found is None else [name for name, inputs in found.items() if inputs]
+        said = "nothing is said" if found is None else f"{len(found)} outputs, feed-through {through or 'none'}"
+        print(f"{'FMI Library':<16}{path.name:<28}{said}")
+        failed += through != []
     return failed
 
 

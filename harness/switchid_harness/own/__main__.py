@@ -59,7 +59,9 @@ def main(arguments: list[str] | None = None) -> int:
             step=given.step,
         )
     except (KeyError, OSError, TruthError) as error:
-        print(f"error: {error}", file=sys.stderr)
+        # a KeyError shows its text in quotes
+        text = error.args[0] if isinstance(error, KeyError) else error
+        print(f"error: {text}", file=sys.stderr)
         return 2
     print(report.to_json() if given.json else report)
     return 0 if report.passed else 1
