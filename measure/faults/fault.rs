@@ -4,7 +4,6 @@ use crate::{COURSE, NOISE};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::ops::Range;
-use switchid::law::Hold;
 use switchid::simulate::{Builtin, Reading};
 
 /// Sizes of a burst's readings, in σ.
@@ -57,15 +56,13 @@ pub enum Fault {
     Stamp,
     /// q and q̇ come one sample late against F, throughout.
     Late,
-    /// One sample in so many is kept: F moves within the step, and is said to be held.
+    /// One sample in so many is kept: F moves within the step, and is not held.
     Coarse(usize),
-    /// Steps of so many ms over which F is held, and is said to be a straight line.
-    Held(usize),
 }
 
 impl Fault {
     /// All of them, in the order of the table.
-    pub const ALL: [Fault; 31] = [
+    pub const ALL: [Fault; 25] = [
         Fault::Clean,
         Fault::Burst(Of::Q),
         Fault::Burst(Of::Qd),
@@ -91,12 +88,6 @@ impl Fault {
         Fault::Coarse(5),
         Fault::Coarse(10),
         Fault::Coarse(20),
-        Fault::Coarse(50),
-        Fault::Held(2),
-        Fault::Held(5),
-        Fault::Held(10),
-        Fault::Held(20),
-        Fault::Held(50),
     ];
 
     /// Its name in the table.
@@ -116,7 +107,6 @@ impl Fault {
             Fault::Stamp => "one time stamp 1e6".into(),
             Fault::Late => "q, qd one sample late".into(),
             Fault::Coarse(step) => format!("steps of {step} ms, hold wrong"),
-            Fault::Held(step) => format!("held for {step} ms, hold wrong"),
         }
     }
 
@@ -124,16 +114,6 @@ impl Fault {
     pub fn suits(self, plant: Builtin) -> bool {
         let white = matches!(plant, Builtin::DuffingWhite | Builtin::VanDerPolWhite);
         !(white && matches!(self, Fault::Coarse(_)))
-    }
-
-    /// The hold that the identifier is told.
-    pub fn hold(self) -> Hold {
-        if matches!(self, Fault::Held(_)) { Hold::Linear } else { Hold::Zero }
-    }
-
-    /// Time between two samples of the record, s.
-    pub fn sample_time(self) -> f64 {
-        if let Fault::Held(step) = self { 1e-3 * step as f64 } else { 1e-3 }
     }
 
     /// How long it lasts, s; nothing where it is not a matter of time.
@@ -153,7 +133,7 @@ impl Fault {
         let last = readings.partition_point(|reading| reading.t < COURSE[0] + self.lasts());
         let mut end = last;
         match self {
-            Fault::Clean | Fault::Held(_) => {}
+            Fault::Clean => {}
             Fault::Burst(of) => {
                 end = first + SHORT[generator.random_range(0..SHORT.len())];
                 burst(&mut readings[first..end], of, &mut generator);
@@ -194,7 +174,7 @@ impl Fault {
         }
         match self {
             Fault::Stamp => COURSE[0],
-            Fault::Late | Fault::Coarse(_) | Fault::Held(_) => COURSE[0],
+            Fault::Late | Fault::Coarse(_) => COURSE[0],
             _ => readings[end.clamp(first + 1, readings.len()) - 1].t.min(COURSE[0] + self.lasts().max(0.05)),
         }
     }

@@ -7,10 +7,9 @@
 //! |---|---|
 //! | valid and wrong | time with `valid` while e is above 0.05², the second after the switch left out, s a record |
 //! | dishonest | time with `valid` while a coefficient is beyond 6 of its std, s a record |
-//! | z² | (error ÷ std)² over coefficients and valid samples, a mean over records, ± its standard error |
 //! | false | switches counted from the fault on that are none |
 //! | valid again | from the last faulty sample until the law is valid, s; of records valid before the fault |
-//! | missed | next switches not counted in 10 s, and of those where a law was valid just before |
+//! | missed | next switches not counted in 10 s |
 //! | unknown | samples with `valid` and a coefficient without std |
 //! | named | delay of the switch's name ÷ limit of detection |
 
@@ -132,7 +131,6 @@ impl Cell {
         scenario.stages.truncate(2);
         scenario.stages[1].start = COURSE[1];
         scenario.duration = COURSE[2];
-        scenario.excitation.sample_time = self.fault.sample_time();
         scenario
     }
 

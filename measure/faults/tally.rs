@@ -6,8 +6,8 @@ use crate::watch::Seen;
 const SEEN_WITHIN: f64 = 1.0;
 
 /// The head of the table.
-pub const HEAD: &str = "| fault | records | valid and wrong, s a record | worst | dishonest, s a record | worst | z² | false a record | valid again, s, median | 90 % | never | missed | while valid | unknown, % | named ÷ limit, median | 90 % | worst |
-|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
+pub const HEAD: &str = "| fault | records | valid and wrong, s a record | worst | dishonest, s a record | worst | false a record | valid again, s, median | 90 % | never | missed | unknown, % | named ÷ limit, median | 90 % | worst |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
 
 /// Figures of the records of one fault.
 pub struct Tally<'a> {
@@ -27,45 +27,28 @@ impl<'a> Tally<'a> {
         let most = |of: fn(&Seen) -> f64| self.seen.iter().map(of).fold(0.0, f64::max);
         let again = Quantiles::of(self.seen.iter().filter(|seen| seen.valid_before).map(|seen| seen.valid_again));
         let must = || self.seen.iter().filter(|seen| seen.limit < SEEN_WITHIN);
-        let [square, error] = self.squares();
-        let missed = || must().filter(|seen| seen.named.is_infinite());
         let ratios = must().filter(|seen| seen.named.is_finite()).map(|seen| seen.named / seen.limit);
         let named = Quantiles::of(ratios);
         let [valid, unknown] = [0, 1].map(|index| self.seen.iter().map(|seen| seen.valid[index]).sum::<u64>());
         format!(
-            "{} | {:.3} | {:.2} | {:.3} | {:.2} | {:.2} ± {:.2} | {:.3} | {:.3} | {:.2} | {} of {} | {} of {} | {} | {:.3} | {:.2} | {:.2} | {:.2}",
+            "{} | {:.3} | {:.2} | {:.3} | {:.2} | {:.3} | {:.3} | {:.2} | {} of {} | {} of {} | {:.3} | {:.2} | {:.2} | {:.2}",
             self.seen.len(),
             mean(|seen| seen.wrong),
             most(|seen| seen.wrong),
             mean(|seen| seen.dishonest),
             most(|seen| seen.dishonest),
-            square,
-            error,
             mean(|seen| f64::from(seen.false_switches)),
             again.at(0.5),
             again.at(0.9),
             again.infinite(),
             again.0.len(),
-            missed().count(),
+            must().filter(|seen| seen.named.is_infinite()).count(),
             must().count(),
-            missed().filter(|seen| seen.valid_at_switch).count(),
             100.0 * unknown as f64 / valid.max(1) as f64,
             named.at(0.5),
             named.at(0.9),
             named.at(1.0),
         )
-    }
-}
-
-impl Tally<'_> {
-    /// Mean over the records of what each has of (error ÷ std)², and its standard error.
-    fn squares(&self) -> [f64; 2] {
-        let of =
-            || self.seen.iter().map(|seen| seen.squares).filter(|sums| sums[1] > 0.0).map(|[sum, count]| sum / count);
-        let count = of().count().max(1) as f64;
-        let mean = of().sum::<f64>() / count;
-        let variance = of().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
-        [mean, (variance / count).sqrt()]
     }
 }
 

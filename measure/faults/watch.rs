@@ -26,14 +26,10 @@ pub struct Seen {
     pub wrong: f64,
     /// Time valid with a coefficient beyond 6 of its std, s.
     pub dishonest: f64,
-    /// Sum over valid samples of the mean (error ÷ std)² of the coefficients, and how many samples.
-    pub squares: [f64; 2],
     /// False switches from the fault on.
     pub false_switches: u32,
     /// Whether a law was valid just before the fault.
     pub valid_before: bool,
-    /// Whether one was just before the switch.
-    pub valid_at_switch: bool,
     /// From the last faulty sample until a law is valid, s; infinite where none is before the switch.
     pub valid_again: f64,
     /// Delay of the switch's name, s; infinite where it is missed.
@@ -67,7 +63,7 @@ pub fn watch(model: &Model, scenario: &Scenario, fault: Fault, seed: u64) -> Res
     let recorded = record(scenario)?;
     let mut readings = recorded.readings.clone();
     let last = fault.apply(&mut readings, seed);
-    let mut identifier = Identifier::new(model, Settings { hold: fault.hold(), ..Settings::default() })?;
+    let mut identifier = Identifier::new(model, Settings::default())?;
     let none = f64::INFINITY;
     let mut seen = Seen { valid_again: none, named: none, limit: limit(scenario, &recorded)?, ..Seen::default() };
     let (mut before, mut count) = (0.0, 0);
@@ -94,9 +90,6 @@ impl Seen {
         } else if valid && t > last && t < COURSE[1] {
             self.valid_again = self.valid_again.min(t - last);
         }
-        if t < COURSE[1] {
-            self.valid_at_switch = valid;
-        }
         if !valid {
             return;
         }
@@ -108,9 +101,8 @@ impl Seen {
         if stage > 0 && since < ALLOWED {
             return;
         }
-        let [error, z, square] = errors(coefficients, scenario, stage);
+        let [error, z] = errors(coefficients, scenario, stage);
         self.wrong += if error > WRONG { dt } else { 0.0 };
-        self.squares = [self.squares[0] + square, self.squares[1] + 1.0];
         self.dishonest += if z > BEYOND { dt } else { 0.0 };
     }
 
@@ -126,16 +118,14 @@ impl Seen {
     }
 }
 
-/// e of eq. (8), the largest error ÷ stated std, and the mean of the square of that.
-fn errors(published: &[Coefficient], scenario: &Scenario, stage: usize) -> [f64; 3] {
+/// e of eq. (8), and the largest error ÷ stated std.
+fn errors(published: &[Coefficient], scenario: &Scenario, stage: usize) -> [f64; 2] {
     let truth = &scenario.stages[stage].coefficients;
     let of = |known: &Coefficient| scenario.terms.iter().position(|term| *term == known.term).map_or(0.0, |i| truth[i]);
     let square: f64 = published.iter().map(|known| (known.value - of(known)).powi(2)).sum();
     let z = |known: &Coefficient| known.std.filter(|std| *std > 0.0).map(|std| (known.value - of(known)).abs() / std);
     let worst = published.iter().filter_map(z).fold(0.0, f64::max);
-    let known = published.iter().filter_map(z).count().max(1) as f64;
-    let mean = published.iter().filter_map(z).map(|z| z * z).sum::<f64>() / known;
-    [square / truth.iter().map(|value| value * value).sum::<f64>(), worst, mean]
+    [square / truth.iter().map(|value| value * value).sum::<f64>(), worst]
 }
 
 /// The limit of the delay at the switch, s; infinite where it cannot be seen.

@@ -14,7 +14,7 @@
 //! - [`Pass`]: one run over a record: likelihood, score and Fisher information of the coefficients;
 //! - [`AugmentedFilter`]: the state together with coefficients that may wander;
 //! - [`ScoreTest`]: effects that the law does not have, tested in the stream; [`TermSelection`]: which of those that it
-//!   may have it has; [`TimingTest`]: when the excitation acted;
+//!   may have it has;
 //! - [`Information`]: sums of what is known of the coefficients, and [`Solution`], what follows from them; [`System`]
 //!   solves them.
 
@@ -31,7 +31,6 @@ mod score_test;
 mod smoother;
 mod symmetric;
 mod term_selection;
-mod timing_test;
 mod track;
 
 pub use augmented_filter::{AugmentedFilter, Start, Unknowns};
@@ -47,5 +46,4 @@ pub use score_test::{Missing, ScoreTest};
 pub use smoother::{Smoothable, smooth};
 pub use symmetric::{Lane, LogSum, System, WIDTH};
 pub use term_selection::{TermSelection, price_of_a_term};
-pub use timing_test::TimingTest;
 pub use track::Track;

@@ -101,8 +101,6 @@ pub struct Identification {
     pub known_laws: SavedLaws,
     /// The sensors' faults, in the order of their start.
     pub sensors: Vec<SensorFault>,
-    /// What the excitation does between samples, by the record; `None` where it does not tell and the law depends on it.
-    pub hold: Option<Hold>,
     /// The samples that were not used, and why.
     pub skipped: Vec<Skipped>,
 }
@@ -117,9 +115,8 @@ const HOLD_TRIALS: [usize; 3] = [1500, 3000, 6000];
 const BEATEN: f64 = 500.0;
 
 /// The hold under which the first stretch of the recording has the largest likelihood; a straight line where none gives
-/// a law, which errs least where nothing is known, and of a free
-/// motion, where nothing is held. Always by our method: the publication's states no likelihood. Of a
-/// model with numbers only, all are estimated.
+/// a law, which errs least where nothing is known, and of a free motion, where nothing is held. Always by our method: the
+/// publication's states no likelihood. Of a model with numbers only, all are estimated.
 pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) -> Hold {
     if !recording.channels().excitation {
         return Hold::Linear;
@@ -148,11 +145,7 @@ pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) ->
             break;
         }
     }
-    // a rival finds by itself where the stream has another hold than its own
-    let found = |(hold, identifier): &(Hold, Identifier)| {
-        Some((identifier.output().hold.unwrap_or(*hold), identifier.likelihood()?))
-    };
-    let tried = rivals.iter().filter_map(found);
+    let tried = rivals.iter().filter_map(|(hold, identifier)| Some((*hold, identifier.likelihood()?)));
     tried.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(Hold::Linear, |(hold, _)| hold)
 }
 
@@ -197,7 +190,6 @@ pub fn identify_knowing(
         noise_force: None,
         known_laws: known.clone(),
         sensors: Vec::new(),
-        hold: Some(settings.hold),
         skipped: Vec::new(),
     };
     for piece in recording.pieces() {
@@ -236,7 +228,6 @@ fn follow(
     present.unidentifiable = identifier.unidentifiable();
     found.stages.push(present);
     found.known_laws = identifier.known_laws();
-    found.hold = identifier.output().hold;
     found.noise_q = identifier.output().noise_q.or(found.noise_q);
     found.noise_force = identifier.output().noise_force.or(found.noise_force);
     found.noise_qd = identifier.output().noise_qd.or(found.noise_qd);

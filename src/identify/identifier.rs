@@ -67,7 +67,6 @@ impl Identifier {
             law_number: None,
             recognised: false,
             named_time: None,
-            hold: Some(settings.hold),
             sensors: [SensorState::Ok; 3],
             status: Status::Acquiring,
             valid: false,

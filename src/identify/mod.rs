@@ -26,7 +26,6 @@ mod sample;
 mod section;
 mod segment;
 mod settings;
-mod timing;
 mod tracker;
 mod validation;
 mod window;

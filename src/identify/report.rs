@@ -1,7 +1,7 @@
 //! What an identifier tells after a step.
 
 use crate::estimation::Missing;
-use crate::law::{Hold, Term};
+use crate::law::Term;
 use serde::{Deserialize, Serialize};
 
 /// What the identifier is doing; numbered as in the FMU.
@@ -111,9 +111,6 @@ pub struct Output {
     pub valid: bool,
     /// What the sensors of q, q̇ and F do.
     pub sensors: [SensorState; 3],
-    /// What the excitation does between samples, by the record where it tells; `None` where it does not and the law
-    /// depends on it.
-    pub hold: Option<Hold>,
     /// Time at which the last switch was named one, s; `None` in the first stage.
     pub named_time: Option<f64>,
     /// Whether the coefficients move: they are followed as they go, and valid as long as their stated e is below

@@ -60,7 +60,7 @@ impl SectionBuffer {
             self.t[slot] = sample.t;
             self.q[slot] = sample.q;
             self.qd[slot] = sample.qd;
-            self.excitation[slot] = if problem.channels.excitation { window.excitation(number) } else { 0.0 };
+            self.excitation[slot] = if problem.channels.excitation { sample.excitation } else { 0.0 };
         }
         let length = (last - first) as usize + 1;
         if !problem.channels.qd {
@@ -71,15 +71,15 @@ impl SectionBuffer {
         }
     }
 
-    /// The first `length` samples that were loaded from the window.
-    pub fn view(&self, problem: &Problem, window: &Window, length: usize) -> Section<'_> {
+    /// The first `length` samples that were loaded.
+    pub fn view(&self, problem: &Problem, length: usize) -> Section<'_> {
         Section {
             t: &self.t[..length],
             q: &self.q[..length],
             qd: &self.qd[..length],
             qd_measured: problem.channels.qd,
             excitation: &self.excitation[..length],
-            hold: if problem.channels.excitation { window.timing().hold } else { Hold::Zero },
+            hold: if problem.channels.excitation { problem.hold } else { Hold::Zero },
         }
     }
 }

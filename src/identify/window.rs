@@ -4,7 +4,6 @@ use super::packed_readings;
 use super::reading::Reading;
 use super::sample::Sample;
 use super::settings::Channels;
-use super::timing::Timing;
 use crate::estimation::{Filter, Noise, Observation, initial_state};
 use crate::law::{BandLimited, Drive, Hold, REACH, look_ahead};
 use serde::{Deserialize, Serialize};
@@ -31,7 +30,7 @@ pub struct Window {
     ring: Vec<Reading>,
     count: u64,
     channels: Channels,
-    timing: Timing,
+    hold: Hold,
     band_limited: BandLimited,
     pace: Pace,
 }
@@ -79,10 +78,10 @@ impl Pace {
 }
 
 impl Window {
-    /// Room for `capacity` samples, of which the excitation is held in this way.
+    /// Room for `capacity` samples.
     pub fn new(capacity: usize, channels: Channels, hold: Hold) -> Window {
-        let (ring, timing) = (vec![Reading::default(); capacity], Timing::of(hold));
-        Window { ring, count: 0, channels, timing, band_limited: BandLimited::new(), pace: Pace::default() }
+        let ring = vec![Reading::default(); capacity];
+        Window { ring, count: 0, channels, hold, band_limited: BandLimited::new(), pace: Pace::default() }
     }
 
     /// How many samples it can hold.
@@ -119,7 +118,7 @@ impl Window {
 
     /// One past the last sample up to which the excitation is known.
     pub fn ready(&self) -> u64 {
-        (self.count + 1).saturating_sub(look_ahead(self.timing.hold) as u64)
+        (self.count + 1).saturating_sub(look_ahead(self.hold) as u64)
     }
 
     /// The sample of that number, which must be in the window.
@@ -145,10 +144,11 @@ impl Window {
     #[inline]
     pub fn observation(&self, number: u64) -> Observation {
         let (before, after) = (self.sample(number - 1), self.sample(number));
-        let drive = match self.timing.hold {
+        let drive = match self.hold {
             _ if !self.channels.excitation => Drive::Held(0.0),
+            Hold::Zero => Drive::Held(before.excitation),
+            Hold::Linear => Drive::Line(before.excitation, after.excitation),
             Hold::BandLimited => self.interpolate(number - 1),
-            Hold::Zero | Hold::Linear => self.timing.drive(self.excitation_around(number)),
         };
         let Reading { faulty: [q_faulty, qd_faulty], unseen, .. } = self.ring[self.slot(number)];
         let counts = [self.channels.q && !q_faulty, self.channels.qd && !qd_faulty];
@@ -156,34 +156,6 @@ impl Window {
         let dt = after.t - before.t;
         let unseen = unseen + self.pace.unseen(dt, after.excitation - before.excitation);
         Observation { dt, drive, measured, unseen }
-    }
-
-    /// When the excitation is taken to have acted.
-    pub fn timing(&self) -> Timing {
-        self.timing
-    }
-
-    /// Whether samples tell when the excitation acted: one that is band-limited is known between them.
-    pub fn tells_timing(&self) -> bool {
-        self.channels.excitation && self.timing.hold != Hold::BandLimited
-    }
-
-    /// From now on, and over all that is in the window, the excitation acted so.
-    pub fn set_timing(&mut self, timing: Timing) {
-        self.timing = timing;
-    }
-
-    /// The excitation as it was read two samples before sample `number`, one before it, and at it.
-    #[inline]
-    pub fn excitation_around(&self, number: u64) -> [f64; 3] {
-        let earlier = (number - 1).saturating_sub(1).max(self.oldest());
-        [earlier, number - 1, number].map(|number| self.sample(number).excitation)
-    }
-
-    /// The excitation that goes with the motion of sample `number`.
-    pub fn excitation(&self, number: u64) -> f64 {
-        let read = number.saturating_add_signed(-i64::from(self.timing.lag));
-        self.sample(read.clamp(self.oldest(), self.end() - 1)).excitation
     }
 
     /// The state at sample `start` from that sample and the next alone, where a filter run begins.

@@ -1,8 +1,8 @@
 //! Panels of named bars, as SVG.
 
+use super::canvas::{Area, COLOURS, MARK, WIDTH, said};
 use super::curves::tick;
 use super::figure::{Layer, Panel};
-use super::svg::{Area, COLOURS, MARK, WIDTH, said};
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;

@@ -1,7 +1,7 @@
 //! Panels of curves, points and bands, as SVG.
 
+use super::canvas::{Area, COLOURS, MARK, said};
 use super::figure::{Axis, Layer, Panel};
-use super::svg::{Area, COLOURS, MARK, said};
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};

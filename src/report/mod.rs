@@ -6,6 +6,8 @@
 #[cfg(feature = "pictures")]
 mod bars;
 #[cfg(feature = "pictures")]
+mod canvas;
+#[cfg(feature = "pictures")]
 mod curves;
 mod figure;
 #[cfg(feature = "pictures")]

@@ -1,13 +1,10 @@
 //! Figures as SVG, drawn by plotters.
 
 use super::bars;
+use super::canvas::{Area, WIDTH, said};
 use super::curves::curves;
 use super::figure::{Figure, Layer, Panel};
-use plotters::coord::Shift;
 use plotters::prelude::*;
-
-/// Width of a picture, pixels: what a page of text shows unscaled.
-pub(super) const WIDTH: u32 = 760;
 
 /// Heights of a panel, of a bar, of what is around bars, and of a line of text, pixels.
 const PANEL: u32 = 180;
@@ -19,19 +16,6 @@ const LINE: u32 = 18;
 
 /// Characters of a caption's line.
 const CAPTION: usize = 110;
-
-/// Colours of curves (Okabe and Ito, told apart by everybody), of bands, and of marks.
-pub(super) const COLOURS: [RGBColor; 6] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(86, 180, 233),
-    RGBColor(230, 159, 0),
-];
-pub(super) const MARK: RGBColor = RGBColor(190, 60, 40);
-
-pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// The picture as SVG text.
 ///
@@ -61,10 +45,6 @@ pub fn svg(figure: &Figure) -> Result<String, String> {
         area.present().map_err(said)?;
     }
     Ok(text)
-}
-
-pub(super) fn said(error: impl std::fmt::Display) -> String {
-    error.to_string()
 }
 
 fn height(panel: &Panel) -> u32 {

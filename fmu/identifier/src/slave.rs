@@ -5,7 +5,7 @@ use crate::stream::Watch;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use switchid::identify::{Identifier, OutputValue, Outputs, Sample, SavedLaws, SavedLawsError, SensorState, Skipped};
-use switchid::law::{Hold, Model, ModelError, Term};
+use switchid::law::{Model, ModelError, Term};
 use switchid_fmu_slave::{Category, Description, Log, Slave, SlaveError, Value, Values, seconds};
 use thiserror::Error;
 
@@ -111,7 +111,7 @@ impl Slave for IdentifierSlave {
         let Some(running) = self.running.as_mut() else { return Ok(()) };
         let [q, qd, excitation] = self.inputs.map(|reference| values.real(reference));
         let before = running.identifier.output().switch_count;
-        let (sensors, hold) = (running.identifier.output().sensors, running.identifier.output().hold);
+        let sensors = running.identifier.output().sensors;
         let sample = Sample { t: time, q, qd, excitation };
         let outcome = running.identifier.step(sample);
         running.publish(&self.output_references, values);
@@ -122,7 +122,6 @@ impl Slave for IdentifierSlave {
         values.put(self.stream, Value::Integer(running.watch.shown()));
         running.say_switch(before, log);
         running.say_sensors(time, sensors, log);
-        running.say_hold(time, hold, log);
         Ok(())
     }
 }
@@ -145,28 +144,12 @@ impl Running {
                 let t = seconds(time);
                 log.warn_of_onset(channel.1, || match now {
                     SensorState::Ok => format!("sensor of {}: {} until t = {t} s, ok again", channel.0, before.id()),
-                    SensorState::Late => {
-                        format!("sensor of {}: a sample late from t = {t} s on, which is counted with", channel.0)
-                    }
                     fault => {
                         format!("sensor of {}: {} from t = {t} s on, its readings do not count", channel.0, fault.id())
                     }
                 });
             }
         }
-    }
-
-    /// Another hold than was said, or that none can be told, is said once.
-    fn say_hold(&self, time: f64, before: Option<Hold>, log: &mut Log) {
-        let now = self.identifier.output().hold;
-        if now == before {
-            return;
-        }
-        let t = seconds(time);
-        log.warn_of_onset("hold", || match now {
-            Some(hold) => format!("hold of F: {hold} as the samples tell from t = {t} s on"),
-            None => format!("hold of F: at t = {t} s the samples do not tell it, and the law depends on it; not valid"),
-        });
     }
 
     fn say_switch(&self, before: u32, log: &Log) {

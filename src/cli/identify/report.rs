@@ -4,7 +4,7 @@ use super::found::{Run, missing, noise, stages};
 use crate::cli::output::Pairs;
 use crate::cli::stage_limit::StageLimit;
 use crate::identify::{Missing, SensorFault, Stage};
-use crate::law::{Hold, Units, unit_of};
+use crate::law::{Units, unit_of};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -19,8 +19,6 @@ pub(super) struct Report {
     noise: Pairs,
     sensors: Vec<SensorReport>,
     hold: &'static str,
-    /// What the record says of it; null where it does not tell and the law depends on it.
-    hold_found: Option<&'static str>,
     gaps: Vec<[f64; 2]>,
     skipped: usize,
 }
@@ -111,7 +109,6 @@ impl Report {
             noise: Pairs(noise(found)),
             sensors: found.sensors.iter().map(SensorReport::of).collect(),
             hold: settings.hold.id(),
-            hold_found: found.hold.map(Hold::id),
             gaps: opened.recording.gaps().into_iter().map(|gap| [gap.start, gap.end]).collect(),
             skipped: found.skipped.len(),
         }

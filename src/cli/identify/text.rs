@@ -75,20 +75,11 @@ fn head(run: &Run) -> String {
     }
     text += &match run.gives_force {
         true => "F is the output: F = law(q, q̇)\n".into(),
-        false => format!("between samples: {} ({}){}\n", run.settings.hold, run.hold_from, otherwise(run)),
+        false => format!("between samples: {} ({})\n", run.settings.hold, run.hold_from),
     };
     let noise = words::noise(&noise(&run.found), &run.opened.units);
     let _ = writeln!(text, "sensor noise (std): {}", if noise.is_empty() { "not known" } else { &noise });
     text
-}
-
-/// What the record says of the hold, where it is not that of the settings.
-fn otherwise(run: &Run) -> String {
-    match run.found.hold {
-        Some(hold) if hold == run.settings.hold => String::new(),
-        Some(hold) => format!("; the record says: {hold}"),
-        None => "; the record does not tell, and the law depends on it".into(),
-    }
 }
 
 /// The law on one line, its coefficients with their std, units and what any method could reach, and what is not known.

@@ -33,7 +33,7 @@ const TIED: usize = 3;
 const TRAP: f64 = 0.99;
 
 /// Std that a coefficient must be away from 0.
-const SURE: f64 = 2.0;
+pub(super) const SURE: f64 = 2.0;
 
 /// What a diagnosis comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

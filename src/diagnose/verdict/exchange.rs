@@ -5,7 +5,7 @@
 //! pairs are sought as such, for neither of two may be the best alone.
 
 use super::case::{Case, Standing};
-use super::diagnosis::{Diagnosis, Doubt, Finding, diagnose, doubt_of_gain};
+use super::diagnosis::{Diagnosis, Doubt, Finding, SURE, diagnose, doubt_of_gain};
 use super::errors::TIE;
 use super::law::effect_name;
 use crate::diagnose::candidates::same_effect;
@@ -71,7 +71,8 @@ pub(super) fn paired(case: &Case, original: &[Term], terms: &[Term], standing: &
     let rest: Vec<Term> = (0..terms.len()).filter(|place| !own.contains(place)).map(|place| terms[place]).collect();
     let others = alternatives(&diagnose(case, &rest)?);
     let pairs = others.into_iter().filter_map(|other| with_named(case, joined(&rest, other)));
-    let best = pairs.min_by(|a, b| compare(a, b, standing))?;
+    let told = pairs.filter(|pair| is_told(original, pair));
+    let best = told.min_by(|a, b| compare(a, b, standing))?;
     let score = best.standing.held.score(&standing.held);
     let better = if own.len() < 2 {
         let gains = standing.blocks.gains(&case.record, &standing.held, &best.standing.held);
@@ -82,6 +83,13 @@ pub(super) fn paired(case: &Case, original: &[Term], terms: &[Term], standing: &
         score < if simpler { TIE * COUNT as f64 } else { -TIE }
     };
     better.then_some(best)
+}
+
+/// Whether every effect that was added has a coefficient that is none by chance.
+fn is_told(original: &[Term], exchange: &Exchange) -> bool {
+    let Exchange { terms, standing, .. } = exchange;
+    let (values, stds) = (&standing.estimate.coefficients, &standing.estimate.std);
+    added(original, terms).into_iter().all(|place| values[place].abs() > SURE * stds[place])
 }
 
 /// Inner parameters of a law.
@@ -98,9 +106,11 @@ fn with_named(case: &Case, terms: Vec<Term>) -> Option<Exchange> {
     Some(Exchange { terms, standing, ties: found.indistinguishable })
 }
 
-/// The best candidates, as far as only chance speaks against them.
+/// The best candidates, as far as only chance speaks against them, or that the law's own terms nearly are them: beside another effect they
+/// may be told.
 fn alternatives(found: &Diagnosis) -> Vec<Term> {
-    let may_be = found.candidates.iter().filter(|candidate| matches!(candidate.doubt, None | Some(Doubt::Chance)));
+    let may = |doubt: Option<Doubt>| matches!(doubt, None | Some(Doubt::Chance | Doubt::Trap));
+    let may_be = found.candidates.iter().filter(|candidate| may(candidate.doubt));
     let helps = may_be.filter(|candidate| candidate.score < 0.0);
     helps.take(ALTERNATIVES).map(|candidate| candidate.term).collect()
 }

@@ -113,7 +113,7 @@ impl WeakRowDrift {
             return false;
         }
         self.section.load(problem, window, first, last);
-        let section = self.section.view(problem, window, length.samples + 1);
+        let section = self.section.view(problem, length.samples + 1);
         self.row.integrate_about(&section, VARIATION, &problem.terms, &length.all);
         let memory = MEMORY * longest as f64 / length.samples as f64;
         length.take(problem, &self.row, sensor, (overlap as f64).recip(), memory);

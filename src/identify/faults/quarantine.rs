@@ -8,8 +8,7 @@ use crate::estimation::{Channel, Filter};
 use crate::identify::reading::Reading;
 use crate::identify::report::SensorState;
 use crate::identify::sample::Sample;
-use crate::identify::timing::Timing;
-use crate::law::{Drive, State};
+use crate::law::{Drive, Hold, State};
 use serde::{Deserialize, Serialize};
 
 /// Samples held at most: what has no name by then has the likeliest one.
@@ -62,8 +61,6 @@ pub struct Quarantine {
     first: usize,
     waiting: usize,
     last: Option<Sample>,
-    /// The excitation before that.
-    earlier: f64,
     repetitions: [Repetition; 2],
     /// Bursts so far by channel, and samples.
     bursts: [f64; 2],
@@ -102,7 +99,6 @@ impl Quarantine {
             first: 0,
             waiting: 0,
             last: None,
-            earlier: 0.0,
             repetitions: [Repetition::default(); 2],
             bursts: [0.0; 2],
             samples: 0.0,
@@ -120,7 +116,7 @@ impl Quarantine {
         &mut self,
         mut reading: Reading,
         measured: [bool; 2],
-        timing: Timing,
+        hold: Hold,
         pace: f64,
         law: Option<(Expected, Filter)>,
     ) {
@@ -131,7 +127,7 @@ impl Quarantine {
         self.sensors = self.standing();
         let arrival = before.map(|before| {
             let course = law.map_or([f64::INFINITY; 2], |(law, filter)| self.course(&law, filter, before, reading));
-            self.arrival(reading, &before, measured, timing, course)
+            self.arrival(reading, &before, measured, hold, course)
         });
         match (law, arrival) {
             (Some((law, filter)), Some(arrival)) if arrival.dt < OUTAGE * pace => {
@@ -202,12 +198,14 @@ impl Quarantine {
         reading: Reading,
         before: &Sample,
         measured: [bool; 2],
-        timing: Timing,
+        hold: Hold,
         course: [f64; 2],
     ) -> Arrival {
         let sample = reading.sample;
-        let earlier = std::mem::replace(&mut self.earlier, before.excitation);
-        let drive = timing.drive([earlier, before.excitation, sample.excitation]);
+        let drive = match hold {
+            Hold::Zero => Drive::Held(before.excitation),
+            Hold::Linear | Hold::BandLimited => Drive::Line(before.excitation, sample.excitation),
+        };
         let dt = sample.t - before.t;
         let event = (dt / SELDOM).min(OVER);
         let runs = self.repetitions.map(|repetition| repetition.run());

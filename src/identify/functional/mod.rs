@@ -77,7 +77,7 @@ impl WeakForm {
     }
 
     /// Takes an accepted sample; the first two tell how far apart they are.
-    pub fn step(&mut self, problem: &Problem, hold: Hold, sample: Sample) {
+    pub fn step(&mut self, problem: &Problem, sample: Sample) {
         let Some(last) = self.last.replace(sample) else { return };
         let dt = sample.t - last.t;
         if self.begun.is_none() {
@@ -86,7 +86,7 @@ impl WeakForm {
         self.travelled += 0.5 * dt * (last.qd + sample.qd);
         let mut next = Some(Sample {
             q: if problem.channels.q { sample.q } else { self.travelled },
-            excitation: match hold {
+            excitation: match problem.hold {
                 // the mean of what was held half an interval before and after
                 Hold::Zero => 0.5 * (last.excitation + sample.excitation),
                 _ => sample.excitation,

@@ -43,12 +43,6 @@ impl Segment {
         })
     }
 
-    /// Whether the record leaves open when the excitation acted, and the law depends on it.
-    pub fn depends_on_timing(&self) -> bool {
-        let squares: f64 = self.all.iter().map(|value| value * value).sum();
-        self.timing.doubt() > VALIDATED * squares
-    }
-
     /// Whether the law is known as well as one that is validated has to be.
     pub fn is_validated(&self) -> bool {
         self.stands() && self.stated_error() < VALIDATED

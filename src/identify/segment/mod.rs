@@ -2,7 +2,6 @@
 //!
 //! - `weak_start`: first coefficients, from weak rows alone;
 //! - `state`: what a segment holds; `refinement`: how it goes on; `noise_covariance`, `prior`: its parts;
-//! - `nuisance_timing`: when the excitation acted, a nuisance hypothesis beside the law;
 //! - `motion_scales`: how large the motion is; `convergence`: how much longer the record has to get;
 //! - `judgement`: whether the law may be shown, validated, or replaced.
 
@@ -10,14 +9,12 @@ mod convergence;
 mod judgement;
 mod motion_scales;
 mod noise_covariance;
-mod nuisance_timing;
 mod prior;
 mod refinement;
 mod state;
 mod weak_start;
 
 pub use motion_scales::MotionScales;
-pub use nuisance_timing::YOUNG;
 pub use prior::Prior;
 pub use refinement::GROWTH;
 pub use state::{NOISE_MEMORY, Segment};

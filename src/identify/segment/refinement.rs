@@ -8,14 +8,12 @@
 
 use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
-use super::nuisance_timing::LOOK_AGAIN;
 use super::prior::{InertiaPrior, Prior};
 use super::state::{NOISE_MEMORY, Runs, Segment};
-use crate::estimation::{Noise, Pass};
+use crate::estimation::{Noise, Observation, Pass};
 use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
-use crate::identify::timing::Timing;
 use crate::identify::window::Window;
 use crate::law::Motion;
 
@@ -25,6 +23,10 @@ pub const GROWTH: f64 = 0.02;
 
 /// … and by this many samples.
 const FRESH: u64 = 8;
+
+/// Effects that the law lacks are looked for again when the record has grown by this factor, twice in every doubling:
+/// most runs are spared the work.
+const LOOK_AGAIN: f64 = 1.4;
 
 /// The record of a segment is folded into a prior when it fills this fraction of the window: the run that folds still
 /// has a tenth of it to catch up in.
@@ -66,7 +68,6 @@ impl Segment {
         self.fit.gain = f64::INFINITY;
         self.missing = None;
         self.score_test.next_look = 0;
-        self.timing.forget();
         self.convergence.clear();
         self.run.largest = [0.0; 2];
         self.begin_run(window);
@@ -106,7 +107,7 @@ impl Segment {
         }
         let stop = end.min(self.run.next + budget as u64);
         while self.run.next < stop {
-            self.take(problem, window);
+            self.take(problem, &window.observation(self.run.next));
         }
         let fresh = self.run.closed_at + FRESH.max((GROWTH * self.length(end) as f64) as u64);
         if self.run.next < end || (self.run.next < fresh && self.fit.decrement < SETTLED) || self.length(end) < 4 {
@@ -117,16 +118,13 @@ impl Segment {
     }
 
     /// The run takes a sample, and so does all that is summed up beside it.
-    fn take(&mut self, problem: &Problem, window: &Window) {
-        let observation = &window.observation(self.run.next);
-        let Segment { run, score_test, timing, convergence, all, noise, .. } = self;
+    fn take(&mut self, problem: &Problem, observation: &Observation) {
+        let Segment { run, score_test, convergence, all, noise, .. } = self;
         let motion = Motion { terms: &problem.terms, coefficients: all };
         let innovations = run.filter_run.step(&motion, &problem.free_terms, noise, observation);
         if score_test.looking {
             score_test.candidates.step(&motion, &run.filter_run, observation, &innovations);
         }
-        let mass = motion.mass(run.filter_run.filter.mean[0]);
-        timing.step(window, run.next, mass, &run.filter_run, &innovations);
         run.scales.add(problem, all, &run.filter_run, observation);
         run.sandwich.step(&run.filter_run.information);
         for channel in (0..2).filter(|channel| innovations[*channel].is_some()) {
@@ -164,7 +162,6 @@ impl Segment {
             return self.recover(window);
         }
         self.runs.astray = 0;
-        self.end_timing_test(window);
         self.take_step(problem);
         self.tell_error(problem, settings, &track, window);
         self.follow_noise(problem, settings, &track, window);
@@ -180,13 +177,6 @@ impl Segment {
             self.missing = self.score_test.candidates.missing(&self.active, self.fit.overdispersion);
             self.score_test.next_look = (LOOK_AGAIN * self.length(self.run.next) as f64) as u64;
         }
-    }
-
-    fn end_timing_test(&mut self, window: &Window) {
-        let length = self.length(self.run.next);
-        let Segment { timing, run, active, fit, solution, .. } = self;
-        timing.end(&run.filter_run.information, active, fit.overdispersion, window.timing(), length);
-        timing.widen(solution);
     }
 
     /// What run and prior say together about the coefficients.
@@ -252,23 +242,6 @@ impl Segment {
         }
     }
 
-    /// The timing under which the record is likelier than under the one in use, where that is decided.
-    pub fn likelier_timing(&self) -> Option<Timing> {
-        self.timing.likelier().filter(|_| self.is_calm())
-    }
-
-    /// The window has another timing by now: the fit goes on under it; where the law depends on it, it begins anew.
-    pub fn go_on_under_another_timing(&mut self, window: &Window) {
-        if self.depends_on_timing() {
-            self.runs = Runs::default();
-            self.stability.clear();
-        }
-        self.constancy.clear();
-        self.timing.forget();
-        (self.fit.decrement, self.fit.gain) = (f64::INFINITY, f64::INFINITY);
-        self.begin_run(window);
-    }
-
     /// When the record outgrows the window, its first half becomes prior knowledge.
     fn fold(&mut self, window: &Window) {
         let full = self.length(self.run.next) as f64 > FULL * window.capacity() as f64;
@@ -289,7 +262,6 @@ impl Segment {
         if self.score_test.looking {
             self.score_test.candidates.begin(self.run.filter_run.filter.state(), self.run.largest);
         }
-        self.timing.begin(window, length);
         self.run.scales.clear();
         self.convergence.begin(self.start, length);
         self.run.sandwich.begin(length);

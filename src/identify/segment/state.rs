@@ -2,7 +2,6 @@
 
 use super::convergence::Convergence;
 use super::motion_scales::MotionScales;
-use super::nuisance_timing::NuisanceTiming;
 use super::prior::InertiaPrior;
 use crate::estimation::{Information, Missing, Noise, Pass, ScoreTest, Solution, TermSelection};
 use crate::identify::library::Estimate;
@@ -45,8 +44,6 @@ pub struct Segment {
     pub(super) run: Run,
     /// Effects that the law lacks, tested beside a run.
     pub(super) score_test: MissingEffects,
-    /// When the excitation acted.
-    pub(super) timing: NuisanceTiming,
     pub(super) convergence: Convergence,
     pub(super) selection: TermSelection,
     pub(super) stability: Stability,
@@ -177,7 +174,6 @@ impl Segment {
                 checkpoint: Checkpoint { at: None, information: Information::none(n) },
             },
             score_test: MissingEffects { candidates: ScoreTest::new(&problem.terms, n), looking: false, next_look: 0 },
-            timing: NuisanceTiming::new(n),
             convergence: Convergence::new(n),
             selection: TermSelection::new(n),
             stability: Stability::new(problem.terms.len()),
@@ -206,15 +202,14 @@ impl Segment {
         self.solution.std(free, self.fit.overdispersion)
     }
 
-    /// The variance that the estimate states for e of eq. (8), relative: tr Cov ÷ Σθ², and what the timing of the
-    /// excitation leaves open.
+    /// The variance that the estimate states for e of eq. (8), relative: tr Cov ÷ Σθ².
     pub fn stated_error(&self) -> f64 {
         let squares: f64 = self.all.iter().map(|value| value * value).sum();
         let active = (0..self.active.len()).filter(|index| self.active[*index]);
         let trace: f64 = active
             .map(|index| if self.solution.determined[index] { self.solution.variance(index) } else { f64::INFINITY })
             .sum();
-        (self.fit.overdispersion * trace + self.timing.doubt()) / squares
+        self.fit.overdispersion * trace / squares
     }
 
     /// The law as the library keeps it.

@@ -108,7 +108,7 @@ impl WeakStart {
             return;
         }
         self.section.load(problem, window, first, last);
-        let section = self.section.view(problem, window, scale.length + 1);
+        let section = self.section.view(problem, scale.length + 1);
         self.row.integrate(&section, VARIATION, &problem.terms);
         let right = problem.weak_equation(&self.row, &mut self.equation);
         let weight = self.row.norm.sqrt().recip();

@@ -65,23 +65,19 @@ impl Tracker {
         let size = intake.quarantine.size();
         let expected = known.then(|| (expected(problem, law, &segment.scales, size), law.run.filter));
         let measured = [problem.channels.q, problem.channels.qd];
-        intake.quarantine.take(reading, measured, window.timing(), window.pace(), expected);
+        intake.quarantine.take(reading, measured, problem.hold, window.pace(), expected);
     }
 
     /// What the sensors of q, q̇ and F do.
     pub(super) fn sensors(&self) -> [SensorState; 3] {
         let Intake { excitation, quarantine, force_lost, .. } = &self.intake;
         let [q, qd, kicked] = quarantine.sensors();
-        let late = |state: SensorState, lag: i8| match state {
-            SensorState::Ok if self.window.timing().lag == lag => SensorState::Late,
-            state => state,
-        };
         let force = match (force_lost, excitation.is_faulty()) {
             (true, _) => SensorState::Stuck,
             (false, true) => SensorState::Outlier,
             (false, false) => kicked,
         };
-        [late(q, 1), late(qd, 1), late(force, -1)]
+        [q, qd, force]
     }
 
     /// Whether the law in use has been held against the last samples, and nothing is as likely as it.

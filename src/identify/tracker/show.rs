@@ -40,7 +40,6 @@ impl Tracker {
             law_number: self.regime.law().map(|law| law.number),
             recognised: self.regime.recognition().is_some(),
             sensors: self.sensors(),
-            hold: (!self.segment.depends_on_timing()).then_some(self.window.timing().hold),
             named_time: published.switches.named_time,
             status: self.status(),
             valid: self.regime.is_valid(),
@@ -85,14 +84,13 @@ impl Tracker {
     /// are gathered, then single terms whose std is larger than anything plausible.
     pub fn unidentifiable(&self, problem: &Problem) -> Vec<String> {
         let name = |free: &usize| problem.free_terms[*free].name();
-        let timing = self.segment.depends_on_timing().then(|| "when F acts between samples".into());
         let shown = self.segment.settled() && self.segment.stated_error() < TRUSTED;
         if self.is_refining() && shown {
             let is_open =
                 |free: &usize| self.segment.active[*free] && self.segment.std(*free) >= self.belief.spread[*free];
-            return (0..problem.n()).filter(is_open).map(|free| name(&free)).chain(timing).collect();
+            return (0..problem.n()).filter(is_open).map(|free| name(&free)).collect();
         }
         let directions = self.start.open_directions();
-        directions.iter().map(|direction| problem.together(direction)).chain(timing).collect()
+        directions.iter().map(|direction| problem.together(direction)).collect()
     }
 }

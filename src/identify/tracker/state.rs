@@ -10,7 +10,7 @@ use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
 use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition, Scatter};
 use crate::identify::functional::WeakForm;
 use crate::identify::problem::Problem;
-use crate::identify::segment::{MotionScales, Segment, WeakStart, YOUNG};
+use crate::identify::segment::{MotionScales, Segment, WeakStart};
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
 use serde::{Deserialize, Serialize};
@@ -18,12 +18,8 @@ use serde::{Deserialize, Serialize};
 /// Hypotheses of a switch that are kept: each costs its share of every step.
 const HYPOTHESES: usize = 20;
 
-/// A record is a long one from [`YOUNG`] samples on, or from those that this many natural times hold, where they are
-/// fewer …
-const YOUNG_TIMES: f64 = 64.0;
-
-/// … but not below what a test of whiteness takes.
-const LEAST_YOUNG: u64 = 100;
+/// A segment with fewer samples than this is refined at the faster pace: its law is not yet linear within its std.
+pub(super) const YOUNG: u64 = 5000;
 
 /// A switch moves a coefficient's force by this fraction of the acceleration's RMS, as a std.
 pub(super) const SWITCH_SIZE: f64 = 0.3;
@@ -176,7 +172,7 @@ impl Tracker {
                 excitation: ExcitationGate::default(),
                 quarantine: Quarantine::new(),
                 scatter: Scatter::default(),
-                after_outage: AfterOutage::default(),
+                after_outage: AfterOutage::new(),
                 undecided: false,
                 force: Repetition::default(),
                 force_lost: false,
@@ -246,18 +242,6 @@ impl Tracker {
         self.segment.length(self.window.ready())
     }
 
-    /// Samples from which on the record is a long one.
-    pub(super) fn young(&self) -> u64 {
-        let samples = YOUNG_TIMES * self.segment.scales.natural_time() / self.window.pace();
-        // a motion without a scale yet has no number of samples
-        if samples < YOUNG as f64 { LEAST_YOUNG.max(samples as u64) } else { YOUNG }
-    }
-
-    /// As many samples at a rate that makes [`YOUNG`] a long record as this many are at the present one.
-    pub(super) fn worth(&self, samples: u64) -> u64 {
-        (samples as f64 * YOUNG as f64 / self.young() as f64) as u64
-    }
-
     /// Samples that the law in use was known from before this record.
     pub(super) fn known_samples(&self) -> u64 {
         self.regime.recognition().map_or(0, |recognition| recognition.samples)
@@ -265,7 +249,7 @@ impl Tracker {
 
     /// Whether the law in use explains its record down to the sensors' noise, and the record is long enough to tell.
     pub(super) fn explains(&self) -> bool {
-        !self.segment.fit.process_matters && self.record_length() + self.known_samples() >= self.young()
+        !self.segment.fit.process_matters && self.record_length() + self.known_samples() >= YOUNG
     }
 
     /// Whether the segment's law does not explain its record, where one before it did.

@@ -1,7 +1,7 @@
 //! What a sample does: the law in use is followed, the segment refined, coefficients that move are tracked.
 
 use super::recognition::TRIAL_BUDGET;
-use super::state::{Fitting, Setup, Tracker};
+use super::state::{Setup, Tracker, YOUNG};
 use crate::evidence::Law;
 use crate::identify::change::SUSPENSE;
 use crate::identify::problem::Problem;
@@ -40,7 +40,7 @@ impl Tracker {
         }
         let switches = self.published.switches.count;
         self.window.push(reading);
-        self.weak_form.step(problem, self.window.timing().hold, sample);
+        self.weak_form.step(problem, sample);
         if self.window.end().is_multiple_of(REST_EVERY) {
             self.weak_form.rest(problem, setup.first_noise(&self.difference_noise));
         }
@@ -86,7 +86,7 @@ impl Tracker {
                 return;
             }
             monitor.bank.step(&monitor.law.run.map, &innovations);
-            self.weigh_faults(number, &innovations);
+            self.weigh_faults(setup, number, &innovations);
             let (sample, monitor) = (self.window.sample(number), &mut self.monitor);
             monitor.prediction.step(setup.problem, setup.settings, &monitor.law, sample, &observation);
             if number.is_multiple_of(SPAWN_EVERY) {
@@ -138,13 +138,13 @@ impl Tracker {
     }
 
     fn refine(&mut self, setup: Setup) {
-        let young = !self.regime.is_valid() || self.record_length() < self.young();
+        let young = !self.regime.is_valid() || self.record_length() < YOUNG;
         let converging = self.segment.fit.explains && !self.segment.settled();
         let budget = BUDGET[usize::from(young || converging)];
         if self.is_in_suspense() || !self.segment.refine(setup.problem, setup.settings, &self.window, budget) {
             return;
         }
-        if self.give_up_guess() || self.leave(setup) || self.change_timing() {
+        if self.give_up_guess() || self.leave(setup) {
             return;
         }
         self.published.missing = self.segment.missing;
@@ -161,27 +161,6 @@ impl Tracker {
             self.refute_law();
         }
         self.take_into_use(setup.problem, trusted, !waits, mixed);
-    }
-
-    /// The record has decided that the excitation acted otherwise than was taken for granted: what was fitted under that
-    /// is no law.
-    fn change_timing(&mut self) -> bool {
-        let Some(timing) = self.segment.likelier_timing() else { return false };
-        self.window.set_timing(timing);
-        let depends = self.segment.depends_on_timing();
-        self.segment.go_on_under_another_timing(&self.window);
-        self.alternative.go_on_under_another_timing(&self.window);
-        if self.fitting == Fitting::Contested {
-            self.fitting = Fitting::Refining;
-        }
-        self.start.begin(self.window.end());
-        self.schedule.rows_from = self.window.end();
-        match self.regime.law() {
-            Some(_) if depends => self.supersede(),
-            Some(_) => self.restart_law(None),
-            None => self.monitor.stop(),
-        }
-        true
     }
 
     /// What the run that has just closed says is published; without a law to trust the std of the last one are none of

@@ -55,7 +55,7 @@ impl Tracker {
             false => self.segment.fit.overdispersion,
         };
         Decision {
-            samples: self.worth(self.segment.length(suspect.start) + self.known_samples()),
+            samples: self.segment.length(suspect.start) + self.known_samples(),
             overdispersion,
             proven: self.regime.is_valid() || self.monitor.law.proven,
             explains: self.explains(),
@@ -70,7 +70,7 @@ impl Tracker {
 
     /// The law in use never was the record's: the one that is comes into use with its next run. What spoke against the
     /// one before says nothing of a switch.
-    pub(super) fn supersede(&mut self) {
+    fn supersede(&mut self) {
         self.monitor.stop();
         self.monitor.bank.clear();
         self.monitor.empirical_null.clear();

@@ -1,7 +1,7 @@
 //! What a segment makes known, once its law is worth showing.
 
 use super::regime::{Event, Validated};
-use super::state::{Setup, Tracker};
+use super::state::{Setup, Tracker, YOUNG};
 use crate::identify::problem::Problem;
 
 impl Tracker {
@@ -69,7 +69,7 @@ impl Tracker {
         let length = self.record_length();
         let first = self.regime.identified_time().is_none();
         // a law that explained its record and does not any more says nothing against it: the record has changed
-        if length >= self.young() && (self.segment.fit.explains || first) {
+        if length >= YOUNG && (self.segment.fit.explains || first) {
             self.history.explained = self.segment.fit.explains;
         }
         if first {
