@@ -486,10 +486,7 @@ impl DataError {
 /// A rate may stand in place of times.
 fn time_hint(kind: FileKind, channel: &str) -> &'static str {
     match channel {
-        "t" if kind.is_mat() => {
-            "; or save a scalar dt or Ts (s) or fs (Hz) with the signals; of a timetable or timeseries save the columns: t = seconds(T.Time); \
-             q = T.q; save x.mat t q -v7"
-        }
+        "t" if kind.is_mat() => "; or save a scalar dt or Ts (s) or fs (Hz) with the signals",
         "t" => "; or a rate in its place: --columns t=1000Hz",
         _ => "",
     }

@@ -14,6 +14,8 @@ pub enum FileKind {
     Mat5,
     /// MATLAB 7.3, or any HDF5.
     Hdf5,
+    /// MDF 4 (ASAM).
+    Mdf,
     /// Apache Parquet.
     Parquet,
 }
@@ -31,6 +33,7 @@ impl FileKind {
             (true, ..) => FileKind::Parquet,
             (_, true, _) => FileKind::Hdf5,
             (_, _, true) => FileKind::Mat5,
+            _ if is_mdf4(bytes) => FileKind::Mdf,
             _ if is_spreadsheet(bytes) => FileKind::Spreadsheet,
             _ => FileKind::Csv { header: 1 },
         }
@@ -43,6 +46,7 @@ impl FileKind {
             FileKind::Spreadsheet => "spreadsheet",
             FileKind::Mat5 => "MAT (version 5)",
             FileKind::Hdf5 => "MAT 7.3 (HDF5)",
+            FileKind::Mdf => "MDF 4",
             FileKind::Parquet => "Parquet",
         }
     }
@@ -58,7 +62,11 @@ impl FileKind {
 
     /// What holds one quantity.
     pub(super) fn column(self) -> &'static str {
-        if self.is_mat() { "variable" } else { "column" }
+        match self {
+            FileKind::Mat5 | FileKind::Hdf5 => "variable",
+            FileKind::Mdf => "channel",
+            _ => "column",
+        }
     }
 
     /// What holds one instant.
@@ -66,7 +74,7 @@ impl FileKind {
         match self {
             FileKind::Csv { .. } => "line",
             FileKind::Parquet | FileKind::Spreadsheet => "row",
-            FileKind::Mat5 | FileKind::Hdf5 => "sample",
+            FileKind::Mat5 | FileKind::Hdf5 | FileKind::Mdf => "sample",
         }
     }
 
@@ -88,14 +96,20 @@ fn is_spreadsheet(bytes: &[u8]) -> bool {
     zipped || bytes.starts_with(b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1")
 }
 
+/// Whether these are the first bytes of MDF, version 4, whether or not its logger came to finish it.
+fn is_mdf4(bytes: &[u8]) -> bool {
+    let mark = bytes.starts_with(b"MDF     ") || bytes.starts_with(b"UnFinMF ");
+    mark && bytes.get(8) == Some(&b'4')
+}
+
 /// Files of measurements that are not read: what they are, and how they become one that is.
 pub(super) fn foreign(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     let at = |offset: usize, mark: &[u8]| bytes.get(offset..).is_some_and(|rest| rest.starts_with(mark));
     let known: [(bool, &str, &str); 7] = [
         (
             at(0, b"MDF     ") || at(0, b"UnFinMF "),
-            "an MDF file (ASAM)",
-            "export its channels as CSV or Parquet: in Python, asammdf's MDF(file).to_dataframe(raster=0.001).to_parquet(\"x.parquet\")",
+            "an MDF file older than version 4 (ASAM)",
+            "convert it: in Python, asammdf's MDF(file).convert(\"4.10\").save(\"x.mf4\")",
         ),
         (
             at(0, b"TDSm"),

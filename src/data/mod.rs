@@ -1,7 +1,7 @@
 //! Opening what a user brings: recordings, model files, scenario files.
 //!
-//! A recording is a table of text (CSV and its relatives), a spreadsheet, a MAT file (version 5 or 7.3) whose vectors, or the
-//! fields of whose only structure, are the columns, or a Parquet file (all but text with the feature `formats`); the content
+//! A recording is a table of text (CSV and its relatives), a spreadsheet, a MAT file (version 5 or 7.3) whose vectors, fields
+//! of structures, and columns of tables and time series are the columns, an MDF 4 or a Parquet file (all but text with the feature `formats`); the content
 //! tells which. The model's `[columns]` say which column is which quantity, else `t`, `q`, `qd` and `F` are looked for, else
 //! columns whose names, units or numbers tell; one of q, qd and F may be absent. Values are SI unless the header says
 //! otherwise: `q [mm]`, `force (kN)`, `position_mm`. `DATA@t0:t1` is the section t0 ≤ t < t1. Every error names file, line,
@@ -18,15 +18,15 @@ mod encoding;
 mod error;
 mod files;
 mod guess;
-#[cfg(feature = "formats")]
-mod hdf5;
 mod header;
 mod instant;
 mod kind;
 #[cfg(feature = "formats")]
-mod mat5;
-#[cfg(feature = "formats")]
 mod matlab;
+#[cfg(feature = "formats")]
+mod mdf;
+#[cfg(feature = "formats")]
+mod names;
 mod number;
 mod open;
 #[cfg(feature = "formats")]

@@ -1,4 +1,4 @@
-//! Files that store a recording column by column: MAT and Parquet. Without the feature `formats` they are refused by name.
+//! Files that store a recording column by column: MAT, MDF and Parquet. Without the feature `formats` they are refused by name.
 
 use super::DataError;
 use super::header::Layout;
@@ -6,15 +6,15 @@ use super::header::Layout;
 use super::kind::FileKind;
 use super::rows::{Signals, Source};
 #[cfg(feature = "formats")]
-use super::{arrays, hdf5, mat5, parquet};
+use super::{arrays, matlab, mdf, parquet};
 use crate::law::Model;
 
 /// The signals that the model names.
 #[cfg(feature = "formats")]
 pub(super) fn read(source: &Source, bytes: Vec<u8>, model: &Model) -> Result<(Layout, Signals), DataError> {
     match source.kind {
-        FileKind::Mat5 => arrays::read(source, &mat5::open(source, &bytes)?, model),
-        FileKind::Hdf5 => arrays::read(source, &hdf5::open(source, bytes)?, model),
+        FileKind::Mat5 | FileKind::Hdf5 => arrays::read(source, &matlab::open(source, bytes)?, model),
+        FileKind::Mdf => arrays::read(source, &mdf::open(source, bytes)?, model),
         FileKind::Parquet => arrays::read(source, &parquet::open(source, bytes)?, model),
         FileKind::Csv { .. } | FileKind::Spreadsheet => Err(DataError::Foreign { file: source.file.clone() }),
     }

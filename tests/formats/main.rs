@@ -2,6 +2,8 @@
 
 mod hdf5;
 mod mat5;
+mod mdf;
+mod objects;
 mod parquet;
 
 use std::path::{Path, PathBuf};

@@ -117,16 +117,13 @@ fn a_sample_time_or_rate_serves_in_place_of_times() {
 
 #[test]
 fn what_is_no_signal_is_named() {
-    let complex = {
-        let mut variable = vector("q", q);
-        variable[8 + 9] = 0x08;
-        variable
-    };
+    let part: Vec<u8> = signal(q).iter().flat_map(|value| value.to_le_bytes()).collect();
+    let complex = matrix(0x0806, [1, COUNT as u32], "q", &[element(DOUBLE, &part), element(DOUBLE, &part)]);
     let text = matrix(4, [1, 3], "q", &[element(4, b"r\0u\0n\0")]);
     for (variable, words) in [
         (complex, "complex"),
         (text, "text"),
-        (matrix(1, [1, 1], "q", &[]), "a cell array"),
+        (matrix(1, [1, 1], "q", &[numbers("", [1, 1], &[0.0])]), "a cell array"),
         (matrix(2, [1, 2], "q", &[]), "a structure"),
         (numbers("q", [3, 20], &signal(q)), "a 3 × 20 array"),
         (numbers("q", [0, 0], &[]), "empty"),

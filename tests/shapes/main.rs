@@ -114,7 +114,7 @@ fn shapes() -> Vec<Shape> {
             &["line 7", "\"q\"", "n/a", "3 more lines", "line 10"],
         ),
         refused("an unknown unit", told(Table { units: Units::Odd, ..plain() }), &["furlong", "mm"]),
-        refused("MDF", b"MDF     4.10    asammdf\0\0\0".to_vec(), &["MDF", "asammdf"]),
+        refused("MDF 3", b"MDF     3.30    asammdf\0\0\0".to_vec(), &["MDF", "asammdf"]),
         refused("TDMS", b"TDSm\x0e\0\0\0".to_vec(), &["TDMS", "csv"]),
         refused("a letter", b"Dear Sir,\nplease find the data attached.\n".to_vec(), &["read as a table", "header"]),
         refused("nothing", b"\n\n".to_vec(), &["empty"]),

@@ -1,4 +1,4 @@
-//! What MAT files of both formats have in common: variables, structures whose fields are variables, shapes.
+//! Names of stored columns: variables, fields of structures, channels of groups; and which shapes are signals.
 
 use super::arrays::Unfit;
 
