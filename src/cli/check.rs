@@ -79,7 +79,7 @@ fn report(looked: &Looked) -> Report {
     let finding = |remark: &crate::diagnose::Remark| FindingReport {
         channel: remark.channel,
         kind: remark.kind,
-        sentence: format!("{} {}", remark.channel, remark.sentence),
+        sentence: format!("{}: {}", remark.channel, remark.sentence),
     };
     Report {
         findings: looked.remarks.iter().map(finding).collect(),
@@ -111,7 +111,7 @@ fn text(looked: &Looked) -> String {
         return text + "nothing is conspicuous\n";
     }
     for remark in &looked.remarks {
-        let _ = writeln!(text, "{} {}", remark.channel, remark.sentence);
+        let _ = writeln!(text, "{}: {}", remark.channel, remark.sentence);
     }
     text
 }

@@ -46,7 +46,7 @@ fn thinned(count: usize) -> String {
 pub(super) fn recording(looked: &Looked) -> Figure {
     let recording = &looked.opened.recording;
     let said: Vec<String> =
-        looked.remarks.iter().map(|remark| format!("{} {}.", remark.channel, remark.sentence)).collect();
+        looked.remarks.iter().map(|remark| format!("{}: {}.", remark.channel, remark.sentence)).collect();
     let said = if said.is_empty() { "Nothing is conspicuous.".into() } else { said.join(" ") };
     Figure {
         title: recording.source().into(),

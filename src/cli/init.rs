@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let looked = Waiting::on("looking", || Looked::open(&arguments.data, None, &arguments.columns))?;
     target.write(&template(&looked, &Section::parse(&arguments.data)?))?;
     for remark in &looked.remarks {
-        output::complain("note", &format!("{}: {} {}", arguments.data, remark.channel, remark.sentence));
+        output::complain("note", &format!("{}: {}: {}", arguments.data, remark.channel, remark.sentence));
     }
     Ok(())
 }
@@ -69,7 +69,7 @@ fn template(looked: &Looked, section: &Section) -> String {
     }
     text += "linear_damping = \"fit\"\nlinear_stiffness = \"fit\"\n";
     match looked.remarks.iter().find(|remark| remark.channel == "q" && remark.kind == "offset") {
-        Some(remark) => text += &format!("constant_force = \"fit\" # q {}\n", remark.sentence),
+        Some(remark) => text += &format!("constant_force = \"fit\" # q: {}\n", remark.sentence),
         None => text += "# constant_force = \"maybe\" # where q or F has an offset\n",
     }
     text + "# coulomb_friction = \"maybe\"\n# cubic_stiffness = \"maybe\"\n"

@@ -162,12 +162,16 @@ fn moving(model: &Model) -> Model {
 
 /// Whether the noise of q and q̇ of that std is hardly more than rounding.
 pub(super) fn is_noiseless(std: [Option<f64>; 2], recording: &Recording) -> [bool; 2] {
-    let samples = || (0..recording.count()).map(|index| recording.sample(index));
-    let largest = [
-        samples().map(|sample| sample.q.abs()).fold(0.0, f64::max),
-        samples().map(|sample| sample.qd.abs()).fold(0.0, f64::max),
-    ];
-    [0, 1].map(|channel| std[channel].is_some_and(|std| std < NOISELESS * largest[channel]))
+    let is_small = |channel: &str, std: f64| recording.signal(channel).is_some_and(|own| std < NOISELESS * usual(own));
+    let [q, qd] = std;
+    [q.is_some_and(|std| is_small("q", std)), qd.is_some_and(|std| is_small("qd", std))]
+}
+
+/// The size that half of a signal's readings exceed; a wild one among them does not change it.
+fn usual(values: &[f64]) -> f64 {
+    let mut sizes: Vec<f64> = values.iter().map(|value| value.abs()).filter(|size| *size > 0.0).collect();
+    let middle = sizes.len() / 2;
+    if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// What was taken otherwise than the file says.

@@ -73,6 +73,6 @@ pub(super) fn say(opened: &Opened) {
     }
     let source = opened.recording.source();
     for remark in remarks(&opened.recording) {
-        output::complain("note", &format!("{source}: {} {}", remark.channel, remark.sentence));
+        output::complain("note", &format!("{source}: {}: {}", remark.channel, remark.sentence));
     }
 }

@@ -1,13 +1,8 @@
 //! Numbers as text is given them: shares, chances, values with their std.
 
 use crate::diagnose::Law;
+pub(super) use crate::law::numerals::{digits, number, seconds};
 use crate::law::{Catalogue, Term, Units};
-
-/// Most decimals that a value is given: what is left of 16 digits for a value of some thousands.
-const MOST: i32 = 12;
-
-/// Characters of a number that is told as it is given.
-const SHORT: usize = 8;
 
 /// `19 %`, `4.5 %`, `0.32 %`, `0.0021 %`.
 pub(super) fn percent(share: f64) -> String {
@@ -31,16 +26,6 @@ pub(super) fn chance(probability: f64) -> String {
     }
 }
 
-/// A number that no std comes with: so many significant digits.
-pub(super) fn digits(value: f64, count: usize) -> String {
-    let text = format!("{value:.*e}", count - 1);
-    let exponent = text.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok()).unwrap_or(0);
-    match (-6..6).contains(&exponent) {
-        true => format!("{value:.*}", (count as i32 - 1 - exponent).max(0) as usize),
-        false => text,
-    }
-}
-
 /// An argument as a shell takes it.
 pub(super) fn quoted(argument: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./:@=+,%^".contains(c);
@@ -48,12 +33,6 @@ pub(super) fn quoted(argument: &str) -> String {
         true => argument.into(),
         false => format!("'{}'", argument.replace('\'', r"'\''")),
     }
-}
-
-/// A time without the digits that only its binary form has, s.
-pub(super) fn seconds(t: f64) -> String {
-    let text = format!("{t:.9}");
-    text.trim_end_matches('0').trim_end_matches('.').into()
 }
 
 /// `(20.35 ± 0.05) N`, `20.35 ± 0.05` where the unit is not known.
@@ -80,27 +59,6 @@ pub(super) fn noise(std: &[(impl AsRef<str>, f64)], units: &Units) -> String {
     std.iter().map(|(channel, std)| one(channel.as_ref(), *std)).collect::<Vec<_>>().join(", ")
 }
 
-/// `20.35 ± 0.05`: as many digits as the std supports, two of its own. A number that is held has no std.
-pub(super) fn number(value: f64, std: f64) -> String {
-    if std <= 0.0 || !std.is_finite() {
-        let text = value.to_string();
-        return if text.len() <= SHORT { text } else { digits(value, 6) };
-    }
-    let last = std.log10().floor() as i32 - 1;
-    let exponent = value.abs().max(std).log10().floor() as i32;
-    if (-4..6).contains(&exponent) && last > -9 {
-        let decimals = (-last).max(0) as usize;
-        return format!("{value:.decimals$} ± {std:.decimals$}");
-    }
-    if exponent - last > MOST {
-        let most = MOST as usize;
-        return format!("{value:.most$e} ± {std:.1e}");
-    }
-    let decimals = (exponent - last).max(0) as usize;
-    let scale = 10f64.powi(exponent);
-    format!("({:.decimals$} ± {:.decimals$})e{exponent}", value / scale, std / scale)
-}
-
 /// What stands behind an effect's coefficient: the catalogue's equation, the user's formula.
 pub(super) fn effect_of(term: Term, law: &Law) -> String {
     match (term, Catalogue::of(term)) {
@@ -117,25 +75,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_have_the_digits_of_their_std() {
-        for (value, std, text) in [
-            (20.3456, 0.0512, "20.346 ± 0.051"),
-            (-3.93, 0.4, "-3.93 ± 0.40"),
-            (95.0, 12.0, "95 ± 12"),
-            (5.376e-6, 2.1e-9, "(5.3760 ± 0.0021)e-6"),
-            (1.5e9, 2e7, "(1.500 ± 0.020)e9"),
-            (0.8477312848794, 3.1e-16, "8.477312848794e-1 ± 3.1e-16"),
-            (0.0, 0.012, "0.000 ± 0.012"),
-            (0.3, 0.0, "0.3"),
-        ] {
-            assert_eq!(number(value, std), text);
-        }
-    }
-
-    #[test]
     fn arguments_with_blanks_and_quotes_are_quoted() {
         assert_eq!(["a/b.csv@0:5", "run 3.csv", "q's"].map(quoted), ["a/b.csv@0:5", "'run 3.csv'", r"'q'\''s'"]);
-        assert_eq!([29.997999999999593, 0.0, -5.0, 120.0].map(seconds), ["29.998", "0", "-5", "120"]);
     }
 
     #[test]
@@ -150,8 +91,6 @@ mod tests {
     fn shares_and_chances_are_short() {
         let shares = [0.19, 0.045, 0.0032, 2.1e-5, 2.1e-9, 0.0].map(percent);
         assert_eq!(shares, ["19 %", "4.5 %", "0.32 %", "0.0021 %", "2.1e-7 %", "0 %"]);
-        let told = [0.01, 0.009996, -1234.5, 0.0, 1.5e-9].map(|value| digits(value, 3));
-        assert_eq!(told, ["0.0100", "0.0100", "-1234", "0.00", "1.50e-9"]);
         assert_eq!([0.0, 3.2e-45, 0.25].map(chance), ["< 1e-300", "3.2e-45", "0.25"]);
     }
 }

@@ -3,6 +3,7 @@
 use super::DataError;
 use super::header::{Column, Headings, Layout, TimeBase};
 use super::rows::{Rows, Signals, Source};
+use crate::identify::Recording;
 use crate::law::Model;
 
 /// Why a stored column cannot be a signal.
@@ -96,7 +97,7 @@ fn check_lengths(source: &Source, stored: &[Stored]) -> Result<(), DataError> {
 fn cell(source: &Source, stored: &[Stored], column: &Column, index: usize) -> Result<f64, DataError> {
     let values = stored.iter().find(|stored| stored.column == column).map_or(&[][..], |stored| &stored.values);
     match values.get(index) {
-        Some(value) if value.is_finite() => Ok(value * column.factor),
+        Some(value) if Recording::is_reading(*value) => Ok(value * column.factor),
         value => Err(DataError::NotFinite {
             file: source.file.clone(),
             kind: source.kind,

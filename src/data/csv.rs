@@ -11,6 +11,7 @@ use super::number::number;
 use super::preamble;
 use super::rows::{Rows, Signals, Source};
 use super::text::Text;
+use crate::identify::Recording;
 use crate::law::Model;
 
 /// Rows from which columns without names are told apart.
@@ -133,7 +134,7 @@ impl<'a> Reader<'a> {
 fn cell(source: &Source, dialect: &Dialect, cells: &[&str], column: &Column, line: u64) -> Result<f64, DataError> {
     let text = cells.get(column.index).copied().unwrap_or_default();
     match number(text, dialect.decimal) {
-        Some(number) if number.is_finite() => Ok(number * column.factor),
+        Some(number) if Recording::is_reading(number) => Ok(number * column.factor),
         _ if text.is_empty() => {
             Err(DataError::EmptyCell { file: source.file.clone(), line, column: column.header.clone() })
         }

@@ -155,7 +155,7 @@ pub enum DataError {
     },
     /// A value that is missing or infinite.
     #[error(
-        "{file}: {0} {row}: {1} \"{column}\" is {value}, no finite number: correct it or delete the {0}",
+        "{file}: {0} {row}: {1} \"{column}\" is {value}, not a finite number, or one that no sensor reads: correct it or delete the {0}",
         kind.row(), kind.column()
     )]
     NotFinite {
@@ -367,7 +367,7 @@ pub enum DataError {
     },
     /// A cell that is no number.
     #[error(
-        "{file}: line {line}: column \"{column}\": \"{text}\" is not a finite number: correct it or delete the line"
+        "{file}: line {line}: column \"{column}\": \"{text}\" is not a finite number, or one that no sensor reads: correct it or delete the line"
     )]
     Cell {
         /// The file.

@@ -50,8 +50,10 @@ pub enum RecordingError {
         /// How many it must have.
         expected: usize,
     },
-    /// A value that is infinite or none.
-    #[error("{source_name}: {channel} of sample {index} is no finite number: correct it or leave the sample out")]
+    /// A value that is infinite, none, or so large that its square is.
+    #[error(
+        "{source_name}: {channel} of sample {index} is not a finite number, or one that no sensor reads: correct it or leave the sample out"
+    )]
     NotFinite {
         /// Where it came from.
         source_name: String,
@@ -97,6 +99,14 @@ impl Recording {
     /// Fewest samples of a recording.
     pub const MINIMUM: usize = 10;
 
+    /// Largest reading of one: the square of a larger one is no number, and no sensor reads it.
+    pub const LARGEST: f64 = 1e150;
+
+    /// Whether a value is a reading that can be computed with.
+    pub fn is_reading(value: f64) -> bool {
+        value.abs() <= Recording::LARGEST
+    }
+
     /// A recording from signals in SI units; `source` names it in messages.
     ///
     /// # Errors
@@ -141,7 +151,7 @@ impl Recording {
         if found != expected {
             return Err(RecordingError::Length { source_name, channel, found, expected });
         }
-        match values.iter().position(|value| !value.is_finite()) {
+        match values.iter().position(|value| !Recording::is_reading(*value)) {
             Some(index) => Err(RecordingError::NotFinite { source_name, channel, index }),
             None => Ok(()),
         }

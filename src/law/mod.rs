@@ -25,6 +25,7 @@ mod model_error;
 mod model_file;
 mod motion;
 mod named_laws;
+pub(crate) mod numerals;
 mod quadrature;
 mod reversal;
 mod series;

@@ -49,7 +49,7 @@ fn a_clean_recording_is_not_remarked_on() {
 fn each_fault_of_a_sensor_is_named() {
     let bench = Bench::new("faults");
     type Fault = fn(usize, &mut [f64; 4]);
-    let cases: [(&str, Fault); 13] = [
+    let cases: [(&str, Fault); 14] = [
         ("q wild", |index, row| {
             if index == 1000 {
                 row[1] = 1e6
@@ -57,9 +57,10 @@ fn each_fault_of_a_sensor_is_named() {
         }),
         ("q wild", |index, row| {
             if index == 1000 {
-                row[1] = 1e308
+                row[1] = 1e100
             }
         }),
+        ("qd drift", |_, row| row[1] += 0.05 * row[0]),
         ("qd wild", |index, row| {
             if index % 500 == 77 {
                 row[2] += 0.5
@@ -100,7 +101,7 @@ fn every_command_says_what_is_conspicuous() {
     for command in ["identify", "compare", "limits", "diagnose"] {
         let output = bench.run(&[command, "turned.csv", "--model", "model.toml"]);
         let said = String::from_utf8(output.stderr).unwrap();
-        assert!(said.contains("note: turned.csv: qd has the sign of"), "{command}: {said}");
+        assert!(said.contains("note: turned.csv: qd: has the sign of"), "{command}: {said}");
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::locate::{Bounds, Fail, Over};
 use crate::law::Units;
+use crate::law::numerals::digits;
 
 /// A magnitude's region that begins at this part of its upper end begins at zero, but for where the plant stands still.
 const NEAR_ZERO: f64 = 0.1;
@@ -73,7 +74,7 @@ impl Fail {
         let frequency = period.recip();
         let (lower, upper) = (self.bounds.lower.unwrap_or(0.0), self.bounds.upper.unwrap_or(f64::INFINITY));
         let inside = |multiple: f64| lower < (multiple + NEAR) * frequency && (multiple - NEAR) * frequency < upper;
-        let shown = number(frequency);
+        let shown = digits(frequency, 3);
         match () {
             () if self.bounds.upper.is_none() => "at the high frequencies".into(),
             () if inside(1.0) => format!("around the frequency of the motion, {shown} Hz"),
@@ -116,7 +117,7 @@ impl Bounds {
 
     pub(super) fn text(self, over: Over, units: &Units) -> String {
         let (name, unit) = (over.symbol(), over.unit(units));
-        match (self.lower.map(number), self.upper.map(number)) {
+        match (self.lower.map(shown), self.upper.map(shown)) {
             (None, Some(upper)) => format!("within {name} < {upper}{unit}"),
             (Some(lower), None) => format!("at {name} > {lower}{unit}"),
             (Some(lower), Some(upper)) => format!("within {lower}{unit} < {name} < {upper}{unit}"),
@@ -125,7 +126,7 @@ impl Bounds {
     }
 
     fn time(self) -> String {
-        match (self.lower.map(number), self.upper.map(number)) {
+        match (self.lower.map(shown), self.upper.map(shown)) {
             (None, Some(upper)) => format!("before t = {upper} s"),
             (Some(lower), None) => format!("after t = {lower} s"),
             (Some(lower), Some(upper)) => format!("between t = {lower} s and {upper} s"),
@@ -134,7 +135,7 @@ impl Bounds {
     }
 
     fn band(self) -> String {
-        match (self.lower.map(number), self.upper.map(number)) {
+        match (self.lower.map(shown), self.upper.map(shown)) {
             (None, Some(upper)) => format!("below {upper} Hz"),
             (Some(lower), None) => format!("above {lower} Hz"),
             (Some(lower), Some(upper)) => format!("between {lower} and {upper} Hz"),
@@ -143,15 +144,9 @@ impl Bounds {
     }
 }
 
-/// Three significant digits.
-pub(super) fn number(value: f64) -> String {
-    let exponent = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
-    if (-4..6).contains(&exponent) {
-        let decimals = (2 - exponent).max(0) as usize;
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.2e}")
-    }
+/// A bound: three significant digits.
+fn shown(value: f64) -> String {
+    digits(value, 3)
 }
 
 #[cfg(test)]

@@ -36,8 +36,10 @@ pub struct Kinematics {
     pub scale: f64,
     /// Std of it.
     pub scale_std: f64,
-    /// What q̇ reads where nothing moves.
+    /// What q̇ reads where nothing moves; less where q moves on without it.
     pub offset: f64,
+    /// Std of it.
+    pub offset_std: f64,
     /// Share of q̇'s variance that the derivative of q explains.
     pub explained: f64,
     /// Whether q̇ is computed from q, so that it is no second measurement.
@@ -72,6 +74,7 @@ impl Kinematics {
             scale,
             scale_std: std[0],
             offset: found.solution[2],
+            offset_std: std[2],
             explained: 1.0 - left / spread,
             is_derivative: shared(pieces, tracks, &residuals)? > SHARED,
         })

@@ -2,13 +2,15 @@
 
 use super::remark::Remark;
 use crate::identify::Recording;
+use crate::law::numerals::{digits, seconds};
+use std::ops::Range;
 
 /// Robust std by which a reading stands off the middle of its neighbours before it is wild: noise alone never does, and the neighbours'
 /// own differences must show its mirror image.
 const WILD: f64 = 12.0;
 
 /// Least share of a wild reading's height that its neighbours' differences show, of one half, and the most.
-const MIRRORED: std::ops::Range<f64> = 0.35..0.65;
+const MIRRORED: Range<f64> = 0.35..0.65;
 
 /// Std ÷ step from which on steps are no coarse ones: the rounding error is then below a thousandth of the motion.
 const FINE: f64 = 300.0;
@@ -43,8 +45,9 @@ pub(super) fn remarks(recording: &Recording) -> Vec<Remark> {
         let others: Vec<&[f64]> =
             signals.iter().filter(|(other, _)| other != channel).map(|(_, values)| *values).collect();
         let moves = *channel != "F";
-        said.extend(wild(t, values, moves).map(|sentence| Remark::new(channel, "wild", sentence)));
-        said.extend(stuck(t, values, &others).map(|sentence| Remark::new(channel, "stuck", sentence)));
+        let wild = wild(t, values, moves);
+        said.extend(wild_words(t, values, &wild).map(|sentence| Remark::new(channel, "wild", sentence)));
+        said.extend(stuck(values, &others).map(|run| Remark::new(channel, "stuck", stuck_words(t, values, &run))));
         said.extend(clipped(values).map(|sentence| Remark::new(channel, "clipped", sentence)));
         if moves {
             said.extend(coarse(values).map(|sentence| Remark::new(channel, "coarse", sentence)));
@@ -54,13 +57,16 @@ pub(super) fn remarks(recording: &Recording) -> Vec<Remark> {
     said
 }
 
+/// How far a reading stands off the line between its neighbours.
+fn bend(t: &[f64], values: &[f64], at: usize) -> f64 {
+    let part = (t[at] - t[at - 1]) / (t[at + 1] - t[at - 1]);
+    values[at] - (1.0 - part) * values[at - 1] - part * values[at + 1]
+}
+
 /// Readings that stand alone: beside each spike its neighbours' bends show its mirror images. What is no motion may be a blow, as an
 /// excitation may, and is wild only where it leaves the range of all other readings by more than that range.
-fn wild(t: &[f64], values: &[f64], moves: bool) -> Option<String> {
-    let bend = |at: usize| {
-        let part = (t[at] - t[at - 1]) / (t[at + 1] - t[at - 1]);
-        values[at] - (1.0 - part) * values[at - 1] - part * values[at + 1]
-    };
+pub(super) fn wild(t: &[f64], values: &[f64], moves: bool) -> Vec<usize> {
+    let bend = |at: usize| bend(t, values, at);
     let mut sizes: Vec<f64> = (1..values.len() - 1).map(|at| bend(at).abs()).collect();
     let middle = sizes.len() / 2;
     let usual = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745;
@@ -68,15 +74,19 @@ fn wild(t: &[f64], values: &[f64], moves: bool) -> Option<String> {
     let mirrored = |at: usize, other: usize| MIRRORED.contains(&(-bend(other) / bend(at)));
     let is_wild = |at: &usize| bend(*at).abs() > WILD * usual && mirrored(*at, at - 1) && mirrored(*at, at + 1);
     let found: Vec<usize> = (2..values.len().saturating_sub(2)).filter(is_wild).collect();
-    let found = if moves { found } else { beyond(values, &found) };
-    let largest = found.iter().copied().max_by(|a, b| bend(*a).abs().total_cmp(&bend(*b).abs()))?;
-    let readings = if found.len() == 1 { "reading stands" } else { "readings stand" };
-    Some(format!(
-        "{} single {readings} far off their neighbours, the largest with {:.4e} at {} s: correct or delete them, a law pays for each",
-        found.len(),
-        values[largest],
-        t[largest]
-    ))
+    if moves { found } else { beyond(values, &found) }
+}
+
+fn wild_words(t: &[f64], values: &[f64], found: &[usize]) -> Option<String> {
+    let size = |at: usize| bend(t, values, at).abs();
+    let largest = found.iter().copied().max_by(|a, b| size(*a).total_cmp(&size(*b)))?;
+    let at = format!("{} at {} s", digits(values[largest], 4), seconds(t[largest]));
+    Some(match found.len() {
+        1 => format!("one reading stands far off its neighbours, {at}: correct or delete it"),
+        count => {
+            format!("{count} single readings stand far off their neighbours, the largest {at}: correct or delete them")
+        }
+    })
 }
 
 /// Those of the readings found that leave the range of all the others by more than that range.
@@ -101,8 +111,9 @@ fn runs(values: &[f64]) -> impl Iterator<Item = (usize, usize)> {
     starts.zip(ends)
 }
 
-/// The longest run of equal readings, where chance does not explain it and another channel goes on meanwhile as it does elsewhere.
-fn stuck(t: &[f64], values: &[f64], others: &[&[f64]]) -> Option<String> {
+/// The longest run of equal readings, where chance does not explain it and another channel goes on meanwhile as it does elsewhere. At an
+/// end of the range a sensor is clipped, not stuck.
+pub(super) fn stuck(values: &[f64], others: &[&[f64]]) -> Option<Range<usize>> {
     let (start, end) = runs(values).max_by_key(|(start, end)| end - start)?;
     let length = end - start;
     let repeats = values.len() - runs(values).count() - length;
@@ -112,16 +123,18 @@ fn stuck(t: &[f64], values: &[f64], others: &[&[f64]]) -> Option<String> {
         let [low, high] = ends(part);
         spread(other) > 0.0 && high - low > spread(other) && runs(part).count() > part.len() / 2
     };
-    if length as f64 * -rate.ln() < STUCK || others.is_empty() || !others.iter().any(goes_on) {
-        return None;
-    }
-    Some(format!(
-        "reads {:.6e} without a change from {} s to {} s ({} samples) while the others go on: stuck; leave that stretch out",
-        values[start],
-        t[start],
-        t[end],
-        length + 1
-    ))
+    let at_end = ends(values).contains(&values[start]);
+    let is_stuck = length as f64 * -rate.ln() >= STUCK && !at_end && others.iter().any(goes_on);
+    is_stuck.then_some(start..end + 1)
+}
+
+fn stuck_words(t: &[f64], values: &[f64], run: &Range<usize>) -> String {
+    let [from, to] = [run.start, run.end - 1].map(|at| seconds(t[at]));
+    let (value, count) = (digits(values[run.start], 4), run.len());
+    format!(
+        "reads {value} without a change from {from} s to {to} s ({count} samples) while others go on: stuck; leave that stretch out, \
+         with DATA@…:{from} and DATA@{to}:…"
+    )
 }
 
 fn ends(values: &[f64]) -> [f64; 2] {
@@ -155,7 +168,7 @@ fn clipped(values: &[f64]) -> Option<String> {
     if found.is_empty() || has_few_levels(values) {
         return None;
     }
-    let at: Vec<String> = found.iter().map(|(end, _)| format!("{end:.4e}")).collect();
+    let at: Vec<String> = found.iter().map(|(end, _)| digits(*end, 4)).collect();
     let share = found.iter().map(|(_, held)| held).sum::<usize>() as f64 / values.len() as f64;
     Some(format!(
         "stays at {} in {:.1} % of the samples: clipped; what lies beyond is lost, take a wider range",
@@ -190,7 +203,8 @@ fn coarse(values: &[f64]) -> Option<String> {
     let is_stepped = values.windows(2).filter(whole).count() as f64 > 0.95 * (count - 1.0);
     (step > 0.0 && spread < FINE * step && repeated > REPEATED && is_stepped).then(|| {
         format!(
-            "is read in steps of {step:.3e}, 1/{:.0} of its std: the rounding is noise that is no white one at slow motion",
+            "is read in steps of {}, 1/{:.0} of its std: the rounding is noise that is no white one at slow motion",
+            digits(step, 3),
             spread / step
         )
     })
@@ -200,7 +214,8 @@ fn coarse(values: &[f64]) -> Option<String> {
 fn beside(values: &[f64]) -> Option<String> {
     let (mean, spread) = (mean(values), spread(values));
     (mean.abs() > OFFSET * spread).then(|| {
-        format!("swings by {spread:.3e} (std) about {mean:.3e}: subtract the offset, or give the law a constant_force")
+        let (spread, mean) = (digits(spread, 3), digits(mean, 3));
+        format!("swings by {spread} (std) about {mean}: subtract the offset, or give the law a constant_force")
     })
 }
 
@@ -216,13 +231,13 @@ mod tests {
     fn a_clean_signal_is_not_remarked_on() {
         let (t, values): (Vec<f64>, Vec<f64>) = ((0..4000).map(f64::from).collect(), sine());
         let cosine: Vec<f64> = t.iter().map(|t| (0.013 * t).cos()).collect();
-        assert_eq!((wild(&t, &values, true), stuck(&t, &values, &[&cosine]), clipped(&values)), (None, None, None));
+        assert_eq!((wild(&t, &values, true), stuck(&values, &[&cosine]), clipped(&values)), (vec![], None, None));
         assert_eq!((coarse(&values), beside(&values)), (None, None));
         let rounded: Vec<f64> = values.iter().map(|value| (value * 50.0).round() / 50.0).collect();
-        assert_eq!((wild(&t, &rounded, true), clipped(&rounded)), (None, None));
-        assert!(coarse(&rounded).unwrap().contains("2.000e-2"));
+        assert_eq!((wild(&t, &rounded, true), clipped(&rounded)), (vec![], None));
+        assert!(coarse(&rounded).unwrap().contains("steps of 0.0200"));
         let square: Vec<f64> = values.iter().map(|value| value.signum()).collect();
-        assert_eq!((wild(&t, &square, true), clipped(&square)), (None, None));
+        assert_eq!((wild(&t, &square, true), clipped(&square)), (vec![], None));
     }
 
     #[test]
@@ -232,14 +247,20 @@ mod tests {
         for size in [0.3, 1e6, 1e308] {
             let mut spiked = values.clone();
             spiked[700] = size;
-            assert!(wild(&t, &spiked, true).unwrap().contains("at 700 s"), "{size}");
-            assert_eq!(wild(&t, &spiked, false).is_some(), size > 3.0, "{size}");
+            assert_eq!(wild(&t, &spiked, true), [700], "{size}");
+            assert!(wild_words(&t, &spiked, &[700]).unwrap().contains("at 700 s"), "{size}");
+            assert_eq!(wild(&t, &spiked, false).is_empty(), size < 3.0, "{size}");
         }
         let mut held = values.clone();
         held[1000..1400].fill(values[1000]);
-        assert!(stuck(&t, &held, &[&cosine]).unwrap().contains("from 1000 s to 1399 s"));
+        let run = stuck(&held, &[&cosine]).unwrap();
+        assert_eq!(run, 1000..1400);
+        assert!(stuck_words(&t, &held, &run).contains("from 1000 s to 1399 s (400 samples)"));
+        // A sensor at the end of its range is clipped.
+        held[1000..1400].fill(2.0);
+        assert_eq!(stuck(&held, &[&cosine]), None);
         let cut: Vec<f64> = values.iter().map(|value| value.clamp(-0.8, 2.0)).collect();
-        assert!(clipped(&cut).unwrap().contains("stays at -8.0000e-1"));
+        assert!(clipped(&cut).unwrap().contains("stays at -0.8000 in"));
         assert!(beside(&values.iter().map(|value| value + 9.0).collect::<Vec<_>>()).is_some());
     }
 }

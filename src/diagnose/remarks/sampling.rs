@@ -2,6 +2,7 @@
 
 use super::remark::Remark;
 use crate::identify::Recording;
+use crate::law::numerals::{digits, seconds};
 
 /// Share of the usual distance of two samples by which distances differ before a clock is called uneven: times that are rounded to a
 /// tenth of it stay below.
@@ -10,8 +11,8 @@ const UNEVEN: f64 = 0.1;
 /// Distance of two samples in usual ones from which one at least is lost: half a sample beyond the usual.
 const LOST: f64 = 1.5;
 
-/// Fewest samples of a natural period that weak windows of a tenth of it still resolve.
-const FEW: f64 = 10.0;
+/// Fewest samples of a natural period that weak windows of a tenth of it still resolve, and that show how fast the motion is.
+pub(super) const FEW: f64 = 10.0;
 
 /// Remarks on the times.
 pub(super) fn remarks(recording: &Recording, period: Option<f64>) -> Vec<Remark> {
@@ -20,11 +21,15 @@ pub(super) fn remarks(recording: &Recording, period: Option<f64>) -> Vec<Remark>
     let mut said = Vec::new();
     let lost: Vec<(f64, f64)> = distances().filter(|(_, distance)| *distance > LOST * usual).collect();
     let missing: f64 = lost.iter().map(|(_, distance)| (distance / usual).round() - 1.0).sum();
-    if let Some((first, _)) = lost.first().filter(|_| missing >= 1.0) {
+    // What is lost is missing in the count over the whole record; after a reading that only came late the next one comes the sooner.
+    let t = recording.t();
+    let in_all = (t[t.len() - 1] - t[0]) / usual + 1.0 - t.len() as f64;
+    if let Some((first, _)) = lost.first().filter(|_| missing >= 1.0 && in_all > 0.5 * missing) {
         let share = 100.0 * missing / (missing + recording.count() as f64);
         let sentence = format!(
-            "{missing} samples are missing in {} places ({share:.2} %), the first after {first} s: nothing is known of the motion there",
-            lost.len()
+            "{missing} samples are missing in {} places ({share:.2} %), the first after {} s: nothing is known of the motion there",
+            lost.len(),
+            seconds(*first)
         );
         said.push(Remark::new("t", "lost", sentence));
     }
@@ -33,9 +38,10 @@ pub(super) fn remarks(recording: &Recording, period: Option<f64>) -> Vec<Remark>
     let spread = (whole().map(|distance| (distance - usual).powi(2)).sum::<f64>() / count).sqrt() / usual;
     if spread > UNEVEN {
         let sentence = format!(
-            "the distance of two samples varies by {:.0} % (std) about {usual:.4e} s: times are used as they are; where they are those \
+            "the distance of two samples varies by {:.0} % (std) about {} s: times are used as they are; where they are those \
              of a computer and not of the sensor, a rate in their place is nearer the truth",
-            100.0 * spread
+            100.0 * spread,
+            digits(usual, 4)
         );
         said.push(Remark::new("t", "uneven", sentence));
     }

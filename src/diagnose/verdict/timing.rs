@@ -5,6 +5,7 @@ use super::errors::TIE;
 use super::law::Law;
 use crate::diagnose::judge::{COUNT, delay_of};
 use crate::law::Term;
+use crate::law::numerals::{digits, number};
 
 /// Std that a delay must be away from 0 to be said.
 const SURE: f64 = 3.0;
@@ -50,11 +51,12 @@ impl Clock {
     /// What is to be said of it, one sentence each; nothing where all is in time.
     pub fn sentences(&self) -> Vec<String> {
         let late = |[delay, std]: [f64; 2]| delay.abs() > SURE * std && delay.abs() > 0.5 * self.sample_time;
-        let milliseconds = |[delay, std]: [f64; 2]| format!("{:.2} ± {:.2} ms", 1e3 * delay.abs(), 1e3 * std);
+        let milliseconds = |[delay, std]: [f64; 2]| format!("{} ms", number(1e3 * delay.abs(), 1e3 * std));
         let mut said = Vec::new();
         if let Some(wandering) = self.wandering {
             said.push(format!(
-                "q drifts by {wandering:.3e} over the record: taken out before anything was judged; mend its sensor"
+                "q drifts by {} over the record: taken out before anything was judged; mend its sensor",
+                digits(wandering, 3)
             ));
         }
         match (self.is_derivative, self.is_velocity) {
@@ -67,7 +69,7 @@ impl Clock {
         if let Some(scale) =
             self.scale.filter(|scale| (scale.abs() - 1.0).abs() > 0.05 && self.is_velocity == Some(true))
         {
-            said.push(format!("qd is {scale:.3} times the derivative of q: check its unit"));
+            said.push(format!("qd is {} times the derivative of q: check its unit", digits(scale, 4)));
         }
         if self.scale.is_some_and(|scale| scale < 0.0) && self.is_velocity == Some(true) {
             said.push("qd has the sign of −q̇".into());
