@@ -163,7 +163,10 @@ fn over_stages(found: &Found) -> String {
         }
         [] => format!("nothing is missing in any of {count} stages: the law switches, its form stays"),
         [one] => format!("missing in stage {} of {count} only: {}", one.0 + 1, one.1),
-        several if all_same && several.len() == count => format!("missing in all {count} stages: {}", several[0].1),
+        several if all_same && several.len() == count => {
+            let all = if count == 2 { "both".into() } else { format!("all {count}") };
+            format!("missing in {all} stages: {}", several[0].1)
+        }
         several => format!("missing: {} ({count} stages)", several.iter().map(stage).collect::<Vec<_>>().join(", ")),
     }
 }

@@ -5,6 +5,7 @@
 //! stand what the sensors alone would leave ([`floor`]) and how likely a gain is by chance ([`significance`]).
 
 mod beginning;
+mod change;
 mod drift;
 mod driven;
 mod equation;
@@ -17,6 +18,7 @@ mod regression;
 mod significance;
 mod windows;
 
+pub(super) use change::changes;
 pub(super) use drift::{Drift, drift};
 pub use equation::Target;
 pub(super) use equation::{Equation, delay_of};

@@ -9,7 +9,7 @@ use super::law::Law;
 use super::sharpen::sharpened;
 use super::timing::Clock;
 use crate::diagnose::candidates::contender;
-use crate::diagnose::judge::{COUNT, delay_of};
+use crate::diagnose::judge::{COUNT, changes, delay_of};
 use crate::identify::Recording;
 use crate::law::{Effect, Given, Hold, Inner, Model, ModelTerm, Term};
 use std::cell::OnceCell;
@@ -84,6 +84,11 @@ impl Posed {
     /// Errors of a law whose numbers are held, and whether they are what the sensors alone would leave.
     pub fn errors_of(&self, law: &Law) -> Option<([WindowError; COUNT], bool)> {
         self.case.errors_as_given(law)
+    }
+
+    /// Instants at which the recordings may have changed their law, in seconds of recorded time, gaps left out.
+    pub(super) fn changes(&self) -> Vec<f64> {
+        self.case.stand(&self.terms).map_or_else(Vec::new, |standing| changes(&self.case.record, &standing.equation))
     }
 
     /// A law with the numbers of largest likelihood, where they leave no more than the judge's own.

@@ -1,6 +1,6 @@
 //! Records that switch, diagnosed stage by stage.
 //!
-//! The streaming identifier says where the law may switch. An effect that the model lacks can raise alarms of its own, so the stages are
+//! The judge's equations say where the law may change. What the model lacks can look like a change, so the stages are
 //! taken only where their laws, each with the effect that it lacks, leave much less of the record than one law with the effect that it
 //! lacks: by the judge's held-out errors, in every window.
 
@@ -9,8 +9,8 @@ use super::errors::WindowError;
 use super::posed::Posed;
 use super::timing::Clock;
 use crate::diagnose::judge::COUNT;
-use crate::identify::{Recording, Settings, identify_recording, settings_for};
-use crate::law::{Given, Hold, Model, Term};
+use crate::identify::Recording;
+use crate::law::{Hold, Model};
 
 /// Ratio of errors, in every window, below which a record's stages are laws of their own: half the error's energy.
 const APART: f64 = 0.7;
@@ -51,11 +51,10 @@ pub fn diagnose_stages(model: &Model, recordings: &[&Recording], hold: Option<Ho
     if whole.as_ref().is_some_and(|whole| whole.finding == Finding::Adequate || whole.is_down_to_sensors()) {
         return one(whole);
     }
-    let held = hold.or(model.hold).or(whole.as_ref().map(|whole| whole.base.timing.hold)).unwrap_or(Hold::Linear);
     let cuts: Vec<(usize, Recording)> = recordings
         .iter()
         .enumerate()
-        .flat_map(|(index, recording)| cuts(model, recording, held).into_iter().map(move |stage| (index, stage)))
+        .flat_map(|(index, recording)| cuts(model, recording, hold).into_iter().map(move |stage| (index, stage)))
         .collect();
     if cuts.len() <= recordings.len() {
         return one(whole);
@@ -89,18 +88,26 @@ impl Switched {
     }
 }
 
-/// The recording cut where the streaming identifier sees a switch; whole where the model is not for it.
-fn cuts(model: &Model, recording: &Recording, hold: Hold) -> Vec<Recording> {
-    let mut free = model.clone();
-    free.terms.iter_mut().for_each(|entry| entry.given = Given::Fit);
-    let settings = Settings { hold, ..settings_for(recording, Settings::default()) };
-    let moves = model.terms.iter().any(|entry| entry.term == Term::Inertia);
-    let found = moves.then(|| identify_recording(&free, settings, recording, |_, _| {}).ok()).flatten();
-    let alarms = found.map(|found| found.stages).unwrap_or_default();
-    let starts = alarms.iter().filter(|stage| stage.detected.is_some()).map(|stage| stage.start);
-    let at = starts.map(|start| recording.t().partition_point(|t| *t < start));
+/// The recording cut where its law may have changed.
+fn cuts(model: &Model, recording: &Recording, hold: Option<Hold>) -> Vec<Recording> {
+    let changes = Posed::new(model, &[recording], hold).map(|posed| posed.changes()).unwrap_or_default();
+    let at = changes.into_iter().map(|elapsed| position(recording, elapsed));
     let at: Vec<usize> = std::iter::once(0).chain(at).chain([recording.count()]).collect();
     at.windows(2).filter_map(|pair| recording.section(pair[0]..pair[1]).ok()).collect()
+}
+
+/// The first sample after so much recorded time, s.
+fn position(recording: &Recording, elapsed: f64) -> usize {
+    let t = recording.t();
+    let mut before = 0.0;
+    for piece in recording.pieces() {
+        let length = t[piece.end - 1] - t[piece.start];
+        if elapsed <= before + length {
+            return piece.start + t[piece.clone()].partition_point(|own| *own - t[piece.start] < elapsed - before);
+        }
+        before += length;
+    }
+    recording.count()
 }
 
 fn alone(model: &Model, recording: usize, samples: Recording, hold: Option<Hold>) -> StageDiagnosis {
