@@ -50,7 +50,7 @@ usage: cargo xtask CHORE
                      a real record that switches and drifts, FOLDER that of dropbear.csv
   study [--help]     the published method, ours and what is possible: measures what is missing in
                      target/study, writes docs/study.md and its pictures
-  real [--only NAME].. [--json OUT] [--switchid PATH]
+  real [--only NAME].. [--json OUT] [--switchid PATH] [--page]
                      what the command line makes of the real records in $SWITCHID_DATA, beside an
                      independent regression's answers; status 1 where a figure misses its floor.
                      NAME is a record, transfer or silverbox; PATH is a built command line

@@ -11,6 +11,7 @@ mod figure;
 mod identify;
 mod improve;
 mod options;
+mod page;
 mod reference;
 mod score;
 mod silverbox;
@@ -57,6 +58,9 @@ pub fn real(arguments: &[String]) -> Result<(), Error> {
     let parts = PARTS.iter().filter(|part| options.wants(part)).count();
     let mut steps = Steps::new(1 + wanted.len() + parts);
     let binary = steps.run("switchid", || Binary::new(options.switchid.as_deref()))?;
+    if options.page {
+        return page(&mut steps, &binary, &wanted, &folder);
+    }
     let mut measured = Measured::default();
     for record in wanted {
         steps.run(&record.name, || measured.record(&binary, record, &folder))?;
@@ -66,6 +70,17 @@ pub fn real(arguments: &[String]) -> Result<(), Error> {
     measured.print();
     measured.write(options.json.as_deref())?;
     measured.missed()
+}
+
+/// The page of records.
+const PAGE: &str = "docs/real-records.md";
+
+fn page(steps: &mut Steps, binary: &Binary, records: &[&Record], folder: &Path) -> Result<(), Error> {
+    let mut page = page::Page::begin(&crate::command::root().join(PAGE))?;
+    for record in records {
+        steps.run(&record.name, || page.add(binary, record, &path(folder, &record.file)))?;
+    }
+    page.write()
 }
 
 /// The directory of recordings, once it has all that are measured.

@@ -10,6 +10,8 @@ pub struct Options {
     pub switchid: Option<PathBuf>,
     /// Where to write all that was measured as JSON.
     pub json: Option<PathBuf>,
+    /// Whether to write the page of records in place of measuring.
+    pub page: bool,
     /// Parts to measure; empty: all.
     pub only: Vec<String>,
 }
@@ -27,6 +29,7 @@ impl Options {
             match argument.as_str() {
                 "--switchid" => options.switchid = Some(value()?.into()),
                 "--json" => options.json = Some(value()?.into()),
+                "--page" => options.page = true,
                 "--only" => options.only.push(known(value()?, names)?),
                 _ => return Err(usage(format!("real knows no \"{argument}\""))),
             }
