@@ -29,7 +29,7 @@ const ALIKE: f64 = 0.85;
 pub(super) struct Arguments {
     /// The effect
     effect: String,
-    /// The recordings (CSV with a header, MAT or Parquet), or sections of them: DATA@t0:t1 in seconds
+    /// The recordings (text, spreadsheet, MAT, MDF 4 or Parquet), or sections of them: DATA@t0:t1 in seconds
     #[arg(long, required = true, num_args = 1..)]
     data: Vec<String>,
     #[command(flatten)]

@@ -48,6 +48,7 @@ impl ColumnArguments {
                 return Err(refused(&format!("{} is given twice", name.trim())));
             }
         }
+        let is_silent = model.columns.guesses();
         let columns = &mut model.columns;
         let pairs = [
             (&mut columns.t, named.t),
@@ -58,6 +59,8 @@ impl ColumnArguments {
         for (slot, named) in pairs {
             *slot = named.or(slot.take());
         }
+        // What one option names is no word on the other columns, unless the model has one.
+        columns.rest_is_guessed = is_silent && !self.columns.is_empty();
         Ok(())
     }
 }

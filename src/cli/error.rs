@@ -1,5 +1,6 @@
 //! Why a command did not do its work.
 
+use super::words::digits;
 use crate::data::DataError;
 use crate::fmu::FmuError;
 use crate::identify::BuildError;
@@ -86,8 +87,9 @@ pub(super) enum CommandError {
     },
     /// A window that no part of a record fills.
     #[error(
-        "--window {window} s does not fit this record: it must lie between {least:.4e} s (four samples) and {most:.4e} s (half of \
-         the record); leave it out to have one chosen"
+        "--window {window} s does not fit this record: it must lie between {} s (four samples) and {} s (half of the record); leave it \
+         out to have one chosen",
+        digits(*least, 4), digits(*most, 4)
     )]
     Window {
         /// What was asked for, s.

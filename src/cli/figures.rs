@@ -1,6 +1,7 @@
 //! What commands found, as figures.
 
 use super::course::Course;
+use super::failing::{Along, MARKED, failing};
 use super::input::Input;
 use super::looked::Looked;
 use super::words::percent;
@@ -78,8 +79,7 @@ pub(super) fn stages(opened: &Opened, found: &Identification, course: &Course) -
     let has = |series: &[[f64; 2]]| series.iter().any(|[value, _]| value.is_finite() && *value != 0.0);
     for (coefficient, series) in terms.iter().zip(&course.coefficients).filter(|(_, series)| has(series)) {
         let edge = |(t, [value, std]): (&f64, &[f64; 2])| [*t, value - std, value + std];
-        let known = |edge: &[f64; 3]| edge.iter().all(|value| value.is_finite());
-        let edges: Vec<[f64; 3]> = course.t.iter().zip(series).map(edge).filter(known).collect();
+        let edges: Vec<[f64; 3]> = course.t.iter().zip(series).map(edge).collect();
         let values: Vec<f64> = series.iter().map(|[value, _]| *value).collect();
         let symbol = Some(coefficient.term.symbol()).filter(|symbol| !symbol.is_empty()).unwrap_or_else(|| "1".into());
         let mut layers: Vec<Layer> = bands(false).collect();
@@ -101,7 +101,8 @@ fn sober(edges: Vec<[f64; 3]>, values: &[f64]) -> Vec<[f64; 3]> {
     let finite = || values.iter().copied().filter(|value| value.is_finite());
     let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
     let room = (high - low).max(0.05 * high.abs().max(low.abs()));
-    edges.into_iter().map(|[t, lower, upper]| [t, lower.max(low - room), upper.min(high + room)]).collect()
+    let within = |value: f64| if value.is_finite() { value.clamp(low - room, high + room) } else { f64::NAN };
+    edges.into_iter().map(|[t, lower, upper]| [t, within(lower), within(upper)]).collect()
 }
 
 /// What a law leaves over of the force: beside the force, and over t, q, q̇ and frequency.
@@ -114,16 +115,14 @@ pub(super) fn comparison(found: &Comparison) -> Figure {
     let left = label("left over", found.units.excitation().map(|unit| unit.symbol));
     let noise: Vec<[f64; 3]> = places.iter().map(|place| [place.t, -place.noise.sqrt(), place.noise.sqrt()]).collect();
     let noise = noise.into_iter().step_by(places.len().div_ceil(MOST).max(1)).collect();
-    let marked = side.fails.iter().find(|fail| fail.over == crate::diagnose::Over::Time);
-    let band = marked.and_then(|fail| Some([fail.bounds.lower?, fail.bounds.upper?]));
-    let band = band.map(|[from, to]| Layer::Band { from, to, label: "worst".into() });
+    let marked = |of: Along| failing(side, &of, &places);
     let measured = Layer::line("measured", &t, &of(|place| place.force));
     let predicted = Layer::line("the law", &t, &of(|place| place.force + place.residual));
     let time = |label: &str, layers: Vec<Layer>| Panel {
         title: String::new(),
         x: Axis::of("t, s"),
         y: Axis::of(label),
-        layers: band.iter().cloned().chain(layers).collect(),
+        layers: marked(Along::Time).into_iter().chain(layers).collect(),
     };
     let mut panels = vec![
         time(&force, vec![measured, predicted]),
@@ -135,17 +134,19 @@ pub(super) fn comparison(found: &Comparison) -> Figure {
             ],
         ),
     ];
-    panels.extend(over_motion(side, found.units));
+    let [mut over_velocity, mut over_displacement] = over_motion(side, found.units);
+    over_velocity.layers.splice(0..0, marked(Along::Velocity));
+    over_displacement.layers.splice(0..0, marked(Along::Displacement));
+    panels.extend([over_velocity, over_displacement]);
     let spectrum = side.spectrum(found.period);
     let energies = |at: usize| spectrum.iter().map(|row| row[at]).collect::<Vec<f64>>();
     if !spectrum.is_empty() {
-        let layers = vec![
-            Layer::line("left over", &energies(0), &energies(1)),
-            Layer::line("force", &energies(0), &energies(2)),
-        ];
+        let lines =
+            [Layer::line("left over", &energies(0), &energies(1)), Layer::line("force", &energies(0), &energies(2))];
+        let layers = marked(Along::Frequency(energies(0))).into_iter().chain(lines).collect();
         panels.push(Panel { title: String::new(), x: Axis::of("frequency, Hz"), y: Axis::log("energy"), layers });
     }
-    let said: Vec<String> = side.fails.iter().take(3).map(|fail| found.sentence(fail) + ".").collect();
+    let said: Vec<String> = side.fails.iter().take(MARKED).map(|fail| found.sentence(fail) + ".").collect();
     Figure {
         title: format!("{}: what the model as given leaves over", found.sources.join(", ")),
         caption: format!("Forces are means over windows of at most {:.3} s. {}", found.window, said.join(" ")),

@@ -39,7 +39,7 @@ pub(super) struct ModelArguments {
 /// The recordings, and the model that is held against them.
 #[derive(Args)]
 pub(super) struct InputArguments {
-    /// The recordings (CSV with a header, MAT or Parquet), or sections of them: DATA@t0:t1 in seconds
+    /// The recordings (text, spreadsheet, MAT, MDF 4 or Parquet), or sections of them: DATA@t0:t1 in seconds
     #[arg(required = true)]
     pub(super) data: Vec<String>,
     #[command(flatten)]

@@ -9,7 +9,7 @@ const FILES: &str = r#"
 .SH FILES
 .TP
 .B DATA
-a recording: text (CSV and its relatives), a spreadsheet, MAT (5 to 7.3) or Parquet; DATA@t0:t1 is a section, in seconds
+a recording: text (CSV and its relatives), a spreadsheet, MAT (5 to 7.3), MDF 4 or Parquet; DATA@t0:t1 is a section, in seconds
 .TP
 .B MODEL
 a model in TOML; \fBswitchid init\fR writes one to begin with

@@ -12,6 +12,7 @@ mod course;
 mod diagnose;
 mod effects;
 mod error;
+mod failing;
 mod figures;
 mod fmu;
 mod identify;

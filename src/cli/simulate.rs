@@ -66,7 +66,7 @@ pub(super) struct Arguments {
     #[arg(short, long, value_name = "DATA")]
     output: PathBuf,
     /// Draw a built-in scenario's stages from this seed; seeds white excitation and sensor noise too
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = seed)]
     seed: Option<u64>,
     /// Std of the sensor noise on q and qd, in place of the scenario's
     #[arg(long, value_name = "STD", allow_negative_numbers = true)]
@@ -77,6 +77,10 @@ pub(super) struct Arguments {
     /// Print one JSON document instead of text
     #[arg(long)]
     json: bool,
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| "a seed is a whole number from 0 on".into())
 }
 
 #[derive(Serialize)]

@@ -87,26 +87,23 @@ impl Layout {
     pub(super) fn find(headings: &Headings, model: &Model) -> Result<Layout, DataError> {
         let finder = Finder { headings, units: &model.units };
         let (file, kind) = (headings.file, headings.kind);
-        let unnamed = model.columns == Columns::default();
-        let (columns, told) = match (&headings.by_content, unnamed) {
-            (Some(columns), true) => (columns, Some("by their numbers")),
-            _ => (&model.columns, None),
+        let (named, guesses) = (&model.columns, model.columns.guesses());
+        let told = headings.by_content.clone().filter(|_| guesses).unwrap_or_default();
+        let optional = |channel: Channel, name: &Option<String>, told: &Option<String>| match (name, told) {
+            (Some(name), _) => finder.required(channel, name).map(Some),
+            (None, Some(told)) => {
+                finder.required(channel, told).map(|column| Some(column.guessed_by("by their numbers")))
+            }
+            (None, None) => finder.column(channel, channel.name()),
         };
-        let optional = |channel: Channel, name: &Option<String>| match name {
-            Some(name) => finder.required(channel, name).map(Some),
-            None => finder.column(channel, channel.name()),
-        };
-        let q = optional(Channel::Displacement, &columns.q)?;
-        let qd = optional(Channel::Velocity, &columns.qd)?;
-        let excitation = optional(Channel::Excitation, &columns.excitation)?;
-        let found = [q, qd, excitation].map(|column| column.map(|column| Column { guessed: told, ..column }));
-        let [q, qd, excitation] = match found {
-            [None, None, _] if unnamed => finder.guess(found)?,
-            found if unnamed && !finder.is_timed()? => finder.guess(found)?,
-            found => found,
-        };
+        let q = optional(Channel::Displacement, &named.q, &told.q)?;
+        let qd = optional(Channel::Velocity, &named.qd, &told.qd)?;
+        let excitation = optional(Channel::Excitation, &named.excitation, &told.excitation)?;
+        let found = [q, qd, excitation];
+        let looks = guesses && (matches!(found, [None, None, _]) || named.rest_is_guessed || !finder.is_timed()?);
+        let [q, qd, excitation] = if looks { finder.guess(found)? } else { found };
         let taken: Vec<usize> = [&q, &qd, &excitation].into_iter().flatten().map(|column| column.index).collect();
-        let (t, time_base) = finder.time(&columns.t, &taken)?;
+        let (t, time_base) = finder.time(&named.t.clone().or(told.t), &taken)?;
         if q.is_none() && qd.is_none() {
             return Err(DataError::NoMotion { file: file.into(), kind, columns: quoted(headings.headers) });
         }
@@ -181,6 +178,11 @@ impl Layout {
 }
 
 impl Column {
+    /// The same column, which nobody named: how it was found.
+    fn guessed_by(self, how: &'static str) -> Column {
+        Column { guessed: Some(how), ..self }
+    }
+
     fn describe(&self, kind: FileKind, channel: Channel, base: TimeBase) -> String {
         let unit = self.unit.map_or("SI", |unit| unit.name);
         let meaning = match base {
@@ -403,12 +405,17 @@ fn endings(header: &str) -> impl Iterator<Item = (&str, &str)> {
     header.match_indices('_').map(|(at, _)| (&header[..at], &header[at + 1..])).filter(|(name, _)| !name.is_empty())
 }
 
-/// The unit of an ending: as it stands, or `mm_s` for mm/s and `N_m` for N m.
+/// The unit of an ending: as it stands, or `mm_s` and `mmps` for mm/s and `N_m` for N m.
 fn written_unit(ending: &str) -> Option<Unit> {
+    let per_second = || ending.strip_suffix("ps").and_then(|length| Unit::parse(&format!("{length}/s")));
     let worded = || ending.strip_suffix("_s").and_then(|length| Unit::parse(&format!("{length}/s")));
     let product = || if ending == "N_m" { Unit::parse("Nm") } else { None };
     // A bare digit or dash is a numbering, no unit.
-    Unit::parse(ending).filter(|unit| unit.name.chars().any(char::is_alphabetic)).or_else(worded).or_else(product)
+    Unit::parse(ending)
+        .filter(|unit| unit.name.chars().any(char::is_alphabetic))
+        .or_else(worded)
+        .or_else(per_second)
+        .or_else(product)
 }
 
 fn quoted(headers: &[String]) -> String {
@@ -436,6 +443,9 @@ mod tests {
             ("force (kN)", "force", Some(1e3)),
             ("v_mm_per_s", "v", Some(1e-3)),
             ("v_m_s", "v", Some(1.0)),
+            ("v_mmps", "v", Some(1e-3)),
+            ("amps", "amps", None),
+            ("n_steps", "n_steps", None),
             ("input_V", "input", Some(1.0)),
             ("torque_N_m", "torque", Some(1.0)),
             ("q_left", "q_left", None),

@@ -55,6 +55,17 @@ pub struct Columns {
     /// Excitation.
     #[serde(rename = "F")]
     pub excitation: Option<String>,
+    /// Whether those that are not named are looked for by names, units and numbers; where none is named they always are.
+    #[serde(skip)]
+    pub rest_is_guessed: bool,
+}
+
+impl Columns {
+    /// Whether columns that nobody named are looked for.
+    pub fn guesses(&self) -> bool {
+        let Columns { t, q, qd, excitation, rest_is_guessed } = self;
+        *rest_is_guessed || [t, q, qd, excitation].into_iter().all(Option::is_none)
+    }
 }
 
 /// A model of one coordinate, as its TOML file says it.

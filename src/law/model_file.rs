@@ -78,6 +78,7 @@ impl Model {
                 q: file.columns.q,
                 qd: file.columns.qd,
                 excitation: file.columns.excitation,
+                rest_is_guessed: false,
             },
             units: read_units(file.units)?,
             terms,
@@ -95,7 +96,7 @@ impl Model {
         if let Some(hold) = self.hold {
             text += &format!("hold = \"{hold}\"\n");
         }
-        let Columns { t, q, qd, excitation } = &self.columns;
+        let Columns { t, q, qd, excitation, .. } = &self.columns;
         text += &write_channels("columns", [t, q, qd, excitation]);
         let ColumnUnits { t, q, qd, excitation } = &self.units;
         text += &write_channels("units", [t, q, qd, excitation]);

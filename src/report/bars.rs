@@ -51,7 +51,9 @@ where
     let mut builder = ChartBuilder::on(area);
     builder.margin(MARGIN).x_label_area_size(40).y_label_area_size(NAMES);
     let mut chart = builder.build_cartesian_2d(x, 0.0..count).map_err(said)?;
-    let formatted = |value: &f64| tick(*value, *value, &panel.x);
+    // beyond the longest bar the axis only makes room for words
+    let largest = panel.extents()[1];
+    let formatted = |value: &f64| if *value > largest { String::new() } else { tick(*value, *value, &panel.x) };
     let mut mesh = chart.configure_mesh();
     mesh.disable_y_mesh().disable_y_axis().y_labels(0).x_desc(&panel.x.label).light_line_style(TRANSPARENT);
     mesh.x_labels(LABELS).x_label_formatter(&formatted);

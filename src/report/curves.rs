@@ -17,6 +17,9 @@ const CORNERS: [(SeriesLabelPosition, [f64; 2]); 4] = [
 /// Half the width and half the height of a corner, as shares of the panel's.
 const CORNER: [f64; 2] = [0.15, 0.25];
 
+/// Share of the panel's width that half of a word takes.
+const EDGE: f64 = 0.08;
+
 type Chart<'a, 'b, X, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>;
 
 /// Draws a panel over these ranges of its axes.
@@ -55,7 +58,7 @@ where
     X: Ranged<ValueType = f64>,
     Y: Ranged<ValueType = f64>,
 {
-    let [.., low, high] = panel.extents();
+    let [left, right, low, high] = panel.extents();
     let rise = high - low;
     let bottom = if panel.y.log { (low - rise).max(f64::MIN_POSITIVE) } else { low - rise };
     let bands = panel.layers.iter().filter_map(|layer| match layer {
@@ -66,8 +69,14 @@ where
         let colour = BLACK.mix(if shade % 2 == 0 { 0.05 } else { 0.11 });
         chart.draw_series([Rectangle::new([(from, bottom), (to, high + rise)], colour.filled())]).map_err(said)?;
         let style = ("sans-serif", 11).into_font().color(&BLACK.mix(0.6));
-        let style = style.pos(Pos::new(HPos::Center, VPos::Bottom));
-        let at = EmptyElement::at((0.5 * (from + to), high));
+        // a word in the middle of a stretch at the edge would run out of the panel
+        let (place, side) = match (0.5 * (from + to) - left) / (right - left) {
+            share if share < EDGE => (from, HPos::Left),
+            share if share > 1.0 - EDGE => (to, HPos::Right),
+            _ => (0.5 * (from + to), HPos::Center),
+        };
+        let style = style.pos(Pos::new(side, VPos::Bottom));
+        let at = EmptyElement::at((place, high));
         chart.draw_series([at + Text::new(label.clone(), (0, 10), style)]).map_err(said)?;
     }
     Ok(())
@@ -92,10 +101,12 @@ where
             chart.draw_series(points.iter().filter(is_finite).map(dot)).map_err(said)?;
         }
         Layer::Area { edges, .. } => {
-            let upper = edges.iter().map(|[x, _, high]| (*x, *high));
-            let lower = edges.iter().rev().map(|[x, low, _]| (*x, *low));
-            let ring: Vec<(f64, f64)> = upper.chain(lower).collect();
-            chart.draw_series([Polygon::new(ring, colour.mix(0.25).filled())]).map_err(said)?;
+            for part in edges.split(|edge| edge.iter().any(|value| !value.is_finite())) {
+                let upper = part.iter().map(|[x, _, high]| (*x, *high));
+                let lower = part.iter().rev().map(|[x, low, _]| (*x, *low));
+                let ring: Vec<(f64, f64)> = upper.chain(lower).collect();
+                chart.draw_series([Polygon::new(ring, colour.mix(0.25).filled())]).map_err(said)?;
+            }
         }
         Layer::Mark { at, label } => {
             let line = PathElement::new(vec![(*at, low), (*at, high)], colour.stroke_width(1));

@@ -78,7 +78,7 @@ pub enum Layer {
     Area {
         /// Its name in the legend.
         name: String,
-        /// Its edges.
+        /// Its edges; a NaN interrupts it.
         edges: Vec<[f64; 3]>,
     },
     /// Named bars from the left, one below the other, each with its text.

@@ -99,11 +99,15 @@ fn traces(layer: &Layer, colour: &'static str) -> Vec<Box<dyn Trace>> {
         Layer::Line { name, points } => vec![curve(name, points, Mode::Lines, colour)],
         Layer::Points { name, points } => vec![curve(name, points, Mode::Markers, colour)],
         Layer::Area { name, edges } => {
-            let edge = |at: usize| edges.iter().map(|edge| [edge[0], edge[at]]).collect::<Vec<_>>();
-            vec![
-                curve("", &edge(1), Mode::Lines, colour).show_legend(false),
-                curve(name, &edge(2), Mode::Lines, colour).fill(Fill::ToNextY),
-            ]
+            let parts = edges.split(|edge| edge.iter().any(|value| !value.is_finite()));
+            let mut drawn: Vec<Box<dyn Trace>> = Vec::new();
+            for part in parts.filter(|part| !part.is_empty()) {
+                let edge = |at: usize| part.iter().map(|edge| [edge[0], edge[at]]).collect::<Vec<_>>();
+                let name = if drawn.is_empty() { name } else { "" };
+                drawn.push(curve("", &edge(1), Mode::Lines, colour));
+                drawn.push(curve(name, &edge(2), Mode::Lines, colour).fill(Fill::ToNextY));
+            }
+            drawn
         }
         Layer::Bars(bars) => {
             let names: Vec<String> = bars.iter().rev().map(|bar| bar.0.clone()).collect();

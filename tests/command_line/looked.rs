@@ -49,7 +49,7 @@ fn a_clean_recording_is_not_remarked_on() {
 fn each_fault_of_a_sensor_is_named() {
     let bench = Bench::new("faults");
     type Fault = fn(usize, &mut [f64; 4]);
-    let cases: [(&str, Fault); 14] = [
+    let cases: [(&str, Fault); 15] = [
         ("q wild", |index, row| {
             if index == 1000 {
                 row[1] = 1e6
@@ -73,6 +73,11 @@ fn each_fault_of_a_sensor_is_named() {
             row[2] = 2.0 * (2.0 * t).cos() + 0.4 * 5.3 * (5.3 * t).cos() + 1e-3 * (row[2] * 1e4).sin();
         }),
         ("qd foreign", |_, row| row[2] = (9.1 * row[0]).sin() + 0.01 * (row[1] * 1e4).sin()),
+        // an acceleration in the place of q: its slope is −ω² q̇, no turned q̇
+        ("qd foreign", |_, row| {
+            let t = row[0];
+            row[1] = -4.0 * (2.0 * t).sin() - 0.4 * 5.3 * 5.3 * (5.3 * t).sin() + 1e-2 * (row[1] * 1e4).sin();
+        }),
         ("q stuck", |index, row| {
             if (1000..1300).contains(&index) {
                 row[1] = 0.125
@@ -91,6 +96,9 @@ fn each_fault_of_a_sensor_is_named() {
     for (expected, fault) in cases {
         let found = kinds(&bench, &record("t,q,qd,F", fault));
         assert!(found.iter().any(|kind| kind == expected), "{expected}: {found:?}");
+        // what is wrong with one channel accuses no other one
+        let foreign = found.iter().any(|kind| kind == "qd foreign" || kind == "qd sign") && !expected.starts_with("qd");
+        assert!(!foreign, "{expected}: {found:?}");
     }
 }
 

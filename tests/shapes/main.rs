@@ -28,7 +28,7 @@ fn read(name: &'static str, table: Table) -> Shape {
 
 fn named(name: &'static str, table: Table, columns: [&str; 4]) -> Shape {
     let [t, q, qd, excitation] = columns.map(|column| (!column.is_empty()).then(|| column.to_string()));
-    Shape { columns: Columns { t, q, qd, excitation }, ..read(name, table) }
+    Shape { columns: Columns { t, q, qd, excitation, ..Columns::default() }, ..read(name, table) }
 }
 
 fn refused(name: &'static str, bytes: Vec<u8>, words: &'static [&'static str]) -> Shape {

@@ -55,7 +55,7 @@ A model file:
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
 pub(super) struct Arguments {
-    /// The recording (CSV with a header, MAT or Parquet), or a section of it: DATA@t0:t1 in seconds
+    /// The recording (text, spreadsheet, MAT, MDF 4 or Parquet), or a section of it: DATA@t0:t1 in seconds
     data: String,
     /// The model file (TOML)
     #[arg(long, short)]

@@ -37,21 +37,38 @@ pub(super) fn text(run: &Run) -> String {
         let drifting = if stage.drifting { " (drifting; its last coefficients)" } else { "" };
         let again = again(&run.found.stages[..index], stage);
         let _ = write!(text, "\nstage {}{again}{drifting}: {law}", index + 1);
-        text += &stage.missing.map_or_else(String::new, |missing| lacks(missing, run, stage));
+        text += &match stage.missing {
+            Some(missing) => lacks(missing, run, stage),
+            None if limit.is_some_and(|limit| !limit.explained()) => diagnosable(run, stage),
+            None => String::new(),
+        };
     }
     text
 }
 
 /// What the law lacks, and what tells more of it.
 fn lacks(missing: Missing, run: &Run, stage: &Stage) -> String {
-    let (effect, nats, model) = (missing.effect().id, missing.evidence, quoted(&run.file));
+    let (effect, nats) = (missing.effect().id, missing.evidence);
+    format!("  this law lacks {effect} ({nats:.0} nats): run {}\n", diagnose(run, stage))
+}
+
+/// Where no effect stands out while the stream goes by, the whole of it may tell.
+fn diagnosable(run: &Run, stage: &Stage) -> String {
+    format!(
+        "  this law lacks something that no single effect explains as the record goes by: run {}\n",
+        diagnose(run, stage)
+    )
+}
+
+/// The command that diagnoses a stage.
+fn diagnose(run: &Run, stage: &Stage) -> String {
+    let model = quoted(&run.file);
     let source = run.opened.recording.source();
     let data = match run.found.stages.len() {
         1 => source.to_string(),
         _ => format!("{}@{:.3}:{:.3}", file(source), stage.start, stage.end),
     };
-    let data = quoted(&data);
-    format!("  this law lacks {effect} ({nats:.0} nats): run `switchid diagnose {data} --model {model}`\n")
+    format!("`switchid diagnose {} --model {model}`", quoted(&data))
 }
 
 /// A recording's file, without the section that was taken of it.

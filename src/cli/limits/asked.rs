@@ -27,7 +27,7 @@ Everything else comes from a fit: coefficients, the motion, and the sensors' noi
 #[derive(Args)]
 #[command(after_help = EXAMPLE)]
 pub(in crate::cli) struct Arguments {
-    /// The recording (CSV with a header, MAT or Parquet), or a section of it: DATA@t0:t1 in seconds
+    /// The recording (text, spreadsheet, MAT, MDF 4 or Parquet), or a section of it: DATA@t0:t1 in seconds
     pub(super) data: String,
     #[command(flatten)]
     pub(super) model: ModelArguments,
