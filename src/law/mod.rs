@@ -25,6 +25,7 @@ mod model_error;
 mod model_file;
 mod motion;
 mod named_laws;
+mod pointwise;
 mod quadrature;
 mod reversal;
 mod series;

@@ -176,7 +176,8 @@ fn scale(record: &Record) -> Scale {
 /// The candidates that make sense beside this law: a delay has its own test, and what depends on the excitation cannot predict it.
 fn eligible(record: &Record, equation: &Equation) -> Vec<Term> {
     let is_output = !equation.terms.contains(&Term::Inertia) || !record.forced;
-    let is_delay = |term: &Term| matches!(term, Term::Effect(Effect::ExcitationDelay { .. }));
+    let is_delay =
+        |term: &Term| matches!(term, Term::Effect(Effect::ExcitationDelay { .. } | Effect::ActuatorLag { .. }));
     let all = candidates(&record.expressions).into_iter();
     let scales = |term: &Term| !record.forced && *term == Term::Inertia;
     let is_barred = |term: &Term| is_delay(term) || scales(term) || is_output && record.uses_excitation(*term);
@@ -197,7 +198,7 @@ fn is_within(term: Term, scale: &Scale) -> bool {
     scale.resolves(effect)
         && inner.iter().enumerate().all(|(index, value)| {
             let [from, to] = scale.limits(effect, index);
-            effect.inner()[index].name == "power" || (from..=to).contains(value)
+            (from..=to).contains(value)
         })
 }
 

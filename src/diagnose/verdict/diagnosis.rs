@@ -11,7 +11,7 @@ use super::law::{Law, effect_name};
 use super::remainder;
 use crate::diagnose::candidates::{Contender, contest};
 use crate::diagnose::judge::{COUNT, HeldOut, PRINCIPAL, delay_of};
-use crate::law::{Catalogue, Effect, Inner, Term};
+use crate::law::{Catalogue, Effect, Inner, State, Term};
 
 /// Chance, shared among all candidates tried, below which a gain is none.
 pub const LEVEL: f64 = 0.01;
@@ -156,8 +156,9 @@ fn entries(case: &Case, standing: &Standing, terms: &[Term]) -> (Vec<Entry>, usi
     let (found, tried) = contest(&case.record, &case.folds, &standing.equation, &standing.held);
     let mut entries: Vec<Entry> = found.into_iter().map(Entry::new).collect();
     weigh(case, standing, &mut entries);
-    if let Some(late) = delay(case, terms, &entries) {
-        entries.push(late);
+    let late = late(case, terms, &entries);
+    if !late.is_empty() {
+        entries.extend(late);
         entries.sort_by(|a, b| a.contender.score.total_cmp(&b.contender.score));
         weigh(case, standing, &mut entries);
     }
@@ -182,31 +183,40 @@ fn weigh(case: &Case, standing: &Standing, entries: &mut [Entry]) {
     }
 }
 
-/// An excitation that acts later than recorded, as an effect among the others: where the law stands better with a delay than with any of
-/// them.
-fn delay(case: &Case, terms: &[Term], others: &[Entry]) -> Option<Entry> {
+/// An excitation that acts later than recorded, at once or gradually, as effects among the others: where the law stands better so than with
+/// any of them. Only where it acts late at all a lag is tried, for to first order the two are one.
+fn late(case: &Case, terms: &[Term], others: &[Entry]) -> Vec<Entry> {
     let moves = case.record.forced && terms.contains(&Term::Inertia);
     if !moves || terms.iter().any(|term| delay_of(*term).is_some()) {
-        return None;
+        return Vec::new();
     }
-    let late = case.delayed(terms)?;
+    let Some(late) = case.delayed(terms) else { return Vec::new() };
     let before = case.folds.judge(&case.punctual(terms));
-    let term = Term::Effect(Effect::ExcitationDelay { delay: Inner::new(late) });
+    let delay = acting_late(case, terms, &before, Effect::ExcitationDelay { delay: Inner::new(late) });
+    let lag = delay.as_ref().and_then(|_| Effect::lag(case.lagged(terms, late)));
+    let lag = lag.and_then(|lag| acting_late(case, terms, &before, lag));
+    let better = |own: &Entry| {
+        let score = own.contender.score;
+        let taken = |other: &Entry| other.doubt.is_none() && other.contender.held.score(&before) <= score;
+        !others.iter().any(taken)
+    };
+    [delay, lag].into_iter().flatten().filter(better).collect()
+}
+
+/// The law with an excitation that acts late, against the punctual one; none where it does not.
+fn acting_late(case: &Case, terms: &[Term], before: &HeldOut, effect: Effect) -> Option<Entry> {
+    let term = Term::Effect(effect);
     let law: Vec<Term> = terms.iter().copied().chain([term]).collect();
     let standing = case.stand(&law)?;
     // the column beside it may take any delay back, and find the record late instead
     let [step, std] = standing.estimate.delay?;
-    let whole = standing.equation.timing.delay + step;
+    let timing = standing.equation.timing;
     // half a sample is also what a held force is late when it is read as a straight line
-    if whole <= 0.5 * case.record.sample_time + SURE * std {
+    if timing.delay + timing.lag + step <= 0.5 * case.record.sample_time + SURE * std {
         return None;
     }
-    let score = standing.held.score(&before);
-    let taken = |other: &Entry| other.doubt.is_none() && other.contender.held.score(&before) <= score;
-    if others.iter().any(taken) {
-        return None;
-    }
-    let contender = Contender { term, before, held: standing.held.clone(), score, resemblance: 0.0 };
+    let (score, held) = (standing.held.score(before), standing.held.clone());
+    let contender = Contender { term, before: before.clone(), held, score, resemblance: 0.0 };
     Some(Entry { standing: Some(standing), ..Entry::new(contender) })
 }
 
@@ -234,7 +244,7 @@ impl Entry {
     /// What bars it whatever its gain.
     fn barred(&self, case: &Case, standing: &Standing) -> Option<Doubt> {
         let [coefficient, std] = self.coefficient(case, standing);
-        if !self.contender.allows(coefficient) {
+        if !self.contender.allows(coefficient) || self.drives(case, standing, coefficient, std) {
             return Some(Doubt::Sign);
         }
         if self.contender.resemblance >= TRAP {
@@ -242,6 +252,31 @@ impl Entry {
         }
         let is_sure = coefficient.abs() > SURE * std;
         (!is_sure).then_some(Doubt::Uncertain)
+    }
+
+    /// Whether dry friction that changes along the way would push somewhere on it: the law's own friction and it, two std nearer to none.
+    fn drives(&self, case: &Case, standing: &Standing, coefficient: f64, std: f64) -> bool {
+        let term = self.contender.term;
+        if !matches!(term, Term::Effect(Effect::PositionDependentFriction { .. })) {
+            return false;
+        }
+        let nearer = coefficient.signum() * (coefficient.abs() - SURE * std).max(0.0);
+        let with = standing.equation.with(&case.record, term);
+        let Some(found) = case.estimated(with.clone()) else { return false };
+        let values = found.coefficients.iter().map(|value| if *value == coefficient { nearer } else { *value });
+        let dry = |term: Term| term.effect().is_some_and(Effect::is_dry);
+        let friction: Vec<(Term, f64)> =
+            with.terms.iter().copied().zip(values).filter(|(term, _)| dry(*term)).collect();
+        let states = case.record.motions.iter().flat_map(|motion| motion.states()).flatten();
+        let power = |State { q, qd }: State| -> f64 {
+            friction.iter().map(|(term, value)| value * term.force(q, qd, 0.0) * qd).sum()
+        };
+        states.map(power).any(|power| power < 0.0)
+    }
+
+    /// Whether it may be what is there though the law's own terms nearly are it: not where it holds the target, for then it is that.
+    fn may_be(&self, case: &Case) -> bool {
+        may_be(case, self.contender.term, self.doubt)
     }
 
     /// What its gain leaves to doubt.
@@ -308,14 +343,23 @@ pub(super) fn is_large(before: &HeldOut, after: &HeldOut, floor: &[f64; COUNT]) 
     ratios.len() >= told.min(2) && !ratios.is_empty() && ratios.iter().all(|ratio| *ratio <= LARGE)
 }
 
+/// Whether a candidate may be what is there, as far as only chance or the law's own terms speak against it. One that holds the target and that
+/// the law nearly is, is the target.
+pub(super) fn may_be(case: &Case, term: Term, doubt: Option<Doubt>) -> bool {
+    match doubt {
+        None | Some(Doubt::Chance) => true,
+        Some(Doubt::Trap) => !case.record.accelerates(term),
+        _ => false,
+    }
+}
+
 /// The smallest effect that the best one contains and is not significantly better than.
 fn smallest(case: &Case, standing: &Standing, entries: &[Entry], best: usize) -> usize {
     let name = |index: usize| effect_name(entries[index].contender.term, &case.record.expressions);
-    let larger = name(best);
     let may_stand = |index: usize| {
         let smaller = &entries[index];
         let borne = matches!(smaller.doubt, None | Some(Doubt::Chance)) && smaller.contender.score < 0.0;
-        if !(borne && Catalogue::is_contained(&name(index), &larger)) {
+        if !borne {
             return false;
         }
         let [smaller, larger] = [index, best].map(|index| &entries[index].contender.held);
@@ -325,15 +369,20 @@ fn smallest(case: &Case, standing: &Standing, entries: &[Entry], best: usize) ->
         difference > -TIE * COUNT as f64
             || chance.is_none_or(|p| p[0] >= LEVEL) && difference > COUNT as f64 * LARGE.ln()
     };
-    (0..entries.len()).find(|index| may_stand(*index)).unwrap_or(best)
+    let (mut found, mut larger) = (best, name(best));
+    while let Some(index) =
+        (0..entries.len()).find(|index| Catalogue::is_contained(&name(*index), &larger) && may_stand(*index))
+    {
+        (found, larger) = (index, name(index));
+    }
+    found
 }
 
 /// Those that are at least as good as the winner, it first. Once something is missing a tied one need not prove it again; one that the law's
 /// own terms nearly are cannot win alone, but may be what is there.
 fn ties(case: &Case, entries: &[Entry], winner: usize) -> Vec<Vec<String>> {
     let best = entries[winner].contender.score;
-    let stands = |entry: &&Entry| matches!(entry.doubt, None | Some(Doubt::Trap | Doubt::Chance));
-    let near = |entry: &&Entry| stands(entry) && entry.contender.score <= best + TIE * COUNT as f64;
+    let near = |entry: &&Entry| entry.may_be(case) && entry.contender.score <= best + TIE * COUNT as f64;
     let others = entries.iter().enumerate().filter(|(index, entry)| *index != winner && near(entry));
     let first = std::iter::once(effect_name(entries[winner].contender.term, &case.record.expressions));
     let group: Vec<String> =
