@@ -140,12 +140,10 @@ impl Arguments {
         let named = |secret: &Secret| {
             if exact { secret.name() == self.effect } else { secret.name().contains(&self.effect) }
         };
-        let chosen = |group: &str, secret: &Secret| {
-            match group {
-                "pairs" => self.effect.is_empty() || self.effect == group,
-                "rigs" => self.effect == group,
-                _ => self.effect.is_empty() || self.effect == group || named(secret),
-            }
+        let chosen = |group: &str, secret: &Secret| match group {
+            "pairs" => self.effect.is_empty() || self.effect == group,
+            "rigs" => self.effect == group,
+            _ => self.effect.is_empty() || self.effect == group || named(secret),
         };
         let wanted = all.flat_map(|(group, secrets)| secrets.into_iter().filter(move |secret| chosen(group, secret)));
         wanted.collect()

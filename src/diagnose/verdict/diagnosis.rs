@@ -6,34 +6,19 @@
 //! std swallows.
 
 use super::case::{Case, Standing};
-use super::errors::{ADEQUATE, TIE, WindowError, are_adequate, errors};
-use super::law::{Law, effect_name};
+use super::contained::smallest;
+use super::doubt::{Doubt, SURE};
+use super::entry::{Candidate, Entry};
+use super::errors::{TIE, WindowError, are_adequate, errors};
+use super::law::Law;
 use super::remainder;
+use super::untold::is_of_untold_damper;
 use crate::diagnose::candidates::{Contender, contest};
 use crate::diagnose::judge::{COUNT, HeldOut, PRINCIPAL, delay_of};
-use crate::law::{Catalogue, Effect, Inner, State, Term};
-
-/// Chance, shared among all candidates tried, below which a gain is none.
-pub const LEVEL: f64 = 0.01;
-
-/// Mean ratio of errors that is worth the word: 5 %.
-pub const WORTH: f64 = 0.95;
-
-/// Ratio of errors beyond the sensors' in every window that needs no test: a third of the energy is gone.
-pub(super) const LARGE: f64 = 0.816;
-
-/// Ratio of errors in one window that disqualifies: 2 % worse.
-pub(super) const WORSE: f64 = 1.02;
+use crate::law::{Effect, Inner, Term};
 
 /// Most candidates in a tie.
 const TIED: usize = 3;
-
-/// Share of a candidate that the law's own terms are, from which it cannot be told from them: what little error its readings have is then
-/// ten times as large in its coefficient.
-const TRAP: f64 = 0.99;
-
-/// Std that a coefficient must be away from 0.
-pub(super) const SURE: f64 = 2.0;
 
 /// What a diagnosis comes to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,46 +29,6 @@ pub enum Finding {
     Adequate,
     /// More is left than the sensors explain, and no effect of the catalogue passes.
     Unexplained,
-}
-
-/// Why a candidate is not named.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Doubt {
-    /// Physics forbids its sign.
-    Sign,
-    /// The law's own terms, the excitation among them, nearly are it.
-    Trap,
-    /// Its coefficient is within its uncertainty.
-    Uncertain,
-    /// It makes the error worse in a window.
-    Worse,
-    /// Its gain may be chance, or is too small to speak of.
-    Chance,
-}
-
-/// A candidate beside the law.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Candidate {
-    /// Its effect id, or the name of a user's expression.
-    pub effect: String,
-    /// The candidate itself.
-    pub term: Term,
-    /// Inner parameters by name, fitted.
-    pub inner: Vec<(String, f64)>,
-    /// Its coefficient.
-    pub coefficient: f64,
-    /// Std of it, over blocks of the record.
-    pub std: f64,
-    /// Held-out errors by window length; the principal ones are those at 0.3 T₀.
-    pub errors: [WindowError; COUNT],
-    /// Probability of a gain this large by chance, all candidates counted; none where the record is too short to tell.
-    pub p_value: Option<f64>,
-    /// S = Σ ln(error after ÷ before) over the window lengths.
-    pub score: f64,
-    /// Share of it that the law's own terms are.
-    pub resemblance: f64,
-    /// Why it is not named; none where it could be.
-    pub doubt: Option<Doubt>,
 }
 
 /// A diagnosis of one law on a set of recordings.
@@ -115,21 +60,6 @@ pub struct Diagnosis {
     pub tried: usize,
     /// Whether the record is long enough for a test of significance.
     pub is_testable: bool,
-}
-
-impl Candidate {
-    /// Its errors at the principal length.
-    pub fn error(&self) -> WindowError {
-        self.errors[PRINCIPAL]
-    }
-}
-
-/// A contender with what decides about it.
-struct Entry {
-    contender: Contender,
-    standing: Option<Standing>,
-    p_value: Option<f64>,
-    doubt: Option<Doubt>,
 }
 
 /// Diagnoses a law of these terms. None where the record is too short for them.
@@ -180,6 +110,9 @@ fn weigh(case: &Case, standing: &Standing, entries: &mut [Entry]) {
         if entry.doubt.is_none() && !entry.is_worth_it(case, standing) {
             entry.doubt = Some(Doubt::Chance);
         }
+        if entry.doubt.is_none() && is_of_untold_damper(case, standing, entry.contender.term) {
+            entry.doubt = Some(Doubt::Trap);
+        }
     }
 }
 
@@ -220,173 +153,14 @@ fn acting_late(case: &Case, terms: &[Term], before: &HeldOut, effect: Effect) ->
     Some(Entry { standing: Some(standing), ..Entry::new(contender) })
 }
 
-impl Entry {
-    fn new(contender: Contender) -> Entry {
-        Entry { contender, standing: None, p_value: None, doubt: None }
-    }
-
-    /// Coefficient and std.
-    fn coefficient(&self, case: &Case, standing: &Standing) -> [f64; 2] {
-        if let Some((late, own)) = delay_of(self.contender.term).zip(self.standing.as_ref()) {
-            return [1.0, own.estimate.delay.map_or(f64::NAN, |[_, std]| std / late)];
-        }
-        let equation = standing.equation.with(&case.record, self.contender.term);
-        let inertia = equation.terms.iter().position(|term| *term == Term::Inertia);
-        let found = case.estimated(equation);
-        let backward = |values: &[f64]| inertia.is_some_and(|index| values[index] <= 0.0);
-        let last = |values: &[f64]| values.last().copied().unwrap_or(f64::NAN);
-        match found {
-            Some(found) if !backward(&found.coefficients) => [last(&found.coefficients), last(&found.std)],
-            _ => [f64::NAN; 2],
-        }
-    }
-
-    /// What bars it whatever its gain.
-    fn barred(&self, case: &Case, standing: &Standing) -> Option<Doubt> {
-        let [coefficient, std] = self.coefficient(case, standing);
-        if !self.contender.allows(coefficient) || self.drives(case, standing, coefficient, std) {
-            return Some(Doubt::Sign);
-        }
-        if self.contender.resemblance >= TRAP {
-            return Some(Doubt::Trap);
-        }
-        let is_sure = coefficient.abs() > SURE * std;
-        (!is_sure).then_some(Doubt::Uncertain)
-    }
-
-    /// Whether dry friction that changes along the way would push somewhere on it: the law's own friction and it, two std nearer to none.
-    fn drives(&self, case: &Case, standing: &Standing, coefficient: f64, std: f64) -> bool {
-        let term = self.contender.term;
-        if !matches!(term, Term::Effect(Effect::PositionDependentFriction { .. })) {
-            return false;
-        }
-        let nearer = coefficient.signum() * (coefficient.abs() - SURE * std).max(0.0);
-        let with = standing.equation.with(&case.record, term);
-        let Some(found) = case.estimated(with.clone()) else { return false };
-        let values = found.coefficients.iter().map(|value| if *value == coefficient { nearer } else { *value });
-        let dry = |term: Term| term.effect().is_some_and(Effect::is_dry);
-        let friction: Vec<(Term, f64)> =
-            with.terms.iter().copied().zip(values).filter(|(term, _)| dry(*term)).collect();
-        let states = case.record.motions.iter().flat_map(|motion| motion.states()).flatten();
-        let power = |State { q, qd }: State| -> f64 {
-            friction.iter().map(|(term, value)| value * term.force(q, qd, 0.0) * qd).sum()
-        };
-        states.map(power).any(|power| power < 0.0)
-    }
-
-    /// Whether it may be what is there though the law's own terms nearly are it: not where it holds the target, for then it is that.
-    fn may_be(&self, case: &Case) -> bool {
-        may_be(case, self.contender.term, self.doubt)
-    }
-
-    /// What its gain leaves to doubt.
-    fn doubted(&self, floor: &[f64; COUNT]) -> Option<Doubt> {
-        doubt_of_gain(&self.contender.before, &self.contender.held, self.p_value, floor)
-    }
-
-    /// Whether a candidate that holds q̈, and was tried on half of the readings, is worth the word on all of them.
-    fn is_worth_it(&self, case: &Case, standing: &Standing) -> bool {
-        if !case.record.accelerates(self.contender.term) {
-            return true;
-        }
-        let law: Vec<Term> = standing.equation.terms.iter().copied().chain([self.contender.term]).collect();
-        let whole = case.stand(&law);
-        whole.is_some_and(|whole| whole.held.score(&standing.held) <= COUNT as f64 * WORTH.ln())
-    }
-
-    fn describe(&self, case: &Case, standing: &Standing) -> Candidate {
-        let [coefficient, std] = self.coefficient(case, standing);
-        let term = self.contender.term;
-        let inner = term.effect().map_or_else(Vec::new, |effect| {
-            let names = effect.inner().iter().map(|parameter| parameter.name.to_string());
-            names.zip(effect.inner_values()).collect()
-        });
-        Candidate {
-            effect: effect_name(term, &case.record.expressions),
-            term,
-            inner,
-            coefficient,
-            std,
-            errors: errors(&case.record, &self.contender.before, &self.contender.held, &standing.floor),
-            p_value: self.p_value,
-            score: self.contender.score,
-            resemblance: self.contender.resemblance,
-            doubt: self.doubt,
-        }
-    }
-}
-
-/// What a gain from one law to another leaves to doubt, with its probability by chance and the floor of the first.
-pub(super) fn doubt_of_gain(
-    before: &HeldOut,
-    after: &HeldOut,
-    p_value: Option<f64>,
-    floor: &[f64; COUNT],
-) -> Option<Doubt> {
-    let ratios = after.ratios(before);
-    if ratios.iter().any(|ratio| *ratio > WORSE) || after.errors.iter().any(|error| *error >= 1.0) {
-        return Some(Doubt::Worse);
-    }
-    let mean = after.score(before) / ratios.len().max(1) as f64;
-    let significant = p_value.is_some_and(|p| p < LEVEL) && mean.exp() <= WORTH;
-    (!(is_large(before, after, floor) || significant)).then_some(Doubt::Chance)
-}
-
-/// Whether a gain takes a third of the energy that the sensors do not explain in every window that has such, in two at least.
-pub(super) fn is_large(before: &HeldOut, after: &HeldOut, floor: &[f64; COUNT]) -> bool {
-    let errors = before.errors.iter().zip(&after.errors).zip(floor);
-    let told = errors.filter(|((before, _), floor)| **before > ADEQUATE * **floor);
-    let beyond = |error: f64, floor: f64| (error * error - floor * floor).max(0.0).sqrt();
-    let ratios: Vec<f64> =
-        told.map(|((before, after), floor)| beyond(*after, *floor) / beyond(*before, *floor)).collect();
-    let told = after.ratios(before).len();
-    ratios.len() >= told.min(2) && !ratios.is_empty() && ratios.iter().all(|ratio| *ratio <= LARGE)
-}
-
-/// Whether a candidate may be what is there, as far as only chance or the law's own terms speak against it. One that holds the target and that
-/// the law nearly is, is the target.
-pub(super) fn may_be(case: &Case, term: Term, doubt: Option<Doubt>) -> bool {
-    match doubt {
-        None | Some(Doubt::Chance) => true,
-        Some(Doubt::Trap) => !case.record.accelerates(term),
-        _ => false,
-    }
-}
-
-/// The smallest effect that the best one contains and is not significantly better than.
-fn smallest(case: &Case, standing: &Standing, entries: &[Entry], best: usize) -> usize {
-    let name = |index: usize| effect_name(entries[index].contender.term, &case.record.expressions);
-    let may_stand = |index: usize| {
-        let smaller = &entries[index];
-        let borne = matches!(smaller.doubt, None | Some(Doubt::Chance)) && smaller.contender.score < 0.0;
-        if !borne {
-            return false;
-        }
-        let [smaller, larger] = [index, best].map(|index| &entries[index].contender.held);
-        let gains = standing.blocks.gains(&case.record, smaller, larger);
-        let chance = standing.blocks.p_values(&[gains]);
-        let difference = larger.score(smaller);
-        difference > -TIE * COUNT as f64
-            || chance.is_none_or(|p| p[0] >= LEVEL) && difference > COUNT as f64 * LARGE.ln()
-    };
-    let (mut found, mut larger) = (best, name(best));
-    while let Some(index) =
-        (0..entries.len()).find(|index| Catalogue::is_contained(&name(*index), &larger) && may_stand(*index))
-    {
-        (found, larger) = (index, name(index));
-    }
-    found
-}
-
 /// Those that are at least as good as the winner, it first. Once something is missing a tied one need not prove it again; one that the law's
 /// own terms nearly are cannot win alone, but may be what is there.
 fn ties(case: &Case, entries: &[Entry], winner: usize) -> Vec<Vec<String>> {
     let best = entries[winner].contender.score;
     let near = |entry: &&Entry| entry.may_be(case) && entry.contender.score <= best + TIE * COUNT as f64;
     let others = entries.iter().enumerate().filter(|(index, entry)| *index != winner && near(entry));
-    let first = std::iter::once(effect_name(entries[winner].contender.term, &case.record.expressions));
-    let group: Vec<String> =
-        first.chain(others.map(|(_, entry)| effect_name(entry.contender.term, &case.record.expressions))).collect();
+    let first = std::iter::once(entries[winner].name(case));
+    let group: Vec<String> = first.chain(others.map(|(_, entry)| entry.name(case))).collect();
     if group.len() > 1 { vec![group.into_iter().take(TIED).collect()] } else { Vec::new() }
 }
 

@@ -5,7 +5,8 @@
 //! pairs are sought as such, for neither of two may be the best alone.
 
 use super::case::{Case, Standing};
-use super::diagnosis::{Diagnosis, Finding, SURE, diagnose, doubt_of_gain, may_be};
+use super::diagnosis::{Diagnosis, Finding, diagnose};
+use super::doubt::{SURE, doubt_of_gain, may_be};
 use super::errors::TIE;
 use super::law::effect_name;
 use crate::diagnose::candidates::same_effect;
