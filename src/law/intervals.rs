@@ -308,7 +308,7 @@ fn integrated(trajectory: &Trajectory, [from, to]: [f64; 2], shift: f64, offset:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::{Dynamics, Motion, Phase};
+    use crate::law::{Dynamics, Motion, Phase, term_series};
 
     struct Record {
         t: Vec<f64>,
@@ -379,17 +379,34 @@ mod tests {
         let resonator = effect("hidden_resonator", &[6.0, 0.03]);
         let [coarse, fine] = [0.04, 0.02].map(|dt| error(resonator, &[0.3, -0.8], dt));
         assert!(coarse < 2e-4 && fine < coarse / 10.0, "{coarse:e}, {fine:e}");
-        for (id, inner, begin) in [
-            ("relaxation", &[0.2][..], 0.4),
-            ("presliding_friction", &[0.15], 0.1),
-            ("friction_with_backlash", &[0.15, 0.1], 0.2),
-        ] {
-            let [coarse, fine] = [0.04, 0.02].map(|dt| error(effect(id, inner), &[begin], dt));
-            assert!(coarse < 2e-3 && fine < coarse / 3.0, "{id}: {coarse:e}, {fine:e}");
+        let [coarse, fine] = [0.04, 0.02].map(|dt| error(effect("relaxation", &[0.2]), &[0.4], dt));
+        assert!(coarse < 1e-4 && fine < coarse / 4.0, "{coarse:e}, {fine:e}");
+        for friction in [effect("presliding_friction", &[0.15]), effect("friction_with_backlash", &[0.15, 0.1])] {
+            let error = error(friction, &[0.1], 0.04);
+            assert!(error < 1e-4, "{friction:?}: {error:e}");
         }
         let hysteresis = effect("hysteresis", &[0.15, 0.8, 1.4]);
         let [coarse, fine] = [0.04, 0.02].map(|dt| error(hysteresis, &[0.1], dt));
         assert!(coarse < 1e-4 && fine < coarse / 4.0, "{coarse:e}, {fine:e}");
+    }
+
+    /// Behind a lag τ a ramp of slope a is followed by a τ (1 − e^(−t/τ)): its mean and moment over the interval from 0.1 s to 0.2 s.
+    #[test]
+    fn a_lag_follows_a_ramp_gradually() {
+        let (t, still) = ([0.0, 0.1, 0.2], [0.0; 3]);
+        let (slope, time) = (3.0, 0.07_f64);
+        let excitation = t.map(|t| slope * t);
+        let trajectory = Trajectory { t: &t, q: &still, qd: &still, excitation: &excitation, hold: Hold::Linear };
+        let lag = Term::Effect(effect("actuator_lag", &[time]));
+        let [from, to] = interval_forces(lag, &[], &trajectory, &[0.0; 2], &[0.0])[1];
+        let behind = |t: f64| slope * time * (1.0 - (-t / time).exp());
+        let nodes: Vec<f64> = (0..1000).map(|k| 0.1 + (f64::from(k) + 0.5) * 1e-4).collect();
+        let mean = nodes.iter().map(|t| behind(*t)).sum::<f64>() / 1000.0;
+        let moment = nodes.iter().map(|t| behind(*t) * (t - 0.15) / 0.1).sum::<f64>() / 1000.0;
+        assert!((0.5 * (from + to) - mean).abs() < 1e-8, "{from}, {to}: {mean}");
+        assert!(((to - from) / 12.0 - moment).abs() < 1e-8, "{from}, {to}: {moment}");
+        let series = term_series(lag, &[], &trajectory);
+        assert!(series.iter().zip(t).all(|(found, t)| (found - behind(t)).abs() < 1e-12), "{series:?}");
     }
 
     #[test]
