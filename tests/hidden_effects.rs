@@ -7,7 +7,10 @@ mod benchmark;
 use benchmark::{Answer, Outcome, Outside, Secret, Sensors, Setting, draw, judge, pair};
 use rayon::prelude::*;
 use std::time::{SystemTime, UNIX_EPOCH};
-use switchid::law::Catalogue;
+use switchid::diagnose::{Doubt, Posed};
+use switchid::identify::Recording;
+use switchid::law::{Catalogue, Given, Model, Term};
+use switchid::simulate::{Reading, Scenario, record};
 
 const SEED: u64 = 20_417;
 const SAMPLES: usize = 2000;
@@ -55,6 +58,58 @@ fn the_hidden_effect_comes_first() {
     assert!(median < 1.1, "error with the effect found ÷ error of the true form: {median}");
 }
 
+/// Of drives, joints and dampers, at 5 and 20 % of the force.
+#[test]
+fn what_real_rigs_have_comes_first_or_in_a_stated_tie() {
+    let rigs = [
+        "presliding_friction",
+        "friction_with_backlash",
+        "asymmetric_damping",
+        "load_dependent_friction",
+        "position_dependent_friction",
+        "cogging",
+        "relaxation",
+        "actuator_lag",
+    ];
+    let strengths = rigs.into_iter().flat_map(|id| [0.05, 0.2].map(|strength| (id, strength)));
+    let all = strengths.flat_map(|(id, strength)| [0, 1].map(|draw| (id, strength, draw)));
+    let missing = |id: &str| Secret::Missing(vec![id.into()]);
+    let outcomes = visible(all.map(|(id, strength, draw)| setting(missing(id), strength, 0.001, draw)).collect());
+    assert_share(&outcomes, 20, 0.92, |outcome| matches!(outcome.answer, Answer::Right | Answer::Tied));
+    for id in rigs {
+        let own = outcomes.iter().filter(|(setting, _)| setting.secret == missing(id));
+        assert!(own.count() > 0, "no record shows {id}");
+    }
+}
+
+/// Friction that grows towards one side, beside friction that is everywhere more than what it loses on the other.
+#[test]
+fn friction_that_grows_along_the_way_is_found_and_none_that_would_push() {
+    let scenario = |coulomb: f64| {
+        let text = format!(
+            "terms = ['qdd', 'qd', 'q', 'coulomb_friction']\nduration = 30.0\nnoise = {{ q = 1e-4, qd = 1e-4 }}\n\
+             excitation = {{ kind = 'multisine', from = 1.0, to = 12.0, count = 30, rms = 5.0, sample_time = 5e-3 }}\n\
+             hidden = {{ position_dependent_friction = {{ coefficient = 1.2, power = 1 }} }}\n\
+             [[stage]]\nstart = 0.0\ncoefficients = [1.0, 0.6, 40.0, {coulomb}]\n"
+        );
+        Scenario::from_toml(&text).unwrap()
+    };
+    let named = |coulomb: f64, terms: &[&str]| {
+        let readings = record(&scenario(coulomb)).unwrap();
+        let of = |value: fn(&Reading) -> f64| readings.iter().map(value).collect::<Vec<f64>>();
+        let channels = [of(|own| own.t), of(|own| own.q), of(|own| own.qd), of(|own| own.excitation)];
+        let [t, q, qd, excitation] = channels;
+        let recording = Recording::new("friction", t, Some(q), Some(qd), Some(excitation)).unwrap();
+        let model = Model::of("rig", terms.iter().map(|term| (Term::parse(term).unwrap(), Given::Fit)));
+        Posed::new(&model, &[&recording], None).unwrap().diagnose().unwrap()
+    };
+    let found = named(0.9, &["qdd", "qd", "q", "coulomb_friction"]);
+    assert_eq!(found.effect.as_deref(), Some("position_dependent_friction"), "{:?}", found.candidates);
+    let pushing = named(0.0, &["qdd", "qd", "q"]);
+    let candidate = pushing.candidates.iter().find(|one| one.effect == "position_dependent_friction").unwrap();
+    assert_eq!(candidate.doubt, Some(Doubt::Sign), "{candidate:?}");
+}
+
 #[test]
 fn a_complete_model_is_adequate() {
     let beside = ["coulomb_friction", "one_sided_stop", "hysteresis", "hidden_resonator", "excitation_delay"];
@@ -71,7 +126,7 @@ fn what_the_catalogue_does_not_have_is_not_forced_into_it() {
 
 #[test]
 fn two_hidden_effects_are_found() {
-    let settings = (0..12).map(|number| setting(pair(SEED, 0, number), 0.1, 0.005, number));
+    let settings = (0..18).map(|number| setting(pair(SEED, 0, number), 0.1, 0.005, number));
     assert_share(&visible(settings.collect()), 8, 0.8, Outcome::is_right);
 }
 

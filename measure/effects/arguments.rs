@@ -26,7 +26,7 @@ pub struct Arguments {
     /// RMS of the hidden force ÷ RMS of the excitation
     #[arg(long, value_delimiter = ',', default_values_t = [0.05, 0.1, 0.2])]
     pub strength: Vec<f64>,
-    /// Only problems with this in their name: an effect id, "a+b", "nothing", "outside", "pairs", "single"
+    /// Only problems with this in their name: an effect id, "a+b", "nothing", "outside", "pairs", "single", "rigs"
     #[arg(long, default_value = "")]
     pub effect: String,
     /// Samples of a record
@@ -47,7 +47,7 @@ pub struct Arguments {
 }
 
 /// Effects that a complete model may have besides its linear or cubic law.
-const COMPLETE: [&str; 8] = [
+const COMPLETE: [&str; 16] = [
     "coulomb_friction",
     "quadratic_damping",
     "stribeck_friction",
@@ -56,10 +56,30 @@ const COMPLETE: [&str; 8] = [
     "hysteresis",
     "hidden_resonator",
     "excitation_delay",
+    "presliding_friction",
+    "friction_with_backlash",
+    "asymmetric_damping",
+    "load_dependent_friction",
+    "position_dependent_friction",
+    "cogging",
+    "relaxation",
+    "actuator_lag",
 ];
 
-/// What a problem is of, for choosing among them.
-const GROUPS: [&str; 4] = ["single", "pairs", "nothing", "outside"];
+/// What a problem is of, for choosing among them; "rigs" are the single effects of real drives, joints and dampers.
+const GROUPS: [&str; 5] = ["single", "pairs", "nothing", "outside", "rigs"];
+
+/// The effects of [`GROUPS`]' last.
+const RIGS: [&str; 8] = [
+    "presliding_friction",
+    "friction_with_backlash",
+    "asymmetric_damping",
+    "load_dependent_friction",
+    "position_dependent_friction",
+    "cogging",
+    "relaxation",
+    "actuator_lag",
+];
 
 impl Arguments {
     /// Every setting that is asked for.
@@ -110,7 +130,8 @@ impl Arguments {
         let complete = COMPLETE.iter().map(|id| Secret::Complete(Some((*id).into())));
         let complete = [Secret::Complete(None)].into_iter().chain(complete).collect();
         let outside = Outside::ALL.map(Secret::Outside).to_vec();
-        let groups: [Vec<Secret>; 4] = [single, pairs, complete, outside];
+        let rigs = RIGS.map(|id| Secret::Missing(vec![id.into()])).to_vec();
+        let groups: [Vec<Secret>; 5] = [single, pairs, complete, outside, rigs];
         if let Some((one, other)) = self.effect.split_once('+') {
             return vec![Secret::Missing(vec![one.trim().into(), other.trim().into()])];
         }
@@ -119,8 +140,10 @@ impl Arguments {
         let named = |secret: &Secret| {
             if exact { secret.name() == self.effect } else { secret.name().contains(&self.effect) }
         };
-        let chosen = |group: &str, secret: &Secret| {
-            self.effect.is_empty() || self.effect == group || (group != "pairs" && named(secret))
+        let chosen = |group: &str, secret: &Secret| match group {
+            "pairs" => self.effect.is_empty() || self.effect == group,
+            "rigs" => self.effect == group,
+            _ => self.effect.is_empty() || self.effect == group || named(secret),
         };
         let wanted = all.flat_map(|(group, secrets)| secrets.into_iter().filter(move |secret| chosen(group, secret)));
         wanted.collect()

@@ -90,6 +90,7 @@ fn inner(entry: &Entry) -> Vec<InnerReport> {
         InnerUnit::Velocity => "of q̇",
         InnerUnit::Time => "s",
         InnerUnit::AngularFrequency => "rad/s",
+        InnerUnit::WaveNumber => "1/of q",
         InnerUnit::Number => "1",
     };
     entry.inner().iter().map(|inner| InnerReport { name: inner.name, unit: unit(inner.unit) }).collect()

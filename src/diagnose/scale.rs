@@ -59,7 +59,7 @@ impl Scale {
 
     /// Between which values of an inner parameter the motion can tell: beyond them the effect is another of the catalogue, or none.
     pub fn limits(&self, effect: Effect, parameter: usize) -> [f64; 2] {
-        let [slow, _] = self.frequency;
+        let [slow, fast] = self.frequency;
         let times = |scale: f64, from: f64, to: f64| [from * scale, to * scale];
         match (effect, parameter) {
             (Effect::StribeckFriction { .. }, _) => times(self.velocity, 1e-3, 2.0),
@@ -68,6 +68,15 @@ impl Scale {
             (Effect::Hysteresis { .. }, 0) => times(self.excursion, 1e-3, 4.0),
             (Effect::Hysteresis { .. }, 1) => [0.5, 4.0],
             (Effect::Hysteresis { .. }, _) => [1.0, 8.0],
+            (Effect::PreslidingFriction { .. } | Effect::FrictionWithBacklash { .. }, 0) => {
+                times(self.excursion, 1e-3, 4.0)
+            }
+            (Effect::FrictionWithBacklash { .. }, _) => times(self.excursion, 1e-3, 1.0),
+            // from a half to as many ripples as ten samples each show at full speed
+            (Effect::Cogging { .. }, 0) => [0.5 * PI / self.excursion, 0.2 * PI / (self.velocity * self.sample_time)],
+            (Effect::Cogging { .. }, _) => [f64::NEG_INFINITY, f64::INFINITY],
+            (Effect::Relaxation { .. }, _) => [0.1 / fast, 10.0 / slow],
+            (Effect::ActuatorLag { .. }, _) => [1e-3 * self.sample_time, 3.0 / slow],
             (Effect::HiddenResonator { .. }, 0) => [0.1 * slow, 3.0 / self.sample_time],
             (Effect::HiddenResonator { .. }, _) => [5e-3, 2.0],
             _ => [0.0, f64::INFINITY],

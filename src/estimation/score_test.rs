@@ -10,6 +10,7 @@ use super::information::{Information, Solution};
 use super::pass::{Observation, Pass, gains};
 use crate::law::{Catalogue, Effect, Entry, Motion, State, Term};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// Evidence, nats, from which an effect is named: odds of 22 000 to one after the price of the number of candidates.
 const NAMED: f64 = 10.0;
@@ -20,8 +21,10 @@ const OWN: f64 = 1e-6;
 
 /// Inner parameters of candidates, as parts of the largest motion: a gap that half of the motion is in …
 const GAP: f64 = 0.5;
-/// … and a Stribeck speed that most of it exceeds. The test is for what a law lacks, the diagnosis refines both.
+/// … a Stribeck speed that most of it exceeds …
 const SPEED: f64 = 0.1;
+/// … and that many ripples over the way. The test is for what a law lacks, the diagnosis refines them.
+const RIPPLES: f64 = 2.0;
 
 /// The effect that a law lacks most.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -185,6 +188,7 @@ fn scaled(term: Term, largest: [f64; 2]) -> Term {
     let moved = match effect {
         Effect::DeadZoneStiffness { .. } | Effect::OneSidedStop { .. } => effect.with_inner(&[GAP * q]),
         Effect::StribeckFriction { .. } => effect.with_inner(&[SPEED * qd]),
+        Effect::Cogging { .. } => effect.with_inner(&[RIPPLES * PI / q, 0.0]),
         _ => Ok(effect),
     };
     Term::Effect(moved.unwrap_or(effect))

@@ -172,6 +172,7 @@ fn inner(effect: &str, parameter: &InnerParameter) -> Variable {
         InnerRange::Positive | InnerRange::NotNegative => at_least(variable, 0.0),
         InnerRange::AtLeast(least) => at_least(variable, least),
         InnerRange::Either(one, other) => at_least(variable, one.min(other)),
+        InnerRange::Any => variable,
     }
 }
 

@@ -47,9 +47,9 @@ impl Shapes {
     /// place left.
     fn places(&mut self, term: Term) -> Option<Places> {
         match term {
-            Term::Effect(effect @ (Effect::DeadZoneStiffness { .. } | Effect::OneSidedStop { .. })) => {
-                Shapes::place(&mut self.q, SHAPED_Q, effect).map(|q| Places { q, ..Places::default() })
-            }
+            Term::Effect(
+                effect @ (Effect::DeadZoneStiffness { .. } | Effect::OneSidedStop { .. } | Effect::Cogging { .. }),
+            ) => Shapes::place(&mut self.q, SHAPED_Q, effect).map(|q| Places { q, ..Places::default() }),
             Term::Effect(effect @ Effect::StribeckFriction { .. }) => {
                 Shapes::place(&mut self.qd, SHAPED_QD, effect).map(|qd| Places { qd, ..Places::default() })
             }
@@ -70,6 +70,9 @@ impl Places {
             Term::Monomial(powers) => Some(Places { q: powers.q, qd: powers.qd, excitation: powers.excitation }),
             Term::Effect(Effect::CoulombFriction) => places(0, EFFECTS),
             Term::Effect(Effect::QuadraticDamping) => places(0, EFFECTS + 1),
+            Term::Effect(Effect::AsymmetricDamping) => places(0, EFFECTS + 2),
+            Term::Effect(Effect::PositionDependentFriction { power }) => places(power.value() as u8, EFFECTS),
+            Term::Effect(Effect::LoadDependentFriction) => Some(Places { q: 0, qd: EFFECTS, excitation: SIZE }),
             Term::Effect(Effect::PendulumRestoring) => places(EFFECTS, 0),
             Term::Effect(Effect::SignedQuadraticStiffness) => places(EFFECTS + 1, 0),
             Term::Effect(Effect::BilinearStiffness) => places(EFFECTS + 2, 0),
@@ -81,7 +84,10 @@ impl Places {
 
 /// Effects whose factor stands at a place of q's table, and of q̇'s.
 const OF_Q: [Effect; 3] = [Effect::PendulumRestoring, Effect::SignedQuadraticStiffness, Effect::BilinearStiffness];
-const OF_QD: [Effect; 2] = [Effect::CoulombFriction, Effect::QuadraticDamping];
+const OF_QD: [Effect; 3] = [Effect::CoulombFriction, Effect::QuadraticDamping, Effect::AsymmetricDamping];
+
+/// Where |F| stands in the excitation's table.
+const SIZE: u8 = EFFECTS;
 
 /// A term that the law has: its places and its coefficient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -162,7 +168,7 @@ impl Compiled {
     pub const MAX_TERMS: usize = 32;
 
     /// The first term that a compiled law cannot have: one with memory, or one more effect with inner parameters than there are
-    /// places (3 of q, 4 of q̇).
+    /// places (3 of q, 3 of q̇).
     pub fn refused(terms: &[Term]) -> Option<Term> {
         let mut shapes = Shapes::default();
         terms.iter().copied().find(|term| *term != Term::Inertia && shapes.places(*term).is_none())
@@ -234,7 +240,8 @@ impl Compiled {
     pub(super) fn slide(&self, table: &mut Table, qd: f64, direction: f64) {
         table.qd[usize::from(EFFECTS)] = direction;
         let slots = &mut table.qd[usize::from(SHAPED_QD)..];
-        fill_shapes(&self.shapes.qd, slots, |effect| effect.sliding(qd, direction).unwrap_or_default());
+        let state = State { q: 0.0, qd };
+        fill_shapes(&self.shapes.qd, slots, |effect| effect.sliding(state, 0.0, direction).unwrap_or_default());
     }
 
     /// Writes the law's factors at a point.
@@ -314,6 +321,7 @@ impl Table {
         powers(&mut self.q, state.q, reach.q);
         powers(&mut self.qd, state.qd, reach.qd);
         powers(&mut self.excitation, excitation, reach.excitation);
+        self.excitation[usize::from(SIZE)] = excitation.abs();
         if reach.q >= EFFECTS {
             let slots = &mut self.q[usize::from(EFFECTS)..];
             OF_Q.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.force(state.q, 0.0, 0.0));

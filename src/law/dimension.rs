@@ -40,9 +40,14 @@ impl Effect {
     /// The dimension of the feature.
     pub fn dimension(self) -> Dimension {
         match self {
-            Effect::CoulombFriction | Effect::StribeckFriction { .. } | Effect::PendulumRestoring => {
-                Dimension::default()
-            }
+            Effect::CoulombFriction
+            | Effect::StribeckFriction { .. }
+            | Effect::PreslidingFriction { .. }
+            | Effect::FrictionWithBacklash { .. }
+            | Effect::PendulumRestoring
+            | Effect::Cogging { .. } => Dimension::default(),
+            Effect::AsymmetricDamping | Effect::Relaxation { .. } => Dimension::new(1, -1, 0),
+            Effect::PositionDependentFriction { power } => Dimension::new(power.value() as i8, 0, 0),
             Effect::QuadraticDamping => Dimension::new(2, -2, 0),
             Effect::SignedQuadraticStiffness => Dimension::new(2, 0, 0),
             Effect::DeadZoneStiffness { .. }
@@ -51,7 +56,9 @@ impl Effect {
             | Effect::Hysteresis { .. } => Dimension::new(1, 0, 0),
             Effect::PositionDependentInertia => Dimension::new(3, -2, 0),
             Effect::ExcitationGainNonlinearity { power } => Dimension::new(0, 0, power.value() as i8),
-            Effect::ExcitationDelay { .. } => Dimension::new(0, 0, 1),
+            Effect::ExcitationDelay { .. } | Effect::ActuatorLag { .. } | Effect::LoadDependentFriction => {
+                Dimension::new(0, 0, 1)
+            }
             Effect::HiddenResonator { .. } => Dimension::new(1, -2, 0),
         }
     }
@@ -86,6 +93,7 @@ mod tests {
             InnerUnit::Velocity => value * length / second,
             InnerUnit::Time => value * second,
             InnerUnit::AngularFrequency => value / second,
+            InnerUnit::WaveNumber => value / length,
             InnerUnit::Number => value,
         });
         Term::Effect(effect.with_inner(&scaled.collect::<Vec<_>>()).unwrap())

@@ -110,7 +110,7 @@ impl<'a> Dynamics<'a> {
         let mut phase = Phase { state, ..Phase::default() };
         for (effect, first) in self.memories() {
             let length = effect.memory_length();
-            phase.memory[first..first + length].copy_from_slice(&effect.rest(state)[..length]);
+            phase.memory[first..first + length].copy_from_slice(&effect.rest(state, 0.0)[..length]);
         }
         phase
     }
@@ -221,12 +221,13 @@ impl<'a> Dynamics<'a> {
         let mut first = 0;
         for (term, coefficient) in self.motion.terms.iter().zip(self.motion.coefficients) {
             let memory = &phase.memory[first..];
-            let sliding = direction.and_then(|direction| term.effect()?.sliding(phase.state.qd, direction));
+            let sliding =
+                direction.and_then(|direction| term.effect()?.sliding(phase.state, instant.excitation, direction));
             let own = sliding.unwrap_or_else(|| self.force(*term, phase.state, memory, &instant));
             force += coefficient * own;
             if let Some(effect) = term.effect().filter(|effect| effect.memory_length() > 0) {
                 let length = effect.memory_length();
-                let rates: [f64; LARGEST] = effect.memory_slope(phase.state, memory);
+                let rates: [f64; LARGEST] = effect.memory_slope(phase.state, instant.excitation, memory);
                 slope.memory[first..first + length].copy_from_slice(&rates[..length]);
                 first += length;
             }
@@ -243,7 +244,7 @@ impl<'a> Dynamics<'a> {
     fn force<H: History>(&self, term: Term, state: State, memory: &[f64], instant: &Instant<H>) -> f64 {
         match term {
             Term::Effect(Effect::ExcitationDelay { delay }) => instant.excitation - instant.delayed(delay.value()),
-            Term::Effect(effect) if effect.memory_length() > 0 => effect.feature(state, memory),
+            Term::Effect(effect) if effect.memory_length() > 0 => effect.feature(state, instant.excitation, memory),
             Term::Expression(index) => {
                 self.expressions[usize::from(index)].value(state.q, state.qd, instant.excitation, instant.t())
             }

@@ -7,11 +7,19 @@
 //! - delayed excitation: F(t) − F(t − τ). With coefficient 1 on the left, F(t) on the right becomes F(t − τ).
 //! - hysteresis: z with ż = q̇ − (s |q̇| |z|^(n−1) z + (1 − s) q̇ |z|^n) ÷ x_y^n, the Bouc–Wen model (Bouc 1967, Wen 1976) in a form
 //!   whose z saturates at the yield displacement x_y; s = β ÷ (β + γ), and s = n = 1 is Dahl's model (1968).
+//! - presliding friction: z ÷ x_s with ż = q̇ − |q̇| z ÷ x_s, Dahl's model (1968) with the level of friction as its coefficient.
+//! - friction with backlash: z ÷ x_s with ė = q̇ − |q̇| z ÷ x_s and z = sign(e) max(|e| − g, 0): presliding friction behind play of
+//!   ± g, its spring without force within it. g = 0 is presliding friction.
+//! - relaxation: w with τ ẇ = q̇ − w, a Maxwell element, whose coefficient is its viscosity, that ÷ τ its stiffness.
+//! - actuator lag: F − F_a with τ Ḟ_a = F − F_a. With coefficient 1 on the left, F on the right becomes F_a.
 //! - hidden resonator: ÿ with ÿ = Ω² (q − y) + 2ζΩ (q̇ − ẏ), an unmeasured mass on a spring that the coordinate carries
 //!   (Den Hartog, Mechanical Vibrations, ch. 3); its coefficient is that mass.
 
 use super::inner::{Inner, InnerError, InnerParameter};
-use super::inner_parameters::{DEAD_ZONE_GAP, DELAY, HYSTERESIS, POWER, RESONATOR, SPEED, STOP_GAP};
+use super::inner_parameters::{
+    BACKLASH, COGGING, DEAD_ZONE_GAP, DELAY, DISPLACEMENT_POWER, HYSTERESIS, LAG, POWER, RELAXATION, RESONATOR, SLIP,
+    SPEED, STOP_GAP,
+};
 use serde::{Deserialize, Serialize};
 
 /// A physical effect on the left-hand side that is no monomial; `q`, `q̇` in SI units.
@@ -71,6 +79,44 @@ pub enum Effect {
         /// Damping ratio ζ of the mass on its spring.
         damping_ratio: Inner,
     },
+    /// Dry friction that turns over a way, Dahl's z ÷ x_s.
+    PreslidingFriction {
+        /// x_s, m.
+        slip_length: Inner,
+    },
+    /// Presliding friction behind play.
+    FrictionWithBacklash {
+        /// x_s, m.
+        slip_length: Inner,
+        /// Half the play, m.
+        gap: Inner,
+    },
+    /// Damping that differs between the two directions, |q̇|.
+    AsymmetricDamping,
+    /// Dry friction that grows with the load, |F| sign(q̇).
+    LoadDependentFriction,
+    /// Dry friction that changes along the way, q sign(q̇) or q² sign(q̇).
+    PositionDependentFriction {
+        /// 1 or 2.
+        power: Inner,
+    },
+    /// A force that repeats along the way, sin(N q + φ).
+    Cogging {
+        /// N, rad/m.
+        wave_number: Inner,
+        /// φ, rad.
+        phase: Inner,
+    },
+    /// A damper and a spring in series (Maxwell): q̇ through a first-order lag.
+    Relaxation {
+        /// τ, s.
+        time: Inner,
+    },
+    /// An actuator that follows with a first-order lag, F − F_a.
+    ActuatorLag {
+        /// τ, s.
+        time: Inner,
+    },
 }
 
 const fn default(parameter: &InnerParameter) -> Inner {
@@ -82,7 +128,7 @@ impl Effect {
     pub const MAX_INNER: usize = 3;
 
     /// Every effect of the catalogue that is no monomial, its inner parameters at their defaults.
-    pub const ALL: [Effect; 13] = [
+    pub const ALL: [Effect; 21] = [
         Effect::CoulombFriction,
         Effect::StribeckFriction { speed: default(&SPEED[0]) },
         Effect::QuadraticDamping,
@@ -100,6 +146,14 @@ impl Effect {
             exponent: default(&HYSTERESIS[2]),
         },
         Effect::HiddenResonator { frequency: default(&RESONATOR[0]), damping_ratio: default(&RESONATOR[1]) },
+        Effect::PreslidingFriction { slip_length: default(&SLIP[0]) },
+        Effect::FrictionWithBacklash { slip_length: default(&BACKLASH[0]), gap: default(&BACKLASH[1]) },
+        Effect::AsymmetricDamping,
+        Effect::LoadDependentFriction,
+        Effect::PositionDependentFriction { power: default(&DISPLACEMENT_POWER[0]) },
+        Effect::Cogging { wave_number: default(&COGGING[0]), phase: default(&COGGING[1]) },
+        Effect::Relaxation { time: default(&RELAXATION[0]) },
+        Effect::ActuatorLag { time: default(&LAG[0]) },
     ];
 
     /// The stable id used in model files, JSON and FMU variables.
@@ -118,7 +172,20 @@ impl Effect {
             Effect::ExcitationDelay { .. } => "excitation_delay",
             Effect::Hysteresis { .. } => "hysteresis",
             Effect::HiddenResonator { .. } => "hidden_resonator",
+            Effect::PreslidingFriction { .. } => "presliding_friction",
+            Effect::FrictionWithBacklash { .. } => "friction_with_backlash",
+            Effect::AsymmetricDamping => "asymmetric_damping",
+            Effect::LoadDependentFriction => "load_dependent_friction",
+            Effect::PositionDependentFriction { .. } => "position_dependent_friction",
+            Effect::Cogging { .. } => "cogging",
+            Effect::Relaxation { .. } => "relaxation",
+            Effect::ActuatorLag { .. } => "actuator_lag",
         }
+    }
+
+    /// An actuator's lag of that time constant, s; none without one.
+    pub(crate) fn lag(time: f64) -> Option<Effect> {
+        (time > 0.0).then(|| Effect::ActuatorLag { time: Inner::new(time) })
     }
 
     /// The effect of that id, its inner parameters at their defaults.
@@ -136,6 +203,12 @@ impl Effect {
             Effect::ExcitationDelay { .. } => &DELAY,
             Effect::Hysteresis { .. } => &HYSTERESIS,
             Effect::HiddenResonator { .. } => &RESONATOR,
+            Effect::PreslidingFriction { .. } => &SLIP,
+            Effect::FrictionWithBacklash { .. } => &BACKLASH,
+            Effect::PositionDependentFriction { .. } => &DISPLACEMENT_POWER,
+            Effect::Cogging { .. } => &COGGING,
+            Effect::Relaxation { .. } => &RELAXATION,
+            Effect::ActuatorLag { .. } => &LAG,
             _ => &[],
         }
     }
@@ -145,10 +218,14 @@ impl Effect {
         let inner: &[Inner] = match &self {
             Effect::StribeckFriction { speed } => &[*speed],
             Effect::DeadZoneStiffness { gap } | Effect::OneSidedStop { gap } => &[*gap],
-            Effect::ExcitationGainNonlinearity { power } => &[*power],
+            Effect::ExcitationGainNonlinearity { power } | Effect::PositionDependentFriction { power } => &[*power],
             Effect::ExcitationDelay { delay } => &[*delay],
             Effect::Hysteresis { yield_displacement, share, exponent } => &[*yield_displacement, *share, *exponent],
             Effect::HiddenResonator { frequency, damping_ratio } => &[*frequency, *damping_ratio],
+            Effect::PreslidingFriction { slip_length } => &[*slip_length],
+            Effect::FrictionWithBacklash { slip_length, gap } => &[*slip_length, *gap],
+            Effect::Cogging { wave_number, phase } => &[*wave_number, *phase],
+            Effect::Relaxation { time } | Effect::ActuatorLag { time } => &[*time],
             _ => &[],
         };
         inner.iter().map(|inner| inner.value()).collect()
@@ -171,6 +248,14 @@ impl Effect {
                 Effect::Hysteresis { yield_displacement: value(0), share: value(1), exponent: value(2) }
             }
             Effect::HiddenResonator { .. } => Effect::HiddenResonator { frequency: value(0), damping_ratio: value(1) },
+            Effect::PreslidingFriction { .. } => Effect::PreslidingFriction { slip_length: value(0) },
+            Effect::FrictionWithBacklash { .. } => {
+                Effect::FrictionWithBacklash { slip_length: value(0), gap: value(1) }
+            }
+            Effect::PositionDependentFriction { .. } => Effect::PositionDependentFriction { power: value(0) },
+            Effect::Cogging { .. } => Effect::Cogging { wave_number: value(0), phase: value(1) },
+            Effect::Relaxation { .. } => Effect::Relaxation { time: value(0) },
+            Effect::ActuatorLag { .. } => Effect::ActuatorLag { time: value(0) },
             _ => self,
         })
     }
@@ -207,112 +292,54 @@ impl Effect {
             Effect::ExcitationDelay { .. } => "(F − F(t − τ))",
             Effect::Hysteresis { .. } => "z",
             Effect::HiddenResonator { .. } => "ÿ",
+            Effect::PreslidingFriction { .. } => "z/x_s",
+            Effect::FrictionWithBacklash { .. } => "z_g/x_s",
+            Effect::AsymmetricDamping => "|q̇|",
+            Effect::LoadDependentFriction => "|F| sign(q̇)",
+            Effect::PositionDependentFriction { power } if power.value() == 1.0 => "q sign(q̇)",
+            Effect::PositionDependentFriction { .. } => "q² sign(q̇)",
+            Effect::Cogging { .. } => "sin(N q + φ)",
+            Effect::Relaxation { .. } => "w",
+            Effect::ActuatorLag { .. } => "(F − F_a)",
         }
     }
 
     /// Whether the feature is a function of (q, q̇, F) at one instant.
     #[inline]
     pub fn is_pointwise(self) -> bool {
-        !matches!(self, Effect::ExcitationDelay { .. } | Effect::Hysteresis { .. } | Effect::HiddenResonator { .. })
+        self.memory_length() == 0 && !matches!(self, Effect::ExcitationDelay { .. })
+    }
+
+    /// Whether the feature depends on the displacement.
+    pub(super) fn uses_displacement(self) -> bool {
+        !matches!(
+            self,
+            Effect::CoulombFriction
+                | Effect::StribeckFriction { .. }
+                | Effect::QuadraticDamping
+                | Effect::AsymmetricDamping
+                | Effect::LoadDependentFriction
+                | Effect::Relaxation { .. }
+                | Effect::ActuatorLag { .. }
+        )
     }
 
     /// Whether the feature depends on the excitation.
     pub fn uses_excitation(self) -> bool {
-        matches!(self, Effect::ExcitationGainNonlinearity { .. } | Effect::ExcitationDelay { .. })
+        matches!(
+            self,
+            Effect::ExcitationGainNonlinearity { .. }
+                | Effect::ExcitationDelay { .. }
+                | Effect::LoadDependentFriction
+                | Effect::ActuatorLag { .. }
+        )
     }
-
-    /// The part of the effect that does not multiply q̈, at (q, q̇, F) in m, m/s and N, for a coefficient of 1; NaN for an effect with memory, whose feature
-    /// these do not determine.
-    #[inline]
-    pub fn force(self, q: f64, qd: f64, excitation: f64) -> f64 {
-        match self {
-            Effect::CoulombFriction => sign(qd),
-            Effect::StribeckFriction { speed } => sign(qd) * (-qd.abs() / speed.value()).exp(),
-            Effect::QuadraticDamping => qd.abs() * qd,
-            Effect::PendulumRestoring => q.sin(),
-            Effect::SignedQuadraticStiffness => q.abs() * q,
-            Effect::DeadZoneStiffness { gap } => sign(q) * (q.abs() - gap.value()).max(0.0),
-            Effect::OneSidedStop { gap } => (q - gap.value()).max(0.0),
-            Effect::BilinearStiffness => q.max(0.0),
-            Effect::PositionDependentInertia => q * qd * qd,
-            Effect::ExcitationGainNonlinearity { power } => excitation.powi(power.value() as i32),
-            Effect::ExcitationDelay { .. } | Effect::Hysteresis { .. } | Effect::HiddenResonator { .. } => f64::NAN,
-        }
-    }
-
-    /// (∂/∂q, ∂/∂q̇) of [`Effect::force`]; one-sided where it has a kink, 0 at the jump of a sign, NaN for an effect with memory.
-    #[inline]
-    pub fn gradient(self, q: f64, qd: f64) -> (f64, f64) {
-        match self {
-            Effect::CoulombFriction | Effect::ExcitationGainNonlinearity { .. } => (0.0, 0.0),
-            Effect::StribeckFriction { speed } => {
-                let slope = -(-qd.abs() / speed.value()).exp() / speed.value();
-                (0.0, if qd == 0.0 { 0.0 } else { slope })
-            }
-            Effect::QuadraticDamping => (0.0, 2.0 * qd.abs()),
-            Effect::PendulumRestoring => (q.cos(), 0.0),
-            Effect::SignedQuadraticStiffness => (2.0 * q.abs(), 0.0),
-            Effect::DeadZoneStiffness { gap } => (step(q.abs() - gap.value()), 0.0),
-            Effect::OneSidedStop { gap } => (step(q - gap.value()), 0.0),
-            Effect::BilinearStiffness => (step(q), 0.0),
-            Effect::PositionDependentInertia => (qd * qd, 2.0 * q * qd),
-            Effect::ExcitationDelay { .. } | Effect::Hysteresis { .. } | Effect::HiddenResonator { .. } => {
-                (f64::NAN, f64::NAN)
-            }
-        }
-    }
-}
-
-/// sign(x) with sign(0) = 0, unlike `f64::signum`.
-#[inline]
-pub(super) fn sign(x: f64) -> f64 {
-    if x > 0.0 {
-        1.0
-    } else if x < 0.0 {
-        -1.0
-    } else {
-        0.0
-    }
-}
-
-/// 1 for x > 0, else 0.
-#[inline]
-fn step(x: f64) -> f64 {
-    if x > 0.0 { 1.0 } else { 0.0 }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::law::InnerRange;
-
-    #[test]
-    fn gradients_are_those_of_the_forces() {
-        let eps = 1e-6;
-        for effect in Effect::ALL.into_iter().filter(|effect| effect.is_pointwise()) {
-            for (q, qd, excitation) in [(0.7, -0.12, 0.4), (-1.1, 0.3, -0.8), (0.04, 0.05, 0.2)] {
-                let (by_q, by_qd) = effect.gradient(q, qd);
-                let along_q = effect.force(q + eps, qd, excitation) - effect.force(q - eps, qd, excitation);
-                let along_qd = effect.force(q, qd + eps, excitation) - effect.force(q, qd - eps, excitation);
-                for (found, difference) in [(by_q, along_q), (by_qd, along_qd)] {
-                    assert!((found - difference / (2.0 * eps)).abs() < 1e-7, "{effect:?}: {found} at {q}, {qd}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn kinks_are_one_sided_and_jumps_flat() {
-        for effect in Effect::ALL.into_iter().filter(|effect| effect.is_pointwise()) {
-            let (by_q, by_qd) = effect.gradient(0.0, 0.0);
-            assert!(by_q.is_finite() && by_qd.is_finite(), "{effect:?}");
-            assert!(effect.force(0.0, 0.0, 0.0) == 0.0, "{effect:?}");
-        }
-        let stop = Effect::prototype("one_sided_stop").unwrap().with_inner(&[0.5]).unwrap();
-        assert_eq!(stop.gradient(0.5, 0.0), (0.0, 0.0));
-        assert_eq!(stop.gradient(0.5 + 1e-9, 0.0), (1.0, 0.0));
-        assert_eq!(stop.force(0.75, 0.0, 0.0), 0.25);
-    }
 
     #[test]
     fn inner_values_are_set_and_read_in_the_order_of_their_names() {

@@ -89,7 +89,7 @@ fn unary(function: Unary, x: f64) -> f64 {
     match function {
         Unary::Negative => -x,
         Unary::Abs => x.abs(),
-        Unary::Sign => super::effect::sign(x),
+        Unary::Sign => super::pointwise::sign(x),
         Unary::Sqrt => x.sqrt(),
         Unary::Exp => x.exp(),
         Unary::Ln => x.ln(),

@@ -1,8 +1,8 @@
-//! A Bouc–Wen loop along a displacement.
+//! A Bouc–Wen loop along a displacement, and friction that is Dahl's, its case s = n = 1, with or without play.
 //!
 //! The loop does not depend on the rate: with ρ = z ÷ x_y taken in the direction of motion and u the way since ρ was 0, in units of x_y,
 //! dρ/du = 1 − ρⁿ while loading (ρ > 0) and 1 + (2s − 1) |ρ|ⁿ while unloading. Both are tabulated once, on the way u, which simply grows as
-//! the coordinate moves on; where it turns, ρ becomes −ρ. So a loop costs the same however sharp it is, where integration in time has
+//! the coordinate moves on; where it turns, ρ becomes −ρ. Play of ± g is a way of 2g between unloading and loading. So a loop costs the same however sharp it is, where integration in time has
 //! to follow every yielding.
 
 use super::{Effect, State};
@@ -39,6 +39,10 @@ struct Branch {
 #[derive(Clone, Debug)]
 pub(super) struct Loop {
     limit: f64,
+    /// Half the play, in units of the limit.
+    gap: f64,
+    /// The feature where the loop has yielded.
+    level: f64,
     loading: Branch,
     unloading: Branch,
 }
@@ -48,7 +52,7 @@ pub(super) struct Loop {
 pub(super) struct Place {
     /// Direction of motion, +1 or −1.
     direction: f64,
-    /// Way since ρ was 0, negative before it will be.
+    /// Way since ρ began to load, negative before it will.
     way: f64,
 }
 
@@ -102,42 +106,99 @@ impl Branch {
     }
 }
 
+/// What a loop is made of: yield displacement or slip length, m, half the play, m, the feature where it has yielded, s and n.
+struct Bend {
+    limit: f64,
+    gap: f64,
+    level: f64,
+    share: f64,
+    exponent: f64,
+}
+
+impl Bend {
+    fn of(effect: Effect) -> Option<Bend> {
+        let dahl = |limit: f64, gap: f64| Some(Bend { limit, gap, level: 1.0, share: 1.0, exponent: 1.0 });
+        match effect {
+            Effect::Hysteresis { yield_displacement, share, exponent } => {
+                let limit = yield_displacement.value();
+                Some(Bend { limit, gap: 0.0, level: limit, share: share.value(), exponent: exponent.value() })
+            }
+            Effect::PreslidingFriction { slip_length } => dahl(slip_length.value(), 0.0),
+            Effect::FrictionWithBacklash { slip_length, gap } => dahl(slip_length.value(), gap.value()),
+            _ => None,
+        }
+    }
+}
+
 impl Effect {
-    /// dz/dq of a hysteresis at this z, and what a short way `dq` from there leaves of a difference in z; none of any other effect.
-    pub fn loop_tangent(self, z: f64, dq: f64) -> Option<[f64; 2]> {
-        let Effect::Hysteresis { yield_displacement, share, exponent } = self else { return None };
-        let (limit, exponent) = (yield_displacement.value(), exponent.value());
-        let ratio = (z * dq.signum() / limit).clamp(-1.0, 1.0);
-        let factor = if ratio > 0.0 { -1.0 } else { 2.0 * share.value() - 1.0 };
+    /// ∂f/∂q of a loop whose feature is f there, and what a short way `dq` leaves of a difference in f; none of an effect that is no loop.
+    pub fn loop_tangent(self, feature: f64, dq: f64) -> Option<[f64; 2]> {
+        let Bend { limit, gap, level, share, exponent } = Bend::of(self)?;
+        if gap > 0.0 && feature == 0.0 {
+            return Some([0.0, 1.0]);
+        }
+        let ratio = (feature * dq.signum() / level).clamp(-1.0, 1.0);
+        let factor = if ratio > 0.0 { -1.0 } else { 2.0 * share - 1.0 };
         let bend = factor * exponent * ratio.abs().powf(exponent - 1.0) * ratio.signum();
-        Some([1.0 + factor * ratio.abs().powf(exponent), (bend * dq.abs() / limit).exp()])
+        let slope = level / limit * (1.0 + factor * ratio.abs().powf(exponent));
+        Some([slope, (bend * dq.abs() / limit).exp()])
+    }
+
+    /// The largest distance of a loop's internal state from 0; none of an effect that is no loop.
+    pub(super) fn largest_state(self) -> Option<f64> {
+        Bend::of(self).map(|bend| bend.limit + bend.gap)
     }
 }
 
 impl Loop {
-    /// The loop of a hysteresis; none of any other effect.
+    /// The loop of an effect; none of one that is no loop.
     pub(super) fn of(effect: Effect) -> Option<Loop> {
-        let Effect::Hysteresis { yield_displacement, share, exponent } = effect else { return None };
-        let (share, exponent) = (share.value(), exponent.value());
+        let Bend { limit, gap, level, share, exponent } = Bend::of(effect)?;
         Some(Loop {
-            limit: yield_displacement.value(),
+            limit,
+            gap: gap / limit,
+            level,
             loading: Branch::new(-1.0, exponent),
             unloading: Branch::new(2.0 * share - 1.0, exponent),
         })
     }
 
-    /// On the loop with this z, moving in the direction of `moving`.
-    pub(super) fn place(&self, z: f64, moving: f64) -> Place {
+    /// On the loop with this internal state, moving in the direction of `moving`.
+    pub(super) fn place(&self, state: f64, moving: f64) -> Place {
         let direction = if moving < 0.0 { -1.0 } else { 1.0 };
-        let ratio = (direction * z / self.limit).clamp(-1.0, 1.0);
-        let way = if ratio < 0.0 { -self.unloading.way(-ratio) } else { self.loading.way(ratio) };
+        let along = direction * state / self.limit;
+        let way = if along > self.gap {
+            self.loading.way((along - self.gap).min(1.0))
+        } else if along >= -self.gap {
+            along - self.gap
+        } else {
+            -2.0 * self.gap - self.unloading.way((-self.gap - along).min(1.0))
+        };
         Place { direction, way }
     }
 
-    /// z there.
-    pub(super) fn z(&self, place: Place) -> f64 {
-        let ratio = if place.way < 0.0 { -self.unloading.at(-place.way) } else { self.loading.at(place.way) };
-        self.limit * place.direction * ratio
+    /// ρ there, in the direction of motion.
+    fn ratio(&self, way: f64) -> f64 {
+        let unloading = -2.0 * self.gap - way;
+        if way >= 0.0 {
+            self.loading.at(way)
+        } else if unloading > 0.0 {
+            -self.unloading.at(unloading)
+        } else {
+            0.0
+        }
+    }
+
+    /// The feature there.
+    pub(super) fn feature(&self, place: Place) -> f64 {
+        self.level * place.direction * self.ratio(place.way)
+    }
+
+    /// The internal state there: z, and beyond it the play.
+    fn state(&self, Place { direction, way }: Place) -> f64 {
+        let ratio = self.ratio(way);
+        let play = (way + self.gap).clamp(-self.gap, self.gap);
+        self.limit * direction * (ratio + play)
     }
 
     /// After the way from one state to the next, between which the velocity turns at most once; `at` gives the displacement at a share of
@@ -156,7 +217,7 @@ impl Loop {
         if way >= 0.0 {
             return Place { way: place.way + way, ..place };
         }
-        let turned = self.place(self.z(place), -place.direction);
+        let turned = self.place(self.state(place), -place.direction);
         Place { way: turned.way - way, ..turned }
     }
 }
@@ -186,10 +247,32 @@ mod tests {
                     z += dq * slope(middle);
                 }
                 place = shape.moved(place, turn);
-                let found = shape.z(place);
+                let found = shape.feature(place);
                 assert!((found - z).abs() < 2e-5 * 0.3, "share {share}, exponent {exponent}, {turn}: {found} for {z}");
             }
         }
+    }
+
+    /// ė = q̇ − |q̇| z ÷ x_s, z what of e is beyond the gap, in small steps, through play and partial reversals within it.
+    #[test]
+    fn play_is_a_way_without_force() {
+        let (slip, gap) = (0.3, 0.2);
+        let effect = Effect::FrictionWithBacklash { slip_length: Inner::new(slip), gap: Inner::new(gap) };
+        let shape = Loop::of(effect).unwrap();
+        let (mut e, mut place) = (0.0_f64, shape.place(0.0, 1.0));
+        let beyond = |e: f64| e.signum() * (e.abs() - gap).max(0.0);
+        for turn in [0.15, -0.1, 0.7, -0.2, -0.25, 0.1, -0.3, -0.9, 2.5] {
+            let steps = 20_000;
+            let dq: f64 = turn / f64::from(steps);
+            for _ in 0..steps {
+                let slope = |e: f64| dq - dq.abs() * beyond(e) / slip;
+                e += slope(e + 0.5 * slope(e));
+            }
+            place = shape.moved(place, turn);
+            let found = shape.feature(place);
+            assert!((found - beyond(e) / slip).abs() < 5e-5, "{turn}: {found} for {}", beyond(e) / slip);
+        }
+        assert!((effect.loop_tangent(0.0, 1.0), effect.largest_state()) == (Some([0.0, 1.0]), Some(slip + gap)));
     }
 
     #[test]
@@ -201,11 +284,11 @@ mod tests {
             for z in [-0.2, -0.05, 0.1, 0.25] {
                 for direction in [-1.0, 1.0] {
                     let place = shape.place(z, direction);
-                    let ends = [-1e-4, 1e-4].map(|way| shape.z(Place { way: place.way + way / 0.3, ..place }));
+                    let ends = [-1e-4, 1e-4].map(|way| shape.feature(Place { way: place.way + way / 0.3, ..place }));
                     let slope = (ends[1] - ends[0]) / (2e-4 * direction);
                     let [found, kept] = effect.loop_tangent(z, 1e-4 * direction).unwrap();
                     assert!((found - slope).abs() < 1e-3, "{share}, {exponent}, z {z}: {found} for {slope}");
-                    let after = |z: f64| shape.z(shape.moved(shape.place(z, direction), 2e-3 * direction));
+                    let after = |z: f64| shape.feature(shape.moved(shape.place(z, direction), 2e-3 * direction));
                     let left = (after(z + 1e-5) - after(z - 1e-5)) / 2e-5;
                     let expected = kept.powi(20);
                     assert!((left - expected).abs() < 3e-3, "{share}, {exponent}, z {z}: {expected} for {left}");

@@ -47,6 +47,8 @@ pub enum InnerUnit {
     Time,
     /// rad/s.
     AngularFrequency,
+    /// Radians per unit of the coordinate, rad/m.
+    WaveNumber,
     /// A pure number.
     Number,
 }
@@ -60,6 +62,8 @@ pub enum InnerRange {
     NotNegative,
     /// At least this.
     AtLeast(f64),
+    /// Any number.
+    Any,
     /// One of two numbers.
     Either(f64, f64),
 }
@@ -72,6 +76,7 @@ impl InnerRange {
                 InnerRange::Positive => value > 0.0,
                 InnerRange::NotNegative => value >= 0.0,
                 InnerRange::AtLeast(least) => value >= least,
+                InnerRange::Any => true,
                 InnerRange::Either(one, other) => value == one || value == other,
             }
     }
@@ -83,6 +88,7 @@ impl std::fmt::Display for InnerRange {
             InnerRange::Positive => f.write_str("a number greater than 0"),
             InnerRange::NotNegative => f.write_str("0 or a positive number"),
             InnerRange::AtLeast(least) => write!(f, "a number not below {least}"),
+            InnerRange::Any => f.write_str("a finite number"),
             InnerRange::Either(one, other) => write!(f, "{one} or {other}"),
         }
     }

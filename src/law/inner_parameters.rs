@@ -82,3 +82,69 @@ pub(super) const RESONATOR: [InnerParameter; 2] = [
         description: "Damping ratio of the hidden mass on its spring",
     },
 ];
+
+pub(super) const SLIP: [InnerParameter; 1] = [InnerParameter {
+    name: "slip_length",
+    default: 0.05,
+    unit: InnerUnit::Coordinate,
+    range: InnerRange::Positive,
+    description: "Way after a reversal within which friction has turned but for 2/e of its level",
+}];
+
+pub(super) const BACKLASH: [InnerParameter; 2] = [
+    InnerParameter {
+        name: "slip_length",
+        default: 0.05,
+        unit: InnerUnit::Coordinate,
+        range: InnerRange::Positive,
+        description: "Way in contact within which friction is 1/e below its level",
+    },
+    InnerParameter {
+        name: "gap",
+        default: 0.05,
+        unit: InnerUnit::Coordinate,
+        range: InnerRange::NotNegative,
+        description: "Half the play, the same on both sides",
+    },
+];
+
+pub(super) const DISPLACEMENT_POWER: [InnerParameter; 1] = [InnerParameter {
+    name: "power",
+    default: 2.0,
+    unit: InnerUnit::Number,
+    range: InnerRange::Either(1.0, 2.0),
+    description: "Power of the displacement",
+}];
+
+pub(super) const COGGING: [InnerParameter; 2] = [
+    InnerParameter {
+        name: "wave_number",
+        default: 10.0,
+        unit: InnerUnit::WaveNumber,
+        range: InnerRange::Positive,
+        description: "N: 2 pi divided by the displacement from one ripple to the next",
+    },
+    InnerParameter {
+        name: "phase",
+        default: 0.0,
+        unit: InnerUnit::Number,
+        range: InnerRange::Any,
+        description: "Angle of the ripple at displacement 0, rad: 0 is sin N q, pi/2 is cos N q",
+    },
+];
+
+pub(super) const RELAXATION: [InnerParameter; 1] = [InnerParameter {
+    name: "time",
+    default: 0.1,
+    unit: InnerUnit::Time,
+    range: InnerRange::Positive,
+    description: "Time constant: viscosity divided by stiffness of the element",
+}];
+
+pub(super) const LAG: [InnerParameter; 1] = [InnerParameter {
+    name: "time",
+    default: 0.01,
+    unit: InnerUnit::Time,
+    range: InnerRange::Positive,
+    description: "Time constant of the actuator",
+}];

@@ -9,7 +9,7 @@
 use super::hysteresis_loop::Loop;
 use super::memory::LARGEST;
 use super::quadrature::GAUSS;
-use super::{Effect, Expression, Hold, State, Term, Trajectory};
+use super::{Effect, Expression, History, Hold, State, Term, Trajectory};
 
 /// A force over an interval as a straight line: its values at the start and at the end.
 pub type Line = [f64; 2];
@@ -37,23 +37,19 @@ impl Effect {
     pub fn beginning_spread(self, feature: f64, excitation: f64) -> Vec<f64> {
         match self {
             Effect::ExcitationDelay { .. } => vec![excitation],
-            Effect::Hysteresis { yield_displacement, .. } => vec![yield_displacement.value() / f64::sqrt(3.0)],
+            Effect::ActuatorLag { .. } => vec![excitation],
+            Effect::Relaxation { .. } => vec![feature],
             Effect::HiddenResonator { frequency, .. } => {
                 let omega = frequency.value();
                 vec![feature / (omega * omega), feature / omega]
             }
-            _ => Vec::new(),
+            _ => self.largest_state().map(|largest| largest / f64::sqrt(3.0)).into_iter().collect(),
         }
     }
 
     /// The nearest numbers that the beginning can have.
     pub fn possible_beginning(self, beginning: f64) -> f64 {
-        match self {
-            Effect::Hysteresis { yield_displacement, .. } => {
-                beginning.clamp(-yield_displacement.value(), yield_displacement.value())
-            }
-            _ => beginning,
-        }
+        self.largest_state().map_or(beginning, |largest| beginning.clamp(-largest, largest))
     }
 }
 
@@ -155,10 +151,12 @@ fn remembered(effect: Effect, course: &Course, beginning: &[f64]) -> Vec<Line> {
     if trajectory.t.is_empty() {
         return Vec::new();
     }
-    let mut memory = effect.rest(trajectory.state(0));
+    let mut memory = effect.rest(trajectory.state(0), trajectory.excitation[0]);
     memory.iter_mut().zip(beginning).for_each(|(value, offset)| *value += offset);
     match (effect, Loop::of(effect)) {
         (_, Some(shape)) => looped(&shape, course, memory[0]),
+        (Effect::Relaxation { time }, _) => relaxed(time.value(), course, memory[0]),
+        (Effect::ActuatorLag { time }, _) => actuated(time.value(), trajectory, memory[0]),
         (Effect::HiddenResonator { frequency, damping_ratio }, _) => {
             let mass = HiddenMass { frequency: frequency.value(), damping_ratio: damping_ratio.value() };
             mass.carried(course, memory)
@@ -218,21 +216,62 @@ impl HiddenMass {
     }
 }
 
-/// z along a motion that begins with it.
-fn looped(shape: &Loop, course: &Course, z: f64) -> Vec<Line> {
-    let mut place = shape.place(z, course.trajectory.qd[0]);
+/// A loop along a motion that begins with this internal state.
+fn looped(shape: &Loop, course: &Course, state: f64) -> Vec<Line> {
+    let mut place = shape.place(state, course.trajectory.qd[0]);
     let interval = |k: usize| {
         let mut sums = Simpson::default();
-        sums.add(0, PANELS, shape.z(place));
+        sums.add(0, PANELS, shape.feature(place));
         for panel in 0..PANELS {
             let share = |part: f64| (panel as f64 + part) / PANELS as f64;
             let states = [0.0, 1.0].map(|part| course.between(k, share(part)));
             place = shape.followed(place, states, |part| course.between(k, share(part)).q);
-            sums.add(panel + 1, PANELS, shape.z(place));
+            sums.add(panel + 1, PANELS, shape.feature(place));
         }
         sums.line()
     };
     (0..course.trajectory.t.len() - 1).map(interval).collect()
+}
+
+/// y after an interval of τ ẏ = u − y, u = value + slope t + bend t²: y is then u − τ u̇ + τ² ü and a part that fades.
+fn lagged(y: f64, time: f64, [value, slope, bend]: [f64; 3], dt: f64) -> f64 {
+    let own = |t: f64| value + t * (slope + t * bend) - time * (slope + 2.0 * t * bend) + 2.0 * time * time * bend;
+    own(dt) + (y - own(0.0)) * (-dt / time).exp()
+}
+
+/// w with τ ẇ = q̇ − w: its mean and first moment follow from those of q̇ and from w at both ends.
+fn relaxed(time: f64, course: &Course, mut w: f64) -> Vec<Line> {
+    let Trajectory { t, q, qd, .. } = *course.trajectory;
+    let interval = |k: usize| {
+        let dt = t[k + 1] - t[k];
+        let bend = 0.5 * course.bends[k] / dt;
+        let next = lagged(w, time, [qd[k], (qd[k + 1] - qd[k]) / dt - bend * dt, bend], dt);
+        let mean = (q[k + 1] - q[k] - time * (next - w)) / dt;
+        let moment = (qd[k + 1] - qd[k]) / 12.0 - time * (0.5 * (w + next) - mean) / dt;
+        w = next;
+        line(mean, moment)
+    };
+    (0..t.len() - 1).map(interval).collect()
+}
+
+/// F − F_a = τ Ḟ_a, F the parabola through its values at both ends of an interval and in its middle.
+fn actuated(time: f64, trajectory: &Trajectory, mut acting: f64) -> Vec<Line> {
+    let (t, samples) = (trajectory.t, trajectory.samples());
+    let interval = |k: usize| {
+        let dt = t[k + 1] - t[k];
+        let [from, middle, to] = match trajectory.hold {
+            Hold::Zero => [trajectory.excitation[k]; 3],
+            _ => samples.over(t[k], t[k + 1]),
+        };
+        let bend = 2.0 * (from + to - 2.0 * middle) / (dt * dt);
+        let next = lagged(acting, time, [from, (to - from) / dt - bend * dt, bend], dt);
+        let rise = next - acting;
+        let mean = (from + 4.0 * middle + to) / 6.0 - time * rise / dt;
+        let moment = time * (0.5 * (acting + next) - mean) / dt;
+        acting = next;
+        line(time * rise / dt, moment)
+    };
+    (0..t.len() - 1).map(interval).collect()
 }
 
 /// F(t) − F(t − τ); before the first sample F was the first value and `offset` beside.
@@ -269,7 +308,7 @@ fn integrated(trajectory: &Trajectory, [from, to]: [f64; 2], shift: f64, offset:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::{Dynamics, Motion, Phase};
+    use crate::law::{Dynamics, Motion, Phase, term_series};
 
     struct Record {
         t: Vec<f64>,
@@ -306,7 +345,8 @@ mod tests {
         let at = |k: usize| {
             let State { q, qd } = record.phases[k].state;
             let feature = term.effect().filter(|effect| effect.memory_length() > 0);
-            let own = feature.map_or(0.0, |effect| effect.feature(record.phases[k].state, &record.phases[k].memory));
+            let phase = &record.phases[k];
+            let own = feature.map_or(0.0, |effect| effect.feature(phase.state, record.excitation[k], &phase.memory));
             record.excitation[k] - 0.2 * qd - 3.0 * q - 0.3 * own
         };
         let bends: Vec<f64> = (0..record.t.len() - 1).map(|k| at(k + 1) - at(k)).collect();
@@ -322,7 +362,9 @@ mod tests {
         let record = simulated(effect, beginning, dt);
         let lines = lines(&record, Term::Effect(effect), Hold::Linear, beginning);
         let fine = simulated(effect, beginning, dt / 8.0);
-        let features: Vec<f64> = fine.phases.iter().map(|p| effect.feature(p.state, &p.memory)).collect();
+        let pairs = fine.phases.iter().zip(&fine.excitation);
+        let features: Vec<f64> =
+            pairs.map(|(phase, force)| effect.feature(phase.state, *force, &phase.memory)).collect();
         let mean = |k: usize| {
             let nodes = &features[8 * k..8 * k + 9];
             let inner: f64 = (1..8).map(|n| if n % 2 == 1 { 4.0 } else { 2.0 } * nodes[n]).sum();
@@ -337,9 +379,34 @@ mod tests {
         let resonator = effect("hidden_resonator", &[6.0, 0.03]);
         let [coarse, fine] = [0.04, 0.02].map(|dt| error(resonator, &[0.3, -0.8], dt));
         assert!(coarse < 2e-4 && fine < coarse / 10.0, "{coarse:e}, {fine:e}");
+        let [coarse, fine] = [0.04, 0.02].map(|dt| error(effect("relaxation", &[0.2]), &[0.4], dt));
+        assert!(coarse < 1e-4 && fine < coarse / 4.0, "{coarse:e}, {fine:e}");
+        for friction in [effect("presliding_friction", &[0.15]), effect("friction_with_backlash", &[0.15, 0.1])] {
+            let error = error(friction, &[0.1], 0.04);
+            assert!(error < 1e-4, "{friction:?}: {error:e}");
+        }
         let hysteresis = effect("hysteresis", &[0.15, 0.8, 1.4]);
         let [coarse, fine] = [0.04, 0.02].map(|dt| error(hysteresis, &[0.1], dt));
         assert!(coarse < 1e-4 && fine < coarse / 4.0, "{coarse:e}, {fine:e}");
+    }
+
+    /// Behind a lag τ a ramp of slope a is followed by a τ (1 − e^(−t/τ)): its mean and moment over the interval from 0.1 s to 0.2 s.
+    #[test]
+    fn a_lag_follows_a_ramp_gradually() {
+        let (t, still) = ([0.0, 0.1, 0.2], [0.0; 3]);
+        let (slope, time) = (3.0, 0.07_f64);
+        let excitation = t.map(|t| slope * t);
+        let trajectory = Trajectory { t: &t, q: &still, qd: &still, excitation: &excitation, hold: Hold::Linear };
+        let lag = Term::Effect(effect("actuator_lag", &[time]));
+        let [from, to] = interval_forces(lag, &[], &trajectory, &[0.0; 2], &[0.0])[1];
+        let behind = |t: f64| slope * time * (1.0 - (-t / time).exp());
+        let nodes: Vec<f64> = (0..1000).map(|k| 0.1 + (f64::from(k) + 0.5) * 1e-4).collect();
+        let mean = nodes.iter().map(|t| behind(*t)).sum::<f64>() / 1000.0;
+        let moment = nodes.iter().map(|t| behind(*t) * (t - 0.15) / 0.1).sum::<f64>() / 1000.0;
+        assert!((0.5 * (from + to) - mean).abs() < 1e-8, "{from}, {to}: {mean}");
+        assert!(((to - from) / 12.0 - moment).abs() < 1e-8, "{from}, {to}: {moment}");
+        let series = term_series(lag, &[], &trajectory);
+        assert!(series.iter().zip(t).all(|(found, t)| (found - behind(t)).abs() < 1e-12), "{series:?}");
     }
 
     #[test]

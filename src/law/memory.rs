@@ -1,8 +1,10 @@
 //! Internal states of effects with memory, and how they follow a motion.
 //!
-//! Hysteresis has z (m), the hidden resonator y (m) and ẏ (m/s); the equations stand in [`super::effect`]. At rest z = 0, and the hidden mass moves
-//! with the coordinate.
+//! Hysteresis and presliding friction have z (m), friction with backlash e (m), relaxation w (m/s), the actuator F_a (N), the hidden resonator y (m) and
+//! ẏ (m/s); the equations stand in [`super::effect`]. At rest z = e = w = 0, F_a is the excitation that has acted so far, and the hidden mass
+//! moves with the coordinate.
 
+use super::pointwise::sign;
 use super::{Effect, State};
 
 /// The most internal states of one effect.
@@ -12,43 +14,59 @@ impl Effect {
     /// How many internal states the effect has; a delayed excitation remembers the excitation, not the motion, and has none.
     pub fn memory_length(self) -> usize {
         match self {
-            Effect::Hysteresis { .. } => 1,
+            Effect::Hysteresis { .. }
+            | Effect::PreslidingFriction { .. }
+            | Effect::FrictionWithBacklash { .. }
+            | Effect::Relaxation { .. }
+            | Effect::ActuatorLag { .. } => 1,
             Effect::HiddenResonator { .. } => 2,
             _ => 0,
         }
     }
 
     /// The internal states when nothing is stored in them.
-    pub(super) fn rest(self, state: State) -> [f64; LARGEST] {
+    pub(super) fn rest(self, state: State, excitation: f64) -> [f64; LARGEST] {
         match self {
+            Effect::ActuatorLag { .. } => [excitation, 0.0],
             Effect::HiddenResonator { .. } => [state.q, state.qd],
             _ => [0.0; LARGEST],
         }
     }
 
-    /// The feature of an effect with internal states, at a state of the coordinate.
+    /// The feature of an effect with internal states, at a state of the coordinate under an excitation.
     #[inline]
-    pub(super) fn feature(self, state: State, memory: &[f64]) -> f64 {
+    pub(super) fn feature(self, state: State, excitation: f64, memory: &[f64]) -> f64 {
         match (self, memory) {
             (Effect::Hysteresis { .. }, [z, ..]) => *z,
             (Effect::HiddenResonator { frequency, damping_ratio }, [y, yd, ..]) => {
                 let (omega, zeta) = (frequency.value(), damping_ratio.value());
                 omega * omega * (state.q - y) + 2.0 * zeta * omega * (state.qd - yd)
             }
+            (Effect::PreslidingFriction { slip_length }, [z, ..]) => z / slip_length.value(),
+            (Effect::FrictionWithBacklash { slip_length, gap }, [e, ..]) => {
+                beyond(*e, gap.value()) / slip_length.value()
+            }
+            (Effect::Relaxation { .. }, [w, ..]) => *w,
+            (Effect::ActuatorLag { .. }, [acting, ..]) => excitation - acting,
             _ => f64::NAN,
         }
     }
 
     /// The rates of the internal states.
     #[inline]
-    pub(super) fn memory_slope(self, state: State, memory: &[f64]) -> [f64; LARGEST] {
+    pub(super) fn memory_slope(self, state: State, excitation: f64, memory: &[f64]) -> [f64; LARGEST] {
         match (self, memory) {
             (Effect::Hysteresis { yield_displacement, share, exponent }, [z, ..]) => {
                 let shape =
                     Shape { limit: yield_displacement.value(), share: share.value(), exponent: exponent.value() };
                 [shape.slope(state.qd, *z), 0.0]
             }
-            (Effect::HiddenResonator { .. }, [_, yd, ..]) => [*yd, self.feature(state, memory)],
+            (Effect::HiddenResonator { .. }, [_, yd, ..]) => [*yd, self.feature(state, excitation, memory)],
+            (Effect::PreslidingFriction { .. } | Effect::FrictionWithBacklash { .. }, _) => {
+                [state.qd - state.qd.abs() * self.feature(state, excitation, memory), 0.0]
+            }
+            (Effect::Relaxation { time }, [w, ..]) => [(state.qd - w) / time.value(), 0.0],
+            (Effect::ActuatorLag { time }, _) => [self.feature(state, excitation, memory) / time.value(), 0.0],
             _ => [0.0; LARGEST],
         }
     }
@@ -62,9 +80,19 @@ impl Effect {
             Effect::HiddenResonator { frequency, damping_ratio } => {
                 frequency.value() * (1.0 + 2.0 * damping_ratio.value())
             }
+            Effect::PreslidingFriction { slip_length } | Effect::FrictionWithBacklash { slip_length, .. } => {
+                qd.abs() / slip_length.value()
+            }
+            Effect::Relaxation { time } | Effect::ActuatorLag { time } => time.value().recip(),
             _ => 0.0,
         }
     }
+}
+
+/// What of a displacement is beyond a gap on both sides.
+#[inline]
+fn beyond(displacement: f64, gap: f64) -> f64 {
+    sign(displacement) * (displacement.abs() - gap).max(0.0)
 }
 
 /// A Bouc–Wen loop.
@@ -80,7 +108,7 @@ impl Shape {
     fn slope(&self, qd: f64, z: f64) -> f64 {
         let ratio = z / self.limit;
         let filled = if self.exponent == 1.0 { ratio.abs() } else { ratio.abs().powf(self.exponent) };
-        qd - filled * (self.share * qd.abs() * super::effect::sign(z) + (1.0 - self.share) * qd)
+        qd - filled * (self.share * qd.abs() * sign(z) + (1.0 - self.share) * qd)
     }
 }
 

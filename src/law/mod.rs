@@ -26,6 +26,7 @@ mod model_file;
 mod motion;
 mod named_laws;
 pub(crate) mod numerals;
+mod pointwise;
 mod quadrature;
 mod reversal;
 mod series;

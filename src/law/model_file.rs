@@ -318,6 +318,17 @@ mod tests {
     }
 
     #[test]
+    fn every_effect_survives_being_written_with_its_inner_parameters() {
+        for effect in Effect::ALL {
+            let inner = effect.inner().iter().map(|parameter| format!(", {} = {}", parameter.name, parameter.default));
+            let model = read(&format!("{} = {{ coefficient = 0.5{} }}", effect.id(), inner.collect::<String>()));
+            assert_eq!(model.terms[1].term, Term::Effect(effect));
+            assert_eq!(Model::from_toml(&model.to_toml()).unwrap(), model, "{}", model.to_toml());
+            assert_eq!(model.check_streaming().is_ok(), effect.is_pointwise(), "{}", effect.id());
+        }
+    }
+
+    #[test]
     fn units_of_columns_are_read_and_written() {
         let model = Model::from_toml("[units]\nq = \"mm\"\nF = \"kN\"\n[terms]\nqdd = \"fit\"").unwrap();
         assert_eq!((model.units.q.as_deref(), model.units.qd.as_deref()), (Some("mm"), None));
@@ -368,6 +379,8 @@ mod tests {
             ("stribeck_friction = \"fit\"", "speed is not given"),
             ("excitation_delay = { delay = 0.1 }", "needs the past"),
             ("hysteresis = { yield_displacement = 0.1, share = 1, exponent = 1 }", "\"hysteresis\" cannot"),
+            ("presliding_friction = { slip_length = 0.1 }", "\"presliding_friction\" cannot"),
+            ("actuator_lag = { time = 0.1 }", "\"actuator_lag\" cannot"),
             ("tip = 1.0\n[effects.tip]\nexpression = \"q*t\"", "\"tip\" cannot"),
             ("F = \"fit\"\nq = 0.0", "\"F\" stands on both sides"),
         ] {

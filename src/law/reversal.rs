@@ -4,7 +4,7 @@
 //! up to the root of q̇; at rest the forces beside friction decide whether it slides back or sticks until they exceed it (Leine and
 //! Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, Springer 2004, ch. 4 and 7).
 
-use super::Effect;
+use super::{Effect, State};
 
 /// Pieces into which a step may be cut; the last one goes through to its end.
 pub(super) const MOST_CUTS: usize = 12;
@@ -27,17 +27,23 @@ const OVERSHOOT: f64 = 1.0;
 impl Effect {
     /// Whether the force jumps where the velocity reverses.
     pub fn is_dry(self) -> bool {
-        matches!(self, Effect::CoulombFriction | Effect::StribeckFriction { .. })
+        matches!(
+            self,
+            Effect::CoulombFriction
+                | Effect::StribeckFriction { .. }
+                | Effect::LoadDependentFriction
+                | Effect::PositionDependentFriction { .. }
+        )
     }
 
     /// Dry friction of a motion that slides in a direction (+1, −1), continued smoothly past its reversal; none of another effect.
     #[inline]
-    pub(super) fn sliding(self, qd: f64, direction: f64) -> Option<f64> {
+    pub(super) fn sliding(self, state: State, excitation: f64, direction: f64) -> Option<f64> {
         match self {
-            Effect::CoulombFriction => Some(direction),
             Effect::StribeckFriction { speed } => {
-                Some(direction * (-direction * qd / speed.value()).min(OVERSHOOT).exp())
+                Some(direction * (-direction * state.qd / speed.value()).min(OVERSHOOT).exp())
             }
+            _ if self.is_dry() => Some(self.force(state.q, direction, excitation)),
             _ => None,
         }
     }

@@ -45,7 +45,7 @@ impl<'a> Trajectory<'a> {
 ///
 /// The part of a term that multiplies q̈ is left out, so that the inertia's series is 0. Internal states start with nothing stored
 /// (z = 0; the hidden mass moving with the coordinate) and are integrated along the motion, of order 2 in the sample interval. The
-/// series of a delay of a held excitation is the mean over each sample's cell (half an interval to either side), whose
+/// series of an actuator's lag takes the excitation on straight lines between samples, from rest under the first; that of a delay of a held excitation is the mean over each sample's cell (half an interval to either side), whose
 /// trapezoidal integral is that of the jumps. An expression that `expressions` do not have gives NaN.
 pub fn term_series(term: Term, expressions: &[Expression], trajectory: &Trajectory) -> Vec<f64> {
     let n = trajectory.t.len();
@@ -54,6 +54,12 @@ pub fn term_series(term: Term, expressions: &[Expression], trajectory: &Trajecto
             let samples = trajectory.samples();
             let at = |shift: f64| (0..n).map(move |k| centred(&samples, k, shift));
             at(0.0).zip(at(delay.value())).map(|(now, before)| now - before).collect()
+        }
+        Term::Effect(Effect::Relaxation { time }) => lagged(trajectory.t, trajectory.qd, 0.0, time.value()),
+        Term::Effect(Effect::ActuatorLag { time }) => {
+            let force = trajectory.excitation;
+            let acting = lagged(trajectory.t, force, force.first().copied().unwrap_or(0.0), time.value());
+            force.iter().zip(acting).map(|(now, acting)| now - acting).collect()
         }
         Term::Effect(effect) if effect.memory_length() > 0 => memory_series(effect, trajectory),
         Term::Expression(index) => match expressions.get(usize::from(index)) {
@@ -86,24 +92,37 @@ fn memory_series(effect: Effect, trajectory: &Trajectory) -> Vec<f64> {
     if let Some(shape) = Loop::of(effect) {
         return looped(&shape, trajectory);
     }
-    let mut memory = effect.rest(trajectory.state(0));
+    let mut memory = effect.rest(trajectory.state(0), trajectory.excitation[0]);
     let mut series = Vec::with_capacity(n);
     for k in 0..last {
-        series.push(effect.feature(trajectory.state(k), &memory));
+        series.push(effect.feature(trajectory.state(k), trajectory.excitation[k], &memory));
         memory = follow(effect, trajectory, k, memory);
     }
-    series.push(effect.feature(trajectory.state(last), &memory));
+    series.push(effect.feature(trajectory.state(last), trajectory.excitation[last], &memory));
     series
 }
 
-/// z of a loop that begins with nothing stored.
+/// y with τ ẏ = u − y where u runs straight between samples, from y at the first: y is then u − τ u̇ and a part that fades.
+fn lagged(t: &[f64], u: &[f64], first: f64, time: f64) -> Vec<f64> {
+    let mut y = first;
+    let next = |k: usize| {
+        let dt = t[k + 1] - t[k];
+        let behind = time * (u[k + 1] - u[k]) / dt;
+        y = u[k + 1] - behind + (y - u[k] + behind) * (-dt / time).exp();
+        y
+    };
+    let others: Vec<f64> = (0..t.len().saturating_sub(1)).map(next).collect();
+    u.first().map(|_| first).into_iter().chain(others).collect()
+}
+
+/// The feature of a loop that begins with nothing stored.
 fn looped(shape: &Loop, trajectory: &Trajectory) -> Vec<f64> {
     let mut place = shape.place(0.0, trajectory.qd[0]);
     let mut series = vec![0.0];
     for k in 0..trajectory.t.len() - 1 {
         let states = [trajectory.state(k), trajectory.state(k + 1)];
         place = shape.followed(place, states, |share| trajectory.between(k, share).q);
-        series.push(shape.z(place));
+        series.push(shape.feature(place));
     }
     series
 }
@@ -122,7 +141,7 @@ fn follow(effect: Effect, trajectory: &Trajectory, k: usize, memory: [f64; LARGE
 
 fn runge_kutta(effect: Effect, states: [State; 3], memory: [f64; LARGEST], dt: f64) -> [f64; LARGEST] {
     let moved = |slope: &[f64; LARGEST], dt: f64| std::array::from_fn(|index| memory[index] + dt * slope[index]);
-    let at = |state: usize, memory: [f64; LARGEST]| effect.memory_slope(states[state], &memory);
+    let at = |state: usize, memory: [f64; LARGEST]| effect.memory_slope(states[state], 0.0, &memory);
     let first = at(0, memory);
     let second = at(1, moved(&first, 0.5 * dt));
     let third = at(1, moved(&second, 0.5 * dt));
@@ -178,9 +197,9 @@ mod tests {
         let term = Term::Effect(effect);
         let record = simulated(term, dt);
         let series = along(&record, term, Hold::Linear);
-        let squares = series.iter().zip(&record.phases).map(|(found, phase)| {
+        let squares = series.iter().zip(&record.phases).enumerate().map(|(index, (found, phase))| {
             assert!(found.is_finite());
-            (found - effect.feature(phase.state, &phase.memory)).powi(2)
+            (found - effect.feature(phase.state, drive(record.t[index]), &phase.memory)).powi(2)
         });
         (squares.sum::<f64>() / series.len() as f64).sqrt()
     }
@@ -191,6 +210,12 @@ mod tests {
         for pair in errors.windows(2) {
             let order = (pair[0] / pair[1]).log2();
             assert!(order > 1.7, "order {order}, {errors:?}");
+        }
+        let [coarse, fine] = [0.02, 0.01].map(|dt| error(effect("relaxation", &[0.2]), dt));
+        assert!(coarse < 2e-3 && coarse / fine > 3.3, "{coarse:e}, {fine:e}");
+        for play in [0.0, 0.1] {
+            let tabulated = error(effect("friction_with_backlash", &[0.15, play]), 0.01);
+            assert!(tabulated < 1e-5, "play {play}: {tabulated:e}");
         }
         let tabulated = [0.02, 0.005].map(|dt| error(effect("hysteresis", &[0.15, 0.8, 1.4]), dt));
         assert!(tabulated.iter().all(|error| *error < 1e-6), "{tabulated:?}");

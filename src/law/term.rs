@@ -196,8 +196,8 @@ impl Term {
         match self {
             Term::Inertia => false,
             Term::Monomial(powers) => powers.q > 0,
-            Term::Effect(Effect::CoulombFriction | Effect::QuadraticDamping | Effect::StribeckFriction { .. }) => false,
-            Term::Effect(_) | Term::Expression(_) => true,
+            Term::Effect(effect) => effect.uses_displacement(),
+            Term::Expression(_) => true,
         }
     }
 

@@ -110,6 +110,7 @@ impl Units {
             InnerUnit::Velocity => self.velocity(),
             InnerUnit::Time => self.power(Dimension::new(0, 1, 0)),
             InnerUnit::AngularFrequency => Some(SiUnit { symbol: "rad/s".into(), exponents: [0, 0, -1, 0, 1] }),
+            InnerUnit::WaveNumber => self.power(Dimension::new(-1, 0, 0)),
             InnerUnit::Number => None,
         }
     }
@@ -260,10 +261,37 @@ mod tests {
             "hidden_resonator",
             "excitation_delay",
             "excitation_gain_nonlinearity",
+            "presliding_friction",
+            "friction_with_backlash",
+            "asymmetric_damping",
+            "load_dependent_friction",
+            "position_dependent_friction",
+            "cogging",
+            "relaxation",
+            "actuator_lag",
         ];
         assert_eq!(
             of(Quantity::Length, Quantity::Force, &terms),
-            ["kg/m", "N s³/m³", "N s/m³", "N", "kg/m²", "N", "N/m", "kg", "1", "1/N²"]
+            [
+                "kg/m",
+                "N s³/m³",
+                "N s/m³",
+                "N",
+                "kg/m²",
+                "N",
+                "N/m",
+                "kg",
+                "1",
+                "1/N²",
+                "N",
+                "N",
+                "N s/m",
+                "1",
+                "N/m²",
+                "N",
+                "N s/m",
+                "1"
+            ]
         );
         assert_eq!(of(Quantity::Charge, Quantity::Voltage, &terms[2..3]), ["Ω/C²"]);
     }

@@ -5,7 +5,7 @@ mod contract;
 
 use contract::{Drive, OK, Subject};
 use switchid::fmu::{DUFFING, VAN_DER_POL, plant, plant_of_model};
-use switchid::law::{Catalogue, Model, Term};
+use switchid::law::{Catalogue, InnerParameter, InnerRange, Model, Term};
 use switchid::simulate::{Builtin, Excitation, ExcitationKind, Plant, Scenario};
 use switchid_fmu_plant::functions;
 use switchid_fmu_slave::host::Instance;
@@ -117,8 +117,18 @@ fn hidden_effects_give_the_library_s_motion() {
             scenario.hidden.push(entry.term, coefficient);
             continue;
         };
-        let inner: Vec<f64> =
-            effect.inner_values().into_iter().map(|value| if value == 3.0 { 2.0 } else { 1.5 * value }).collect();
+        let other = |parameter: &InnerParameter| match parameter.range {
+            InnerRange::Either(one, other) => {
+                if parameter.default == one {
+                    other
+                } else {
+                    one
+                }
+            }
+            InnerRange::Any => parameter.default + 0.3,
+            _ => 1.5 * parameter.default,
+        };
+        let inner: Vec<f64> = entry.inner().iter().map(other).collect();
         for (parameter, value) in entry.inner().iter().zip(&inner) {
             set(&subject, &instance, &[(&format!("hidden.{}.{}", entry.id, parameter.name), *value)]);
         }

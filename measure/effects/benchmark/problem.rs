@@ -156,12 +156,12 @@ fn with_secret(
     bounded(&track, alone).then_some((track, law))
 }
 
-/// Moves coefficients, of a delay the delay itself, towards the strength.
+/// Moves coefficients, of a delay or a lag the time itself, towards the strength.
 fn strengthen(setting: &Setting, rig: &Rig, law: &mut Law, track: &Track) {
     for index in law.known..law.terms.len() {
         let force = law.coefficients[index].abs() * rms(&track.force(law.terms[index], rig.hold()));
         let factor = (setting.strength * rms(&track.excitation) / force).clamp(0.2, 5.0);
-        if secret::id(law.terms[index]) == "excitation_delay" {
+        if ["excitation_delay", "actuator_lag"].contains(&secret::id(law.terms[index])) {
             law.coefficients[index] = 1.0;
             law.terms[index] = with_delay(law.terms[index], factor);
         } else {

@@ -2,6 +2,7 @@
 
 use super::generator::Generator;
 use super::outside::Outside;
+use std::f64::consts::PI;
 use switchid::law::{Catalogue, Effect, Sign, State, Term};
 
 /// What is hidden.
@@ -43,8 +44,8 @@ impl Secret {
 /// A coefficient of that sign which physics allows.
 pub fn sign(generator: &mut Generator, term: Term) -> f64 {
     let free = Catalogue::of(term).is_some_and(|entry| entry.sign == Sign::Any);
-    // a spring or a mass that takes more than there is has no bounded motion
-    let restoring = ["linear_damping", "linear_stiffness"].contains(&id(term));
+    // a spring or a mass that takes more than there is has no bounded motion, and friction does not push
+    let restoring = ["linear_damping", "linear_stiffness", "position_dependent_friction"].contains(&id(term));
     if free && !restoring { generator.sign() } else { 1.0 }
 }
 
@@ -66,13 +67,22 @@ pub fn with_inner(generator: &mut Generator, term: Term, std: State, omega: f64)
             let share = generator.uniform(0.5..1.0);
             vec![length * generator.uniform(0.1..0.6), share, generator.uniform(1.0..2.0)]
         }
+        Effect::PreslidingFriction { .. } => vec![length * generator.uniform(0.05..0.4)],
+        Effect::FrictionWithBacklash { .. } => {
+            vec![length * generator.uniform(0.05..0.3), length * generator.uniform(0.1..0.4)]
+        }
+        // alone, the other power would push on one side
+        Effect::PositionDependentFriction { .. } => vec![2.0],
+        Effect::Cogging { .. } => vec![PI * generator.uniform(1.5..6.0) / length, generator.uniform(0.0..PI)],
+        Effect::Relaxation { .. } => vec![generator.uniform(0.3..2.0) / omega],
+        Effect::ActuatorLag { .. } => vec![0.1 / omega],
         Effect::HiddenResonator { .. } => vec![omega * generator.uniform(0.5..1.8), generator.decades(0.01..0.15)],
         _ => Vec::new(),
     };
     effect.with_inner(&values).map_or(term, Term::Effect)
 }
 
-/// The same effect, its delay times a factor.
+/// The same effect, its delay or time constant times a factor.
 pub fn with_delay(term: Term, factor: f64) -> Term {
     let Some(effect) = term.effect() else { return term };
     effect.with_inner(&[effect.inner_values()[0] * factor]).map_or(term, Term::Effect)

@@ -11,6 +11,10 @@ const ROUNDS: usize = 3;
 /// Effects whose grid is narrowed and whose errors are taken robustly: those that come nearest to being the best.
 const CONTENDERS: usize = 8;
 
+/// Share of a candidate that the law's own terms are, from which it cannot be told from them: what little error its readings have is then
+/// ten times as large in its coefficient.
+pub(in crate::diagnose) const TRAP: f64 = 0.99;
+
 /// A candidate beside a law.
 #[derive(Clone, Debug)]
 pub(in crate::diagnose) struct Contender {
@@ -107,8 +111,17 @@ impl Arena<'_> {
         Arena { record: &even, equation: &equation, base: &base, ..*self }.contest(all)
     }
 
+    /// Variants with their columns, without those that are the target where others are not.
     fn columns(&self, group: &[Variant]) -> Vec<Tried> {
-        group.iter().map(|variant| (*variant, column(self.record, self.equation, variant.term))).collect()
+        let with_column = |variant: &Variant| (*variant, column(self.record, self.equation, variant.term));
+        let (targets, told): (Vec<Tried>, Vec<Tried>) =
+            group.iter().map(with_column).partition(|(_, own)| self.is_target(own));
+        if told.is_empty() { targets } else { told }
+    }
+
+    /// Whether a column that holds the target is the target: the law is nearly it.
+    fn is_target(&self, (column, holds_target): &(Column, bool)) -> bool {
+        *holds_target && self.equation.resemblance(PRINCIPAL, &column[PRINCIPAL]) >= TRAP
     }
 
     /// What the parts of the record choose among variants of one effect, and which.
@@ -125,13 +138,14 @@ impl Arena<'_> {
     /// The grid narrowed around what the parts of the record prefer, then a robust fit in each part.
     fn narrowed(&self, screen: &Screen, mut tried: Vec<Tried>) -> Contender {
         let (mut found, mut chosen) = self.chosen(screen, &tried);
+        let is_trapped = tried.iter().all(|(_, own)| self.is_target(own));
         for _ in 0..ROUNDS {
             let new = self.new_neighbours(&tried, &chosen);
             if new.is_empty() {
                 break;
             }
             tried = kept(&tried, &chosen);
-            tried.extend(self.columns(&new));
+            tried.extend(self.columns(&new).into_iter().filter(|(_, own)| is_trapped || !self.is_target(own)));
             (found, chosen) = self.chosen(screen, &tried);
         }
         let joining = |fold: usize| chosen.get(fold).map(|index| (&tried[*index].1.0, tried[*index].1.1));
@@ -176,7 +190,8 @@ fn scale(record: &Record) -> Scale {
 /// The candidates that make sense beside this law: a delay has its own test, and what depends on the excitation cannot predict it.
 fn eligible(record: &Record, equation: &Equation) -> Vec<Term> {
     let is_output = !equation.terms.contains(&Term::Inertia) || !record.forced;
-    let is_delay = |term: &Term| matches!(term, Term::Effect(Effect::ExcitationDelay { .. }));
+    let is_delay =
+        |term: &Term| matches!(term, Term::Effect(Effect::ExcitationDelay { .. } | Effect::ActuatorLag { .. }));
     let all = candidates(&record.expressions).into_iter();
     let scales = |term: &Term| !record.forced && *term == Term::Inertia;
     let is_barred = |term: &Term| is_delay(term) || scales(term) || is_output && record.uses_excitation(*term);
@@ -197,7 +212,7 @@ fn is_within(term: Term, scale: &Scale) -> bool {
     scale.resolves(effect)
         && inner.iter().enumerate().all(|(index, value)| {
             let [from, to] = scale.limits(effect, index);
-            effect.inner()[index].name == "power" || (from..=to).contains(value)
+            (from..=to).contains(value)
         })
 }
 

@@ -3,7 +3,8 @@
 //! The grid is coarse: a screen of it finds the neighbourhood, then [`Variant::neighbours`] narrows it, a third of the spacing at a time.
 
 use crate::diagnose::scale::Scale;
-use crate::law::{Catalogue, Effect, Expression, Term};
+use crate::law::{Catalogue, Effect, Expression, InnerRange, Term};
+use std::f64::consts::{FRAC_PI_4, PI};
 
 /// A candidate with numbers for its inner parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,6 +20,7 @@ impl Scale {
     fn grids(&self, effect: Effect) -> (Vec<Vec<f64>>, f64) {
         let lengths =
             |from: f64, to: f64, ratio: f64| geometric(from * self.displacement, to * self.displacement, ratio);
+        let lengths_of = |from: f64, to: f64, ratio: f64| geometric(from * self.excursion, to * self.excursion, ratio);
         let [slow, fast] = self.frequency;
         let highest = 0.5 / self.sample_time;
         match effect {
@@ -27,16 +29,35 @@ impl Scale {
             Effect::OneSidedStop { .. } => (vec![lengths(0.04, 0.95, 1.5)], 1.5),
             Effect::ExcitationGainNonlinearity { .. } => (vec![vec![2.0, 3.0]], 1.0),
             Effect::ExcitationDelay { .. } => (vec![geometric(0.3 * self.sample_time, 1.0 / slow, 1.8)], 1.8),
-            Effect::Hysteresis { .. } => (
-                vec![geometric(0.004 * self.excursion, 1.5 * self.excursion, 2.0), vec![0.5, 1.0], vec![1.0, 2.0]],
-                2.0,
-            ),
+            Effect::Hysteresis { .. } => (vec![lengths_of(0.004, 1.5, 2.0), vec![0.5, 1.0], vec![1.0, 2.0]], 2.0),
             Effect::HiddenResonator { .. } => {
                 (vec![geometric(0.3 * slow, (3.0 * fast).min(highest), 1.15), vec![0.02, 0.12]], 1.15)
             }
+            Effect::PreslidingFriction { .. } => (vec![lengths_of(0.004, 1.5, 2.0)], 2.0),
+            Effect::FrictionWithBacklash { .. } => (vec![lengths_of(0.01, 0.7, 3.0), lengths_of(0.03, 0.7, 2.0)], 2.0),
+            Effect::PositionDependentFriction { .. } => (vec![vec![1.0, 2.0]], 1.0),
+            Effect::Cogging { .. } => (vec![self.ripples(), quarters()], RIPPLE),
+            Effect::Relaxation { .. } => (vec![geometric(0.2 / fast, 5.0 / slow, 2.0)], 2.0),
+            Effect::ActuatorLag { .. } => (vec![geometric(0.3 * self.sample_time, 1.0 / slow, 1.8)], 1.8),
             _ => (Vec::new(), 1.0),
         }
     }
+
+    /// Wave numbers of one to [`RIPPLES`] ripples over the way, half a ripple apart: ripples half a ripple apart are as good as orthogonal.
+    fn ripples(&self) -> Vec<f64> {
+        (2..=2 * RIPPLES).map(|halves| 0.5 * PI * f64::from(halves) / self.excursion).collect()
+    }
+}
+
+/// Most ripples over the way that are sought: each more costs eight columns.
+const RIPPLES: u32 = 8;
+
+/// Ratio between neighbouring wave numbers of as many ripples as are sought half-way.
+const RIPPLE: f64 = 1.15;
+
+/// Angles of a ripple an eighth of a turn apart: its sign is the coefficient's.
+fn quarters() -> Vec<f64> {
+    (0..4).map(|eighth| f64::from(eighth) * FRAC_PI_4).collect()
 }
 
 /// Every candidate: the catalogue, and the user's own effects.
@@ -77,14 +98,20 @@ impl Variant {
         let mut all = vec![Variant { term: self.term, spacing }];
         let Term::Effect(effect) = self.term else { return all };
         let values = effect.inner_values();
-        // powers of the excitation are whole numbers
-        let continuous = if matches!(effect, Effect::ExcitationGainNonlinearity { .. }) { 0 } else { values.len() };
-        for index in 0..continuous {
+        for (index, parameter) in effect.inner().iter().enumerate() {
             // the first says where the effect sets in, the others what it is like beyond
             let powers: &[i32] = if index == 0 { &[-2, -1, 1, 2] } else { &[-1, 1] };
             for power in powers {
                 let mut moved = values.clone();
-                moved[index] *= spacing.powi(*power);
+                match parameter.range {
+                    // powers are whole numbers
+                    InnerRange::Either(..) => continue,
+                    // an angle
+                    InnerRange::Any => {
+                        moved[index] += f64::from(*power) * FRAC_PI_4 * spacing.ln() / RIPPLE.ln();
+                    }
+                    _ => moved[index] *= spacing.powi(*power),
+                }
                 let term = effect.with_inner(&moved).map(Term::Effect);
                 all.extend(term.ok().map(|term| Variant { term, spacing }));
             }

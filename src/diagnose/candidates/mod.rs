@@ -3,5 +3,5 @@
 mod contest;
 mod grid;
 
-pub(super) use contest::{Contender, contender, contest};
+pub(super) use contest::{Contender, TRAP, contender, contest};
 pub use grid::same_effect;

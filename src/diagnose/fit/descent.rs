@@ -346,10 +346,12 @@ impl<'a> Descent<'a> {
         self.exogenous.add_prior(information);
     }
 
-    /// Row and coefficient of every delayed excitation.
+    /// Row and coefficient of every excitation that acts late.
     fn delays(&self) -> impl Iterator<Item = (usize, f64)> {
         let unknowns = self.parts.unknowns.iter().enumerate();
-        let delayed = |index: usize| matches!(self.form.terms[index], Term::Effect(Effect::ExcitationDelay { .. }));
+        let delayed = |index: usize| {
+            matches!(self.form.terms[index], Term::Effect(Effect::ExcitationDelay { .. } | Effect::ActuatorLag { .. }))
+        };
         unknowns.filter(move |(_, index)| delayed(**index)).map(|(row, index)| (row, self.coefficients[*index]))
     }
 }

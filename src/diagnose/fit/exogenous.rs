@@ -189,13 +189,13 @@ fn put<T>(rows: &mut [Vec<Line>], column: usize, values: &[T], line: impl Fn(&T)
     rows.iter_mut().zip(values).for_each(|(row, value)| row[column] = line(value));
 }
 
-/// How a hysteresis changes with the displacement over every interval; none of any other term.
+/// How a loop changes with the displacement over every interval; none of any other term.
 fn tangents(series: usize, term: Term, piece: &Piece, states: &[State], forces: &[Line]) -> Option<Vec<Tangent>> {
-    let effect = term.effect().filter(|effect| matches!(effect, Effect::Hysteresis { .. }))?;
+    let effect = term.effect().filter(|effect| effect.loop_tangent(0.0, 1.0).is_some())?;
     let tangent = |(k, line): (usize, &Line)| {
         let (from, to) = (states[k], states[k + 1]);
-        let (z, way) = (0.5 * (line[0] + line[1]), to.q - from.q);
-        let [slope, kept] = effect.loop_tangent(z, way).unwrap_or([0.0, 1.0]);
+        let (mean, way) = (0.5 * (line[0] + line[1]), to.q - from.q);
+        let [slope, kept] = effect.loop_tangent(mean, way).unwrap_or([0.0, 1.0]);
         let displacement = displacement(from, to, piece.t[k + 1] - piece.t[k]);
         Tangent { series, slope, kept, displacement, ends: [from.q, to.q] }
     };

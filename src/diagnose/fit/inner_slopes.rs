@@ -34,9 +34,9 @@ pub(super) fn sought(form: &Form) -> Vec<Sought> {
     form.open.iter().enumerate().flat_map(of).collect()
 }
 
-/// Whether the inner parameter of that position takes any value, not a few.
+/// Whether the inner parameter of that position has a logarithm, and takes any value, not a few.
 fn is_continuous(effect: Effect, parameter: usize) -> bool {
-    !matches!(effect.inner()[parameter].range, InnerRange::Either(..))
+    !matches!(effect.inner()[parameter].range, InnerRange::Either(..) | InnerRange::Any)
 }
 
 fn effect_at(form: &Form, index: usize) -> Option<Effect> {

@@ -8,7 +8,7 @@ use super::equation::delay_of;
 use super::record::{Column, Record, Timing};
 use crate::diagnose::Piece;
 use crate::diagnose::motion::Motion;
-use crate::law::{self, Dynamics, History, Samples, State, Term};
+use crate::law::{self, Dynamics, Effect, History, Hold, Samples, State, Term, Trajectory, term_series};
 use std::f64::consts::TAU;
 
 /// Steps of integration in an interval between two samples: 50 of these make a period of the fastest motion that samples show.
@@ -72,7 +72,8 @@ fn led(law: law::Motion, record: &Record, timing: Timing, piece: &Piece, followe
     let dynamics = Dynamics::new(law, &record.expressions).ok()?;
     let rate = TAU / record.period;
     let acts: Vec<f64> = piece.t.iter().map(|t| t + timing.delay).collect();
-    let samples = Samples { t: &acts, excitation: &piece.excitation, hold: timing.hold };
+    let acting = acting(piece, &acts, timing);
+    let samples = Samples { t: &acts, excitation: &acting.0, hold: acting.1 };
     let mut phase = dynamics.rest(followed[0]);
     let mut led = Led { states: vec![phase.state], forces: vec![0.0] };
     for (times, goal) in piece.t.windows(2).zip(followed) {
@@ -91,6 +92,16 @@ fn led(law: law::Motion, record: &Record, timing: Timing, piece: &Piece, followe
         led.forces.push(force);
     }
     Some(led)
+}
+
+/// The excitation behind an actuator's lag at the instants at which it acts, which then runs straight between them; without lag as recorded.
+fn acting(piece: &Piece, t: &[f64], timing: Timing) -> (Vec<f64>, Hold) {
+    let force = &piece.excitation;
+    let Some(lag) = Effect::lag(timing.lag) else { return (force.clone(), timing.hold) };
+    let still = vec![0.0; t.len()];
+    let trajectory = Trajectory { t, q: &still, qd: &still, excitation: force, hold: timing.hold };
+    let behind = term_series(Term::Effect(lag), &[], &trajectory);
+    (force.iter().zip(behind).map(|(force, behind)| force - behind).collect(), Hold::Linear)
 }
 
 /// What the sensors of a motion read of these states, where they read.

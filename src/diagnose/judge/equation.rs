@@ -200,16 +200,17 @@ impl Equation {
     }
 }
 
-/// Whether a term has a column among those that explain: the inertia has none where it is the target, a delay none as it is in the
+/// Whether a term has a column among those that explain: the inertia has none where it is the target, a delay or a lag none as it is in the
 /// excitation's own.
 fn has_column(term: Term, target: Target) -> bool {
     delay_of(term).is_none() && (target == Target::Force || term != Term::Inertia)
 }
 
-/// The delay that a term is, s.
+/// How late the excitation acts by a term, s, as far as its rate tells: a delay, or an actuator's time constant.
 pub(in crate::diagnose) fn delay_of(term: Term) -> Option<f64> {
     match term {
         Term::Effect(Effect::ExcitationDelay { delay }) => Some(delay.value()),
+        Term::Effect(Effect::ActuatorLag { time }) => Some(time.value()),
         _ => None,
     }
 }

@@ -16,6 +16,8 @@ pub struct Timing {
     pub hold: Hold,
     /// How much later than recorded it acted, s; negative where the record comes late.
     pub delay: f64,
+    /// Time constant of the first-order lag with which it acted, s; 0 for none.
+    pub lag: f64,
 }
 
 /// Recordings of one system, ready to be judged.
@@ -144,7 +146,14 @@ impl Record {
         let place = self.nodes.iter().position(|(own, other, _)| (own, other) == (index, number)).unwrap_or(0);
         let impulses = self.impulses[timing.hold as usize].get_or_init(|| vec![OnceCell::new(); self.nodes.len()]);
         let impulse = impulses[place].get_or_init(|| Impulse::new(piece, timing.hold));
-        nodes.excitation(impulse, timing.delay)
+        let delayed = nodes.excitation(impulse, timing.delay);
+        match Effect::lag(timing.lag) {
+            Some(lag) => {
+                let behind = term_series(Term::Effect(lag), &[], &nodes.trajectory(&delayed));
+                delayed.iter().zip(behind).map(|(force, behind)| force - behind).collect()
+            }
+            None => delayed,
+        }
     }
 
     /// ∫ φ F dt.
@@ -225,7 +234,9 @@ impl Record {
 
     /// Whether a term holds q̈ itself.
     pub(in crate::diagnose) fn accelerates(&self, term: Term) -> bool {
-        matches!(term, Term::Effect(Effect::HiddenResonator { .. })) || term.mass(1.0) != 0.0
+        // a Maxwell element is a damper less a filtered acceleration
+        matches!(term, Term::Effect(Effect::HiddenResonator { .. } | Effect::Relaxation { .. }))
+            || term.mass(1.0) != 0.0
     }
 
     /// Whether a term depends on the excitation.

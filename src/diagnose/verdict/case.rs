@@ -3,11 +3,11 @@
 use super::errors::{TIE, WindowError, are_adequate, errors};
 use super::law::Law;
 use crate::diagnose::judge::{
-    Blocks, Bootstrap, COUNT, Equation, Estimate, Folds, HeldOut, Record, Target, Timing, Trial, delay_of, estimate,
-    floor, floor_of_law, instrumented, noise_share,
+    Blocks, Bootstrap, COUNT, Equation, Estimate, Folds, HeldOut, Record, Target, Timing, Trial, estimate, floor,
+    floor_of_law, instrumented, noise_share,
 };
 use crate::identify::Recording;
-use crate::law::{Expression, Hold, Term};
+use crate::law::{Effect, Expression, Hold, Inner, Term};
 use std::cell::OnceCell;
 
 /// Std by which the instruments' value must differ for least squares to be biased.
@@ -97,28 +97,26 @@ impl Case {
     /// The hold that suits a law best, each with the little delay that suits it: a wrong hold and half a sample's delay look alike, so that of
     /// equally good ones that with the least delay is taken.
     fn timed(&self, terms: &[Term]) -> Timing {
-        let delay = own_delay(terms);
         let all: Vec<(f64, f64, Timing)> = self.holds().into_iter().map(|hold| self.held(terms, hold)).collect();
         let least = all.iter().map(|(error, ..)| *error).fold(f64::INFINITY, f64::min);
         let ties = all.into_iter().filter(|(error, ..)| *error <= least + TIE);
         let best = ties.min_by(|a, b| a.1.total_cmp(&b.1));
-        best.map_or(Timing { hold: Hold::Linear, delay }, |(_, _, timing)| timing)
+        best.map_or_else(|| own_timing(terms, Hold::Linear), |(_, _, timing)| timing)
     }
 
     /// The error under a hold with the delay that suits it, how far that is from the law's own, s, and when the excitation then acted.
     fn held(&self, terms: &[Term], hold: Hold) -> (f64, f64, Timing) {
-        let own = own_delay(terms);
-        let timing = self.centred(terms, Timing { hold, delay: own });
+        let own = own_timing(terms, hold);
+        let timing = self.centred(terms, own);
         let equation = Equation::new(&self.record, terms, self.target, timing, true);
         let error = self.error(&equation);
         let more = self.estimated(equation).and_then(|found| found.delay).map_or(0.0, |[step, _]| step);
-        (error, (timing.delay + more - own).abs(), timing)
+        (error, (timing.delay + more - own.delay).abs(), timing)
     }
 
     /// The law with the hold that suits it best, and no more delay than it has itself.
     pub(in crate::diagnose) fn punctual(&self, terms: &[Term]) -> Equation {
-        let delay = own_delay(terms);
-        let at = |hold: Hold| Equation::new(&self.record, terms, self.target, Timing { hold, delay }, false);
+        let at = |hold: Hold| Equation::new(&self.record, terms, self.target, own_timing(terms, hold), false);
         let all = self.holds().into_iter().map(at).map(|equation| (self.error(&equation), equation));
         let best = all.min_by(|a, b| a.0.total_cmp(&b.0));
         best.map_or_else(|| at(Hold::Linear), |(_, equation)| equation)
@@ -160,7 +158,7 @@ impl Case {
     /// negative: half a period of delay turns a law round.
     pub(in crate::diagnose) fn delayed(&self, terms: &[Term]) -> Option<f64> {
         let hold = self.timed(terms).hold;
-        let at = |delay: f64| Equation::new(&self.record, terms, self.target, Timing { hold, delay }, true);
+        let at = |delay: f64| Equation::new(&self.record, terms, self.target, Timing { hold, delay, lag: 0.0 }, true);
         let longest = LONGEST * self.record.period;
         let sizes = std::iter::successors(Some(self.record.sample_time), |size| Some(GROWTH * size));
         let judged = |delay: f64| self.folds.judge(&at(delay));
@@ -173,6 +171,20 @@ impl Case {
         });
         let refined = if judged(refined).score(&first) < score { refined } else { delay };
         self.is_forward(at(refined)).then_some(refined)
+    }
+
+    /// The time constant of an actuator's lag, about as late as a delay of that many s, under which the law explains most.
+    pub(in crate::diagnose) fn lagged(&self, terms: &[Term], late: f64) -> f64 {
+        let hold = self.timed(terms).hold;
+        let at = |lag: f64| Equation::new(&self.record, terms, self.target, Timing { hold, delay: 0.0, lag }, true);
+        let judged = |lag: f64| self.folds.judge(&at(lag));
+        let first = judged(late);
+        let best = |middle: f64, ratio: f64| {
+            let tried = (-2..=2).map(|power| middle * f64::powi(ratio, power));
+            let scored = tried.map(|lag| (judged(lag).score(&first), lag));
+            scored.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(middle, |(_, lag)| lag)
+        };
+        best(best(late, GROWTH), GROWTH.cbrt())
     }
 
     /// Whether the inertia is positive.
@@ -274,7 +286,12 @@ impl Case {
     }
 }
 
-/// The delay that is among a law's terms, s.
-fn own_delay(terms: &[Term]) -> f64 {
-    terms.iter().find_map(|term| delay_of(*term)).unwrap_or(0.0)
+/// When the excitation acts by a law's own terms.
+fn own_timing(terms: &[Term], hold: Hold) -> Timing {
+    let effects = || terms.iter().filter_map(|term| term.effect());
+    let delay =
+        effects().find_map(|effect| if let Effect::ExcitationDelay { delay } = effect { Some(delay) } else { None });
+    let lag = effects().find_map(|effect| if let Effect::ActuatorLag { time } = effect { Some(time) } else { None });
+    let [delay, lag] = [delay, lag].map(|inner| inner.map_or(0.0, Inner::value));
+    Timing { hold, delay, lag }
 }

@@ -1,7 +1,8 @@
 //! A displacement whose sensor drifts, seen before any effect is: no effect knows the time.
 
 use super::case::{Case, Standing};
-use super::diagnosis::{Doubt, LARGE, diagnose, is_large};
+use super::diagnosis::diagnose;
+use super::doubt::{Doubt, LARGE, is_large};
 use super::errors::{TIE, are_adequate};
 use crate::diagnose::judge::{COUNT, Drift, drift};
 use crate::identify::Recording;

@@ -5,7 +5,8 @@
 //! pairs are sought as such, for neither of two may be the best alone.
 
 use super::case::{Case, Standing};
-use super::diagnosis::{Diagnosis, Doubt, Finding, SURE, diagnose, doubt_of_gain};
+use super::diagnosis::{Diagnosis, Finding, diagnose};
+use super::doubt::{SURE, doubt_of_gain, may_be};
 use super::errors::TIE;
 use super::law::effect_name;
 use crate::diagnose::candidates::same_effect;
@@ -69,7 +70,7 @@ pub(super) fn paired(case: &Case, original: &[Term], terms: &[Term], standing: &
         return None;
     }
     let rest: Vec<Term> = (0..terms.len()).filter(|place| !own.contains(place)).map(|place| terms[place]).collect();
-    let others = alternatives(&diagnose(case, &rest)?);
+    let others = alternatives(case, &diagnose(case, &rest)?);
     let pairs = others.into_iter().filter_map(|other| with_named(case, joined(&rest, other)));
     let told = pairs.filter(|pair| is_told(original, pair));
     let best = told.min_by(|a, b| compare(a, b, standing))?;
@@ -108,10 +109,9 @@ fn with_named(case: &Case, terms: Vec<Term>) -> Option<Exchange> {
 
 /// The best candidates, as far as only chance speaks against them, or that the law's own terms nearly are them: beside another effect they
 /// may be told.
-fn alternatives(found: &Diagnosis) -> Vec<Term> {
-    let may = |doubt: Option<Doubt>| matches!(doubt, None | Some(Doubt::Chance | Doubt::Trap));
-    let may_be = found.candidates.iter().filter(|candidate| may(candidate.doubt));
-    let helps = may_be.filter(|candidate| candidate.score < 0.0);
+fn alternatives(case: &Case, found: &Diagnosis) -> Vec<Term> {
+    let candidates = found.candidates.iter().filter(|candidate| may_be(case, candidate.term, candidate.doubt));
+    let helps = candidates.filter(|candidate| candidate.score < 0.0);
     helps.take(ALTERNATIVES).map(|candidate| candidate.term).collect()
 }
 

@@ -78,7 +78,7 @@ impl Search<'_> {
         let terms = joined(&self.terms, named);
         let Some(standing) = self.case.stand(&terms) else { return false };
         let helps = standing.held.score(&self.standing.held) < 0.0 || delay_of(named).is_some();
-        helps && self.take(Exchange { terms, standing, ties: found.indistinguishable.clone() })
+        helps && self.take(Exchange { terms, standing, ties: found.indistinguishable.clone() }, 1)
     }
 
     /// Exchanges added effects until all stand.
@@ -98,20 +98,24 @@ impl Search<'_> {
         }
         let Seen { exchange, ties } = seen(self.case, self.original, &self.terms, &self.standing);
         self.ties.extend(ties);
-        exchange.is_some_and(|exchange| self.take(exchange))
+        exchange.is_some_and(|exchange| self.take(exchange, 1))
     }
 
-    /// Takes the best pair of effects; false where none is better.
+    /// Takes the best pair of effects; false where none is better, or one of the two makes the other superfluous: alone no diagnosis names it.
     fn pair(&mut self) -> bool {
-        paired(self.case, self.original, &self.terms, &self.standing).is_some_and(|pair| self.take(pair))
+        paired(self.case, self.original, &self.terms, &self.standing).is_some_and(|pair| self.take(pair, 2))
     }
 
-    /// Takes a law, less what its newest effect makes superfluous.
-    fn take(&mut self, Exchange { terms, standing, ties }: Exchange) -> bool {
+    /// Takes a law, less what its newest effect makes superfluous; false where fewer than so many added effects are left.
+    fn take(&mut self, Exchange { terms, standing, ties }: Exchange, fewest: usize) -> bool {
         let Some(newest) = terms.last().copied() else { return false };
         let Some((terms, standing)) = without_superfluous(self.case, (terms, standing), self.original, newest) else {
             return false;
         };
+        let late = terms.iter().filter(|term| delay_of(**term).is_some()).count();
+        if added(self.original, &terms).len() + late < fewest {
+            return false;
+        }
         (self.terms, self.standing) = (terms, standing);
         self.ties.push((newest, ties));
         true

@@ -1,8 +1,11 @@
 //! What a record says of a law: which effect it lacks, what that explains, and what is left.
 
 mod case;
+mod contained;
 mod diagnosis;
+mod doubt;
 mod drifting;
+mod entry;
 mod errors;
 mod exchange;
 mod improve;
@@ -13,8 +16,11 @@ mod remainder;
 mod sharpen;
 mod stages;
 mod timing;
+mod untold;
 
-pub use diagnosis::{Candidate, Diagnosis, Doubt, Finding, LEVEL, WORTH};
+pub use diagnosis::{Diagnosis, Finding};
+pub use doubt::{Doubt, LEVEL, WORTH};
+pub use entry::Candidate;
 pub use errors::{ADEQUATE, WindowError, are_adequate};
 pub use improve::{Addition, Improvement, Step};
 pub use law::Law;

@@ -109,9 +109,15 @@ impl Posed {
 
 /// The law with one more term whose inner parameters are fitted from a free start.
 fn with_open(case: &Case, terms: Vec<Term>, term: Term) -> Option<Vec<Term>> {
-    let fitted = if delay_of(term).is_some() {
-        let delay = case.delayed(&terms).unwrap_or(0.0);
-        Term::Effect(Effect::ExcitationDelay { delay: Inner::new(delay) })
+    let fitted = if let Some(given) = delay_of(term) {
+        let delay = case.delayed(&terms);
+        match term.effect() {
+            Some(effect @ Effect::ActuatorLag { .. }) => {
+                let lag = case.lagged(&terms, delay.unwrap_or(given));
+                effect.with_inner(&[lag]).map_or(term, Term::Effect)
+            }
+            _ => Term::Effect(Effect::ExcitationDelay { delay: Inner::new(delay.unwrap_or(0.0)) }),
+        }
     } else {
         let before = case.stand(&terms)?;
         contender(&case.record, &case.folds, &before.equation, &before.held, term).map_or(term, |found| found.term)

@@ -3,7 +3,7 @@
 use super::entry::{Entry, Sign};
 use crate::law::{Effect, Term};
 
-pub(super) const ENTRIES: [Entry; 22] = [
+pub(super) const ENTRIES: [Entry; 30] = [
     Entry {
         id: "inertia",
         term: Term::Inertia,
@@ -25,7 +25,14 @@ pub(super) const ENTRIES: [Entry; 22] = [
                  speed.",
         reference: "Armstrong-Hélouvry, Dupont and Canudas de Wit, A survey of models, analysis tools and compensation \
                  methods for the control of machines with friction, Automatica 30(7), 1994.",
-        look_alikes: &["stribeck_friction", "hysteresis", "linear_damping"],
+        look_alikes: &[
+            "stribeck_friction",
+            "presliding_friction",
+            "hysteresis",
+            "linear_damping",
+            "load_dependent_friction",
+            "position_dependent_friction",
+        ],
         contains: &[],
     },
     Entry {
@@ -43,6 +50,8 @@ pub(super) const ENTRIES: [Entry; 22] = [
             "cubic_damping",
             "van_der_pol_damping",
             "excitation_delay",
+            "relaxation",
+            "actuator_lag",
         ],
         contains: &[],
     },
@@ -55,7 +64,7 @@ pub(super) const ENTRIES: [Entry; 22] = [
         reason: "A lubricated contact carries its film only at speed: friction falls from breakaway to the running level.",
         reference: "Bo and Pavelescu, The friction-speed relation and its influence on the critical velocity of stick-slip \
                  motion, Wear 82, 1982.",
-        look_alikes: &["coulomb_friction", "hysteresis"],
+        look_alikes: &["coulomb_friction", "presliding_friction", "hysteresis"],
         contains: &["coulomb_friction"],
     },
     Entry {
@@ -101,7 +110,7 @@ pub(super) const ENTRIES: [Entry; 22] = [
         residual: "The residual has a mean that does not depend on the motion.",
         reason: "Gravity, preload, or the offset of a force or displacement sensor.",
         reference: "Ljung, System Identification: Theory for the User, Prentice Hall 1999, sect. 14.1.",
-        look_alikes: &["quadratic_stiffness"],
+        look_alikes: &["quadratic_stiffness", "asymmetric_damping"],
         contains: &[],
     },
     Entry {
@@ -119,6 +128,8 @@ pub(super) const ENTRIES: [Entry; 22] = [
             "cubic_stiffness",
             "dead_zone_stiffness",
             "bilinear_stiffness",
+            "presliding_friction",
+            "relaxation",
         ],
         contains: &[],
     },
@@ -172,7 +183,7 @@ pub(super) const ENTRIES: [Entry; 22] = [
         residual: "The residual follows the displacement and bends over at large angles.",
         reason: "Gravity on a swinging mass, magnetic torque, a superconducting junction's current.",
         reference: "Baker and Blackburn, The Pendulum: A Case Study in Physics, Oxford University Press 2005.",
-        look_alikes: &["linear_stiffness", "cubic_stiffness"],
+        look_alikes: &["linear_stiffness", "cubic_stiffness", "cogging"],
         contains: &["linear_stiffness"],
     },
     Entry {
@@ -254,7 +265,7 @@ pub(super) const ENTRIES: [Entry; 22] = [
         residual: "The residual follows the rate of the excitation and grows with its frequency.",
         reason: "Sampling, filters, buses and actuators let the force act later than it is recorded.",
         reference: "Hu and Wang, Dynamics of Controlled Mechanical Systems with Delayed Feedback, Springer 2002.",
-        look_alikes: &["linear_damping"],
+        look_alikes: &["linear_damping", "actuator_lag"],
         contains: &[],
     },
     Entry {
@@ -267,8 +278,15 @@ pub(super) const ENTRIES: [Entry; 22] = [
         reason: "Bolted joints, wire ropes, rubber and presliding friction store a displacement before they slip.",
         reference: "Wen, Method for random vibration of hysteretic systems, Journal of the Engineering Mechanics Division \
                  ASCE 102(2), 1976; Dahl, A solid friction model, Aerospace Corporation TOR-0158, 1968.",
-        look_alikes: &["coulomb_friction", "stribeck_friction", "linear_stiffness"],
-        contains: &["coulomb_friction", "linear_stiffness"],
+        look_alikes: &[
+            "coulomb_friction",
+            "stribeck_friction",
+            "presliding_friction",
+            "friction_with_backlash",
+            "position_dependent_friction",
+            "linear_stiffness",
+        ],
+        contains: &["coulomb_friction", "presliding_friction", "linear_stiffness"],
     },
     Entry {
         id: "hidden_resonator",
@@ -281,5 +299,105 @@ pub(super) const ENTRIES: [Entry; 22] = [
         reference: "Den Hartog, Mechanical Vibrations, McGraw-Hill 1956, sect. 3.2.",
         look_alikes: &["inertia"],
         contains: &["inertia"],
+    },
+    Entry {
+        id: "presliding_friction",
+        term: Term::Effect(Effect::ALL[13]),
+        equation: "z/x_s, ż = q̇ − |q̇| z/x_s",
+        sign: Sign::Positive,
+        residual: "The residual is a square wave of the velocity's sign whose flanks are bent: after a reversal it turns over a way, not at \
+                   once.",
+        reason: "Asperities of a dry contact bend like springs before they slip.",
+        reference: "Dahl, A solid friction model, Aerospace Corporation TOR-0158(3107-18)-1, 1968.",
+        look_alikes: &[
+            "coulomb_friction",
+            "stribeck_friction",
+            "hysteresis",
+            "friction_with_backlash",
+            "linear_stiffness",
+        ],
+        contains: &["coulomb_friction", "linear_stiffness"],
+    },
+    Entry {
+        id: "friction_with_backlash",
+        term: Term::Effect(Effect::ALL[14]),
+        equation: "z/x_s, ė = q̇ − |q̇| z/x_s, z = sign(e) max(|e| − g, 0)",
+        sign: Sign::Positive,
+        residual: "The residual is friction that lets go after a reversal: it falls to zero, stays there over a way, then builds up again.",
+        reason: "A brake, damper or gear whose parts have play before friction takes hold.",
+        reference: "Nordin and Gutman, Controlling mechanical systems with backlash: a survey, Automatica 38(10), 2002; \
+                 Dahl, A solid friction model, Aerospace Corporation TOR-0158(3107-18)-1, 1968.",
+        look_alikes: &["presliding_friction", "hysteresis"],
+        contains: &["presliding_friction", "coulomb_friction"],
+    },
+    Entry {
+        id: "asymmetric_damping",
+        term: Term::Effect(Effect::ALL[15]),
+        equation: "|q̇|",
+        sign: Sign::Any,
+        residual: "The residual is proportional to the speed and keeps its sign where the velocity reverses.",
+        reason: "Valves, seals and gears that resist more in one direction than in the other. Dry friction of two levels is coulomb_friction \
+                 beside constant_force.",
+        reference: "Dixon, The Shock Absorber Handbook, Wiley 2007.",
+        look_alikes: &["constant_force"],
+        contains: &[],
+    },
+    Entry {
+        id: "load_dependent_friction",
+        term: Term::Effect(Effect::ALL[16]),
+        equation: "|F| sign(q̇)",
+        sign: Sign::Positive,
+        residual: "The residual opposes the velocity and is as large as the excitation.",
+        reason: "Gears, screws and bearings press their contacts together by the force that they transmit: the part that is lost is one \
+                 less their efficiency.",
+        reference: "Armstrong-Hélouvry, Dupont and Canudas de Wit, A survey of models, analysis tools and compensation \
+                 methods for the control of machines with friction, Automatica 30(7), 1994.",
+        look_alikes: &["coulomb_friction"],
+        contains: &[],
+    },
+    Entry {
+        id: "position_dependent_friction",
+        term: Term::Effect(Effect::ALL[17]),
+        equation: "q sign(q̇), q² sign(q̇)",
+        sign: Sign::Any,
+        residual: "The residual jumps where the velocity reverses, by as much as the place there says.",
+        reason: "Guides that are bent or worn, seals in a cone, cables whose wrap changes.",
+        reference: "Armstrong-Hélouvry, Dupont and Canudas de Wit, A survey of models, analysis tools and compensation \
+                 methods for the control of machines with friction, Automatica 30(7), 1994.",
+        look_alikes: &["coulomb_friction", "hysteresis"],
+        contains: &[],
+    },
+    Entry {
+        id: "cogging",
+        term: Term::Effect(Effect::ALL[18]),
+        equation: "sin(N q + φ): sin N q, cos N q",
+        sign: Sign::Any,
+        residual: "The residual repeats at equal distances of the displacement, whatever the speed.",
+        reason: "Magnets that face slots, gear teeth, rolling bodies, the eccentricity of a shaft.",
+        reference: "Gieras, Permanent Magnet Motor Technology: Design and Applications, CRC Press 2009.",
+        look_alikes: &["pendulum_restoring"],
+        contains: &["pendulum_restoring"],
+    },
+    Entry {
+        id: "relaxation",
+        term: Term::Effect(Effect::ALL[19]),
+        equation: "w, τ ẇ = q̇ − w",
+        sign: Sign::Positive,
+        residual: "The residual is a damper's force in slow motion and a spring's in fast motion, and fades after a step of the displacement.",
+        reason: "Rubber, polymers and fluids in elastic lines: a damper in series with a spring.",
+        reference: "Christensen, Theory of Viscoelasticity: An Introduction, Academic Press 1982.",
+        look_alikes: &["linear_damping", "linear_stiffness"],
+        contains: &["linear_damping", "linear_stiffness"],
+    },
+    Entry {
+        id: "actuator_lag",
+        term: Term::Effect(Effect::ALL[20]),
+        equation: "F − F_a, τ Ḟ_a = F − F_a",
+        sign: Sign::Positive,
+        residual: "The residual follows the rate of the excitation, less so at high frequency.",
+        reason: "A motor's inductance, a valve, an amplifier or a filter lets the force follow its command gradually.",
+        reference: "Ljung, System Identification: Theory for the User, Prentice Hall 1999.",
+        look_alikes: &["excitation_delay", "linear_damping"],
+        contains: &["excitation_delay"],
     },
 ];

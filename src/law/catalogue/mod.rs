@@ -49,7 +49,7 @@ mod tests {
         for effect in Effect::ALL {
             assert_eq!(Catalogue::of(Term::Effect(effect)).unwrap().id, effect.id());
         }
-        assert_eq!(Catalogue::ENTRIES.len(), 22);
+        assert_eq!(Catalogue::ENTRIES.len(), 30);
     }
 
     #[test]

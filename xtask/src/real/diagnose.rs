@@ -27,6 +27,8 @@ pub struct Row {
     left: Option<String>,
     timing: Option<String>,
     right: bool,
+    /// The effect named is the reference's best, or leaves no more than a tenth more; rightly none counts.
+    best: bool,
     /// Something can be claimed of the record.
     claimable: bool,
     /// The effect is named with a std above its coefficient.
@@ -56,6 +58,7 @@ impl Row {
         Row {
             record: record.name.clone(),
             right: is_right(&record.right, &read.verdict, read.effect.as_deref(), &read.tie),
+            best: is_best(record, &read),
             claimable: !record.right.is_empty(),
             ratio: read.after[MIDDLE].zip(after_reference).map(|(ours, reference)| ours / reference),
             unknown: read.coefficient.is_some_and(|[value, std]| super::score::is_unknown(value, std)),
@@ -108,6 +111,7 @@ impl Row {
             fixed(self.explained, 2),
             table::text(self.timing.as_deref()),
             if self.right { "right" } else { "wrong" }.into(),
+            if self.best { "yes" } else { "no" }.into(),
             fixed(Some(self.seconds), 2),
         ]
     }
@@ -119,8 +123,17 @@ impl Row {
     }
 }
 
+/// Error ÷ the reference's with its best effect up to which another effect is as good.
+const AS_GOOD: f64 = 1.1;
+
+fn is_best(record: &Record, read: &Diagnosis) -> bool {
+    let Some(effect) = &read.effect else { return record.right.is_empty() && !read.verdict.is_empty() };
+    let leaves = |error: f64| read.after[MIDDLE].is_some_and(|after| after <= AS_GOOD * error);
+    record.best.as_ref().is_some_and(|best| best.effect == *effect || leaves(best.error))
+}
+
 const HEADINGS: &str = "record | verdict | effect | tie | T₀, s (reference) | error before at 0.1/0.3/1 T₀ (reference) \
-    | after (reference at 0.3 T₀) | ratio | p | explained | timing | first answer | CPU, s";
+    | after (reference at 0.3 T₀) | ratio | p | explained | timing | first answer | best effect | CPU, s";
 
 /// The answers as a table.
 pub fn text(rows: &[Row]) -> String {
@@ -131,6 +144,9 @@ pub fn text(rows: &[Row]) -> String {
 /// Wrong first answers that the floor allows, of twelve.
 const ALLOWED: usize = 1;
 
+/// Best effects other than the reference's that the floor allows, of twelve.
+const UNLIKE: usize = 3;
+
 /// Right answers, and errors beside the reference's.
 pub fn figures(rows: &[Row], records: usize) -> Vec<Figure> {
     let right = rows.iter().filter(|row| row.right).count() as f64;
@@ -139,6 +155,10 @@ pub fn figures(rows: &[Row], records: usize) -> Vec<Figure> {
     let floor = if rows.len() == records { all - ALLOWED as f64 } else { all };
     let ratio = |which: &str| format!("held-out error ÷ the reference's, {which} of {}", ratios.len());
     let mut figures = vec![Figure::at_least(&format!("first answer right, of {all}"), Some(right), floor, all)];
+    let best = rows.iter().filter(|row| row.best).count() as f64;
+    let name = format!("best effect is the reference's, or within {AS_GOOD} of its error, of {all}");
+    let floor = if rows.len() == records { all - UNLIKE as f64 } else { 0.0 };
+    figures.push(Figure::at_least(&name, Some(best), floor, all));
     if rows.iter().any(|row| row.claimable) {
         figures.push(Figure::at_most(&ratio("median"), median(&ratios), 1.15, 1.0));
         figures.push(Figure::at_most(&ratio("worst"), worst(&ratios), 1.5, 1.2));
@@ -170,7 +190,8 @@ mod tests {
             (Some(1.0), true),
             "a part of the records: all must be right"
         );
-        assert_eq!((figures[1].value, figures[2].value), (Some(1.125), Some(1.25)));
+        assert_eq!(figures[1].value, Some(1.0), "drag leaves more than twice what friction does");
+        assert_eq!((figures[2].value, figures[3].value), (Some(1.125), Some(1.25)));
         assert_eq!(row("cubic_damping", 0.1).ratio, None, "the reference does not have it");
     }
 

@@ -4,7 +4,7 @@ use super::answer::list;
 use super::binary::Binary;
 use super::figure::Figure;
 use super::reference::Record;
-use super::score::{is_unknown, rises};
+use super::score::{is_unknown, median, rises};
 use super::table::{self, fixed, table};
 use crate::error::Error;
 use serde::Serialize;
@@ -17,6 +17,8 @@ pub struct Row {
     steps: Vec<Step>,
     verdict: String,
     rises: usize,
+    /// Error after two effects ÷ the reference's.
+    ratio: Option<f64>,
     crashed: bool,
     failure: Option<String>,
     seconds: f64,
@@ -47,6 +49,7 @@ pub fn measure(binary: &Binary, record: &Record, data: &str) -> Result<Row, Erro
     let steps = steps(&document);
     Ok(Row {
         record: record.name.clone(),
+        ratio: after_two(&steps).zip(record.then).map(|(ours, reference)| ours / reference),
         rises: rises(&steps.iter().map(|step| step.error).collect::<Vec<_>>()),
         steps,
         verdict: document["verdict"].as_str().unwrap_or_default().into(),
@@ -55,6 +58,14 @@ pub fn measure(binary: &Binary, record: &Record, data: &str) -> Result<Row, Erro
         seconds: answer.seconds,
     })
 }
+
+/// Held-out error after two effects, or as many as there are.
+fn after_two(steps: &[Step]) -> Option<f64> {
+    steps.iter().take(1 + TWO).next_back()?.error
+}
+
+/// Effects after which the reference says its "then".
+const TWO: usize = 2;
 
 fn steps(document: &Value) -> Vec<Step> {
     let steps = list(&document["steps"]);
@@ -89,7 +100,8 @@ impl Row {
         let verdict = if self.verdict.is_empty() { table::NONE.into() } else { self.verdict.clone() };
         let counts = [self.rises, self.unknown()].map(|count| count.to_string());
         let [rises, unknown] = counts;
-        vec![self.record.clone(), self.staircase(), rises, unknown, verdict, fixed(Some(self.seconds), 2)]
+        let ratio = fixed(self.ratio, 2);
+        vec![self.record.clone(), self.staircase(), ratio, rises, unknown, verdict, fixed(Some(self.seconds), 2)]
     }
 
     /// `0.197 → coulomb_friction 0.036`, a coefficient that is not known with "?".
@@ -104,18 +116,21 @@ impl Row {
     }
 }
 
-const HEADINGS: &str =
-    "record | held-out error at 0.3 T₀ | steps that raise it | std above coefficient | verdict at the end | CPU, s";
+const HEADINGS: &str = "record | held-out error at 0.3 T₀ | after two ÷ reference | steps that raise it | std above coefficient | verdict at the end | CPU, s";
 
 /// The staircases as a table.
 pub fn text(rows: &[Row]) -> String {
     table(HEADINGS, &rows.iter().map(Row::cells).collect::<Vec<_>>())
 }
 
-/// Steps that raise the error.
+/// Steps that raise the error, and what two effects leave beside the reference's.
 pub fn figures(rows: &[Row]) -> Vec<Figure> {
     let rises: usize = rows.iter().map(|row| row.rises).sum();
-    vec![Figure::at_most("steps that raise the held-out error", Some(rises as f64), 0.0, 0.0)]
+    let ratios: Vec<f64> = rows.iter().filter_map(|row| row.ratio).collect();
+    let name = format!("held-out error after two effects ÷ the reference's, median of {}", ratios.len());
+    let two = (!ratios.is_empty()).then(|| Figure::at_most(&name, median(&ratios), 1.2, 1.0));
+    let rises = Figure::at_most("steps that raise the held-out error", Some(rises as f64), 0.0, 0.0);
+    [rises].into_iter().chain(two).collect()
 }
 
 #[cfg(test)]
@@ -135,5 +150,6 @@ mod tests {
         assert_eq!(steps[3], Step { effect: Some("c".into()), error: None, unknown: true });
         let errors: Vec<Option<f64>> = steps.iter().map(|step| step.error).collect();
         assert_eq!(rises(&errors), 1);
+        assert_eq!((after_two(&steps), after_two(&steps[..2]), after_two(&[])), (Some(0.4), Some(0.2), None));
     }
 }

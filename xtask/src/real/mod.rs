@@ -154,7 +154,7 @@ impl Measured {
         self.figures.extend(transferred);
         let cost = self.diagnose.iter().map(diagnose::Row::cost).find(|(record, _)| *record == COST);
         let cost =
-            cost.map(|(_, seconds)| Figure::at_most("diagnose, 25 000 samples, CPU in s", Some(seconds), 2.0, 0.5));
+            cost.map(|(_, seconds)| Figure::at_most("diagnose, 25 000 samples, CPU in s", Some(seconds), 3.0, 0.7));
         self.figures.extend(cost);
     }
 

@@ -23,10 +23,24 @@ pub struct Record {
     pub errors: [f64; 3],
     /// Held-out errors at 0.3 T₀ with one effect more.
     pub effects: BTreeMap<String, f64>,
+    /// The best single effect; none where there is none.
+    pub best: Option<Best>,
+    /// Held-out error at 0.3 T₀ with a second effect.
+    pub then: Option<f64>,
     /// First answers that count as right; none: nothing may be claimed.
     pub right: Vec<String>,
     /// The law with friction, where `identify` is measured on the record.
     pub law: Option<Law>,
+}
+
+/// An effect and what it leaves.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Best {
+    /// Its id; two ids with a "+" between where the source fits both in one step.
+    pub effect: String,
+    /// Held-out error at 0.3 T₀.
+    pub error: f64,
 }
 
 /// Coefficients of the law with friction.
@@ -88,6 +102,8 @@ mod tests {
         assert_eq!(nothing.collect::<Vec<_>>(), ["dfki_energy", "pneu_oring_3bar"]);
         for record in &records {
             assert!(record.effects.values().all(|error| *error < record.errors[1]), "{}", record.name);
+            assert_eq!(record.best.is_some(), record.then.is_some(), "{}", record.name);
+            assert!(record.best.iter().all(|best| best.error < record.errors[1]), "{}", record.name);
             let massless = !record.terms.contains_key("inertia");
             let imposed = ["mr_", "brfd2_", "pneu_"].iter().any(|start| record.name.starts_with(start));
             assert_eq!(massless, imposed, "{}", record.name);

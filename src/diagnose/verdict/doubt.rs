@@ -1,0 +1,73 @@
+//! What speaks against a candidate: physics, the law's own terms, its std, chance.
+
+use super::case::Case;
+use super::errors::ADEQUATE;
+use crate::diagnose::judge::{COUNT, HeldOut};
+use crate::law::Term;
+
+/// Chance, shared among all candidates tried, below which a gain is none.
+pub const LEVEL: f64 = 0.01;
+
+/// Mean ratio of errors that is worth the word: 5 %.
+pub const WORTH: f64 = 0.95;
+
+/// Ratio of errors beyond the sensors' in every window that needs no test: a third of the energy is gone.
+pub(super) const LARGE: f64 = 0.816;
+
+/// Ratio of errors in one window that disqualifies: 2 % worse.
+pub(super) const WORSE: f64 = 1.02;
+
+/// Std that a coefficient must be away from 0.
+pub(super) const SURE: f64 = 2.0;
+
+/// Why a candidate is not named.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doubt {
+    /// Physics forbids its sign.
+    Sign,
+    /// The law's own terms, the excitation among them, nearly are it.
+    Trap,
+    /// Its coefficient is within its uncertainty.
+    Uncertain,
+    /// It makes the error worse in a window.
+    Worse,
+    /// Its gain may be chance, or is too small to speak of.
+    Chance,
+}
+
+/// What a gain from one law to another leaves to doubt, with its probability by chance and the floor of the first.
+pub(super) fn doubt_of_gain(
+    before: &HeldOut,
+    after: &HeldOut,
+    p_value: Option<f64>,
+    floor: &[f64; COUNT],
+) -> Option<Doubt> {
+    let ratios = after.ratios(before);
+    if ratios.iter().any(|ratio| *ratio > WORSE) || after.errors.iter().any(|error| *error >= 1.0) {
+        return Some(Doubt::Worse);
+    }
+    let mean = after.score(before) / ratios.len().max(1) as f64;
+    let significant = p_value.is_some_and(|p| p < LEVEL) && mean.exp() <= WORTH;
+    (!(is_large(before, after, floor) || significant)).then_some(Doubt::Chance)
+}
+
+/// Whether a gain takes a third of the energy that the sensors do not explain in every window that has such, in two at least.
+pub(super) fn is_large(before: &HeldOut, after: &HeldOut, floor: &[f64; COUNT]) -> bool {
+    let errors = before.errors.iter().zip(&after.errors).zip(floor);
+    let told = errors.filter(|((before, _), floor)| **before > ADEQUATE * **floor);
+    let beyond = |error: f64, floor: f64| (error * error - floor * floor).max(0.0).sqrt();
+    let ratios: Vec<f64> =
+        told.map(|((before, after), floor)| beyond(*after, *floor) / beyond(*before, *floor)).collect();
+    let told = after.ratios(before).len();
+    ratios.len() >= told.min(2) && !ratios.is_empty() && ratios.iter().all(|ratio| *ratio <= LARGE)
+}
+
+/// Whether a candidate may be what is there, as far as only chance or the law's own terms speak against it. One that holds the target and that
+/// the law nearly is, is the target.
+pub(super) fn may_be(case: &Case, term: Term, doubt: Option<Doubt>) -> bool {
+    match doubt {
+        None | Some(Doubt::Chance) => true,
+        Some(Doubt::Trap) => !case.record.accelerates(term),
+        _ => false,
+    }
+}
