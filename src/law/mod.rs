@@ -18,6 +18,7 @@ mod hysteresis_loop;
 mod inner;
 mod inner_parameters;
 mod intervals;
+mod linear_memory;
 mod linearized;
 mod memory;
 mod model;

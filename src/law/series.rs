@@ -1,6 +1,7 @@
 //! What a term is at every sample of a given motion.
 
 use super::hysteresis_loop::Loop;
+use super::linear_memory::lagged;
 use super::memory::{LARGEST, parts};
 use super::{Effect, Expression, Hold, Samples, State, Term};
 
@@ -55,10 +56,10 @@ pub fn term_series(term: Term, expressions: &[Expression], trajectory: &Trajecto
             let at = |shift: f64| (0..n).map(move |k| centred(&samples, k, shift));
             at(0.0).zip(at(delay.value())).map(|(now, before)| now - before).collect()
         }
-        Term::Effect(Effect::Relaxation { time }) => lagged(trajectory.t, trajectory.qd, 0.0, time.value()),
+        Term::Effect(Effect::Relaxation { time }) => followed(trajectory.t, trajectory.qd, 0.0, time.value()),
         Term::Effect(Effect::ActuatorLag { time }) => {
             let force = trajectory.excitation;
-            let acting = lagged(trajectory.t, force, force.first().copied().unwrap_or(0.0), time.value());
+            let acting = followed(trajectory.t, force, force.first().copied().unwrap_or(0.0), time.value());
             force.iter().zip(acting).map(|(now, acting)| now - acting).collect()
         }
         Term::Effect(effect) if effect.memory_length() > 0 => memory_series(effect, trajectory),
@@ -102,13 +103,12 @@ fn memory_series(effect: Effect, trajectory: &Trajectory) -> Vec<f64> {
     series
 }
 
-/// y with τ ẏ = u − y where u runs straight between samples, from y at the first: y is then u − τ u̇ and a part that fades.
-fn lagged(t: &[f64], u: &[f64], first: f64, time: f64) -> Vec<f64> {
+/// y with τ ẏ = u − y where u runs straight between samples, from y at the first.
+fn followed(t: &[f64], u: &[f64], first: f64, time: f64) -> Vec<f64> {
     let mut y = first;
     let next = |k: usize| {
         let dt = t[k + 1] - t[k];
-        let behind = time * (u[k + 1] - u[k]) / dt;
-        y = u[k + 1] - behind + (y - u[k] + behind) * (-dt / time).exp();
+        y = lagged(y, time, [u[k], (u[k + 1] - u[k]) / dt, 0.0], dt);
         y
     };
     let others: Vec<f64> = (0..t.len().saturating_sub(1)).map(next).collect();
