@@ -1,6 +1,6 @@
 //! Memories that are linear in the motion or in the excitation, between samples: a hidden mass, a Maxwell element, an actuator that lags.
 
-use super::memory::LARGEST;
+use super::memory::{LARGEST, lagged};
 use super::{Effect, History, Hold, Trajectory};
 
 /// Mean of a force over an interval, and its first moment about the middle, the interval being 1.
@@ -79,12 +79,6 @@ impl HiddenMass {
         let shrunk = (-decay * dt).exp();
         [[even + decay * odd, odd], [-stiffness * odd, even - decay * odd]].map(|row| row.map(|entry| shrunk * entry))
     }
-}
-
-/// y after an interval of τ ẏ = u − y, u = value + slope t + bend t²: y is then u − τ u̇ + τ² ü and a part that fades.
-pub(super) fn lagged(y: f64, time: f64, [value, slope, bend]: [f64; 3], dt: f64) -> f64 {
-    let own = |t: f64| value + t * (slope + t * bend) - time * (slope + 2.0 * t * bend) + 2.0 * time * time * bend;
-    own(dt) + (y - own(0.0)) * (-dt / time).exp()
 }
 
 /// w with τ ẇ = q̇ − w: its mean and first moment follow from those of q̇ and from w at both ends.

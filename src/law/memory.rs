@@ -95,6 +95,12 @@ fn beyond(displacement: f64, gap: f64) -> f64 {
     sign(displacement) * (displacement.abs() - gap).max(0.0)
 }
 
+/// y after an interval of τ ẏ = u − y, u = value + slope t + bend t²: y is then u − τ u̇ + τ² ü and a part that fades.
+pub(super) fn lagged(y: f64, time: f64, [value, slope, bend]: [f64; 3], dt: f64) -> f64 {
+    let own = |t: f64| value + t * (slope + t * bend) - time * (slope + 2.0 * t * bend) + 2.0 * time * time * bend;
+    own(dt) + (y - own(0.0)) * (-dt / time).exp()
+}
+
 /// A Bouc–Wen loop.
 struct Shape {
     limit: f64,

@@ -1,8 +1,7 @@
 //! What a term is at every sample of a given motion.
 
 use super::hysteresis_loop::Loop;
-use super::linear_memory::lagged;
-use super::memory::{LARGEST, parts};
+use super::memory::{LARGEST, lagged, parts};
 use super::{Effect, Expression, Hold, Samples, State, Term};
 
 /// A motion at instants, measured or estimated; all slices are of one length.

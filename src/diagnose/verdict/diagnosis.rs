@@ -15,7 +15,7 @@ use super::remainder;
 use super::untold::is_of_untold_damper;
 use crate::diagnose::candidates::{Contender, contest};
 use crate::diagnose::judge::{COUNT, HeldOut, PRINCIPAL, delay_of};
-use crate::law::{Effect, Inner, Term};
+use crate::law::{Catalogue, Effect, Inner, Term};
 
 /// Most candidates in a tie.
 const TIED: usize = 3;
@@ -153,14 +153,16 @@ fn acting_late(case: &Case, terms: &[Term], before: &HeldOut, effect: Effect) ->
     Some(Entry { standing: Some(standing), ..Entry::new(contender) })
 }
 
-/// Those that are at least as good as the winner, it first. Once something is missing a tied one need not prove it again; one that the law's
-/// own terms nearly are cannot win alone, but may be what is there.
+/// Those that are at least as good as the winner, it first, those last that contain it: of them it is a limit. Once something is missing a
+/// tied one need not prove it again; one that the law's own terms nearly are cannot win alone, but may be what is there.
 fn ties(case: &Case, entries: &[Entry], winner: usize) -> Vec<Vec<String>> {
     let best = entries[winner].contender.score;
     let near = |entry: &&Entry| entry.may_be(case) && entry.contender.score <= best + TIE * COUNT as f64;
     let others = entries.iter().enumerate().filter(|(index, entry)| *index != winner && near(entry));
-    let first = std::iter::once(entries[winner].name(case));
-    let group: Vec<String> = first.chain(others.map(|(_, entry)| entry.name(case))).collect();
+    let first = entries[winner].name(case);
+    let names = others.map(|(_, entry)| entry.name(case));
+    let (larger, apart): (Vec<String>, Vec<String>) = names.partition(|name| Catalogue::is_contained(&first, name));
+    let group: Vec<String> = [vec![first], apart, larger].concat();
     if group.len() > 1 { vec![group.into_iter().take(TIED).collect()] } else { Vec::new() }
 }
 
