@@ -161,6 +161,20 @@ fn an_effect_of_one_stage_only_is_missing_there() {
 }
 
 #[test]
+fn what_all_stages_lack_is_named_beside_a_switch() {
+    let bench = Bench::new("beside");
+    let second = "[[stage]]\nstart = 15.0\ncoefficients = [1.0, 0.6, 52.0, 0.0]\n";
+    for (effect, value) in [("coulomb_friction", 0.8), ("cubic_stiffness", 6.0), ("quadratic_damping", 0.5)] {
+        simulate(&bench, effect, 31, 2e-3, &format!("{effect} = {value:.1}"), second);
+        let found = diagnose(&bench, &[&format!("{effect}.csv")]);
+        let stages = found["stages"].as_array().unwrap();
+        assert_eq!(stages.len(), 2, "{effect}: {found:#}");
+        assert!((stages[1]["start"].as_f64().unwrap() - 15.0).abs() < 0.5, "{effect}: {found:#}");
+        assert!(stages.iter().all(|stage| stage["effect"] == effect), "{effect}: {found:#}");
+    }
+}
+
+#[test]
 fn add_and_improve_write_models_that_are_at_the_noise() {
     let bench = Bench::new("add");
     simulate(&bench, "a", 71, 2e-3, "coulomb_friction = 0.8", "");

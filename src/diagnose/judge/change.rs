@@ -1,7 +1,8 @@
 //! Where a record may have changed its law: at the instant that leaves least when each side has coefficients of its own.
 //!
 //! Binary segmentation (Vostrikova, Soviet Mathematics Doklady 24, 1981) of the weak equations: the best cut of a stretch, then the best of
-//! either part. An effect that the law lacks leaves its share on both sides, so that it hides no change and is none.
+//! either part. An effect that the law lacks leaves its share on both sides, so that it hides no change and is none. The rival of all cuts
+//! of a stretch is one law whose coefficients drift, each on a straight line over time: where it leaves less, nothing switches.
 
 use super::equation::Equation;
 use super::record::Record;
@@ -16,42 +17,41 @@ const LEAST: f64 = 5.0;
 /// that is large does.
 const LEFT: f64 = 2.0 / 3.0;
 
-/// Sums over the equations of all windows up to each.
+/// Sums over the equations of all windows up to each; every column once as it is and once times its window's time.
 struct Sums {
     gram: Vec<DMatrix<f64>>,
     moment: Vec<DVector<f64>>,
     square: Vec<f64>,
 }
 
+/// A stretch of windows: where its law changes, and how much is left by laws that do not drift.
+struct Stretch {
+    cuts: Vec<usize>,
+    left: f64,
+}
+
 /// Instants at which the record may have changed its law, in seconds on the axis of all pieces end to end.
 pub(in crate::diagnose) fn changes(record: &Record, equation: &Equation) -> Vec<f64> {
     let windows = &record.windows[PRINCIPAL];
-    let sums = Sums::of(&equation.columns(PRINCIPAL), &equation.right[PRINCIPAL], windows.functions);
     let centres = &windows.centres;
-    let mut stretches = vec![(0, centres.len())];
-    let mut found = Vec::new();
-    while let Some((from, to)) = stretches.pop() {
-        let Some(cut) = sums.cut(from, to, |at| {
-            let length = |from: usize, to: usize| centres[to - 1] - centres[from];
-            length(from, at).min(length(at, to)) >= LEAST * record.period
-        }) else {
-            continue;
-        };
-        found.push(0.5 * (centres[cut - 1] + centres[cut]));
-        stretches.extend([(from, cut), (cut, to)]);
-    }
-    found.sort_by(f64::total_cmp);
-    found
+    let sums = Sums::of(&equation.columns(PRINCIPAL), &equation.right[PRINCIPAL], centres);
+    let is_long = |from: usize, to: usize| centres[to - 1] - centres[from] >= LEAST * record.period;
+    let found = sums.stretch(0, centres.len(), &is_long);
+    let cuts = found.map_or_else(Vec::new, |found| found.cuts);
+    cuts.into_iter().map(|cut| 0.5 * (centres[cut - 1] + centres[cut])).collect()
 }
 
 impl Sums {
-    fn of(columns: &[&[f64]], right: &[f64], functions: usize) -> Sums {
+    fn of(columns: &[&[f64]], right: &[f64], centres: &[f64]) -> Sums {
         let p = columns.len();
-        let (mut gram, mut moment, mut square) = (DMatrix::zeros(p, p), DVector::zeros(p), 0.0);
+        let functions = right.len() / centres.len().max(1);
+        let end = centres.last().copied().unwrap_or(1.0);
+        let (mut gram, mut moment, mut square) = (DMatrix::zeros(2 * p, 2 * p), DVector::zeros(2 * p), 0.0);
         let mut sums = Sums { gram: vec![gram.clone()], moment: vec![moment.clone()], square: vec![0.0] };
-        for window in 0..right.len() / functions {
+        for (window, centre) in centres.iter().enumerate() {
             for row in window * functions..(window + 1) * functions {
-                let own = DVector::from_fn(p, |column, _| columns[column][row]);
+                let own = |column: usize| columns[column % p][row] * if column < p { 1.0 } else { centre / end };
+                let own = DVector::from_fn(2 * p, |column, _| own(column));
                 gram += &own * own.transpose();
                 moment += &own * right[row];
                 square += right[row] * right[row];
@@ -65,7 +65,17 @@ impl Sums {
 
     /// What the best coefficients leave of the equations of these windows.
     fn left(&self, from: usize, to: usize) -> Option<f64> {
-        let (gram, moment) = (&self.gram[to] - &self.gram[from], &self.moment[to] - &self.moment[from]);
+        self.left_by(self.moment[0].len() / 2, from, to)
+    }
+
+    /// The same of coefficients that drift.
+    fn left_by_drift(&self, from: usize, to: usize) -> Option<f64> {
+        self.left_by(self.moment[0].len(), from, to)
+    }
+
+    fn left_by(&self, columns: usize, from: usize, to: usize) -> Option<f64> {
+        let gram = (&self.gram[to] - &self.gram[from]).view((0, 0), (columns, columns)).into_owned();
+        let moment = (&self.moment[to] - &self.moment[from]).rows(0, columns).into_owned();
         let square = self.square[to] - self.square[from];
         let explained = Normal { gram, moment: moment.clone() }.solve()?;
         let explained: f64 = explained.iter().zip(moment.iter()).map(|(solution, moment)| solution * moment).sum();
@@ -73,12 +83,24 @@ impl Sums {
     }
 
     /// The first window behind the best cut between `from` and `to`; none where no cut that may be takes enough.
-    fn cut(&self, from: usize, to: usize, may_be: impl Fn(usize) -> bool) -> Option<usize> {
+    fn cut(&self, from: usize, to: usize, is_long: &impl Fn(usize, usize) -> bool) -> Option<usize> {
         let whole = self.left(from, to)?;
-        let parts = (from + 1..to).filter(|at| may_be(*at));
+        let parts = (from + 1..to).filter(|at| is_long(from, *at) && is_long(*at, to));
         let left = parts.filter_map(|at| Some((at, self.left(from, at)? + self.left(at, to)?)));
         let (at, least) = left.min_by(|a, b| a.1.total_cmp(&b.1))?;
         (least < LEFT * whole).then_some(at)
+    }
+
+    /// The windows from `from` to `to` under one law, several or a drifting one.
+    fn stretch(&self, from: usize, to: usize, is_long: &impl Fn(usize, usize) -> bool) -> Option<Stretch> {
+        let left = self.left(from, to)?;
+        let one = Some(Stretch { cuts: Vec::new(), left });
+        let Some(cut) = self.cut(from, to, is_long) else { return one };
+        let (before, after) = (self.stretch(from, cut, is_long)?, self.stretch(cut, to, is_long)?);
+        let several = before.left + after.left;
+        let drifts = self.left_by_drift(from, to)? < several;
+        let cuts = if drifts { Vec::new() } else { [before.cuts, vec![cut], after.cuts].concat() };
+        Some(Stretch { cuts, left: several })
     }
 }
 
@@ -86,20 +108,34 @@ impl Sums {
 mod tests {
     use super::*;
 
-    /// Equations y = a x + noise whose a changes at window 120 of 200.
-    fn sums(change: f64) -> Sums {
+    /// Equations y = a x + noise, two in each of 200 windows; a over the windows.
+    fn sums(coefficient: impl Fn(usize) -> f64) -> Sums {
         let x: Vec<f64> = (0..400).map(|row| (0.37 * f64::from(row)).sin()).collect();
-        let noise = |row: usize| 0.05 * (12.9898 * row as f64).sin();
-        let slope = |row: usize| if row < 240 { 1.0 } else { 1.0 + change };
-        let y: Vec<f64> = x.iter().enumerate().map(|(row, x)| slope(row) * x + noise(row)).collect();
-        Sums::of(&[&x], &y, 2)
+        let noise = |row: usize| 0.1 * ((43758.5453 * (12.9898 * row as f64).sin()).rem_euclid(1.0) - 0.5);
+        let y: Vec<f64> = x.iter().enumerate().map(|(row, x)| coefficient(row / 2) * x + noise(row)).collect();
+        Sums::of(&[&x], &y, &(1..=200).map(f64::from).collect::<Vec<_>>())
+    }
+
+    fn cuts(sums: &Sums) -> Vec<usize> {
+        sums.stretch(0, 200, &|from, to| to - from >= 20).unwrap().cuts
+    }
+
+    fn step(window: usize, at: usize) -> f64 {
+        if window < at { 0.0 } else { 0.3 }
     }
 
     #[test]
     fn a_change_is_found_where_it_is_and_none_where_none_is() {
-        let found = sums(0.3).cut(0, 200, |_| true).unwrap();
-        assert!((118..=122).contains(&found), "{found}");
-        assert_eq!(sums(0.0).cut(0, 200, |_| true), None);
-        assert_eq!(sums(0.3).cut(0, 200, |at| at < 20), None, "too short a stage");
+        let found = cuts(&sums(|window| 1.0 + step(window, 120)));
+        assert!(found.len() == 1 && (118..=122).contains(&found[0]), "{found:?}");
+        assert_eq!(cuts(&sums(|_| 1.0)), [0; 0]);
+        assert_eq!(cuts(&sums(|window| 1.0 + step(window, 10))), [0; 0], "too short a stage");
+    }
+
+    #[test]
+    fn a_drift_is_no_change_and_a_staircase_no_drift() {
+        assert_eq!(cuts(&sums(|window| 1.0 + 0.005 * window as f64)), [0; 0]);
+        let found = cuts(&sums(|window| 1.0 + step(window, 70) + step(window, 140)));
+        assert!(found.len() == 2 && found[0].abs_diff(70) <= 2 && found[1].abs_diff(140) <= 2, "{found:?}");
     }
 }

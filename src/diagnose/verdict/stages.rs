@@ -1,8 +1,8 @@
 //! Records that switch, diagnosed stage by stage.
 //!
-//! The judge's equations say where the law may change. What the model lacks can look like a change, so the stages are
-//! taken only where their laws, each with the effect that it lacks, leave much less of the record than one law with the effect that it
-//! lacks: by the judge's held-out errors, in every window.
+//! The judge's equations say where the law may change. What the model lacks can look like a change, so a cut stays only where the two laws
+//! beside it, each with the effect that it lacks, leave much less than one law with the effect that it lacks: by the judge's held-out
+//! errors, in every window.
 
 use super::diagnosis::{Diagnosis, Finding};
 use super::errors::WindowError;
@@ -11,8 +11,9 @@ use super::timing::Clock;
 use crate::diagnose::judge::COUNT;
 use crate::identify::Recording;
 use crate::law::{Hold, Model};
+use std::ops::Range;
 
-/// Ratio of errors, in every window, below which a record's stages are laws of their own: half the error's energy.
+/// Ratio of errors, in every window, below which two stages have laws of their own: half the error's energy.
 const APART: f64 = 0.7;
 
 /// One stage of a recording, diagnosed alone.
@@ -51,19 +52,15 @@ pub fn diagnose_stages(model: &Model, recordings: &[&Recording], hold: Option<Ho
     if whole.as_ref().is_some_and(|whole| whole.finding == Finding::Adequate || whole.is_down_to_sensors()) {
         return one(whole);
     }
-    let cuts: Vec<(usize, Recording)> = recordings
-        .iter()
-        .enumerate()
-        .flat_map(|(index, recording)| cuts(model, recording, hold).into_iter().map(move |stage| (index, stage)))
-        .collect();
-    if cuts.len() <= recordings.len() {
+    let known = whole.as_ref().filter(|_| recordings.len() == 1);
+    let courses =
+        recordings.iter().enumerate().map(|(index, recording)| Course { model, recording, index, hold, known });
+    let courses: Vec<(Course, Vec<usize>)> = courses.map(|course| (course, course.cuts())).collect();
+    if courses.iter().all(|(_, cuts)| cuts.is_empty()) {
         return one(whole);
     }
-    let stages: Vec<StageDiagnosis> = cuts.into_iter().map(|(index, stage)| alone(model, index, stage, hold)).collect();
-    match whole.as_ref().is_none_or(|whole| are_apart(&stages, whole)) {
-        true => Switched { whole, stages, clock },
-        false => one(whole),
-    }
+    let stages: Vec<StageDiagnosis> = courses.iter().flat_map(|(course, cuts)| course.stages(cuts)).collect();
+    if stages.len() == recordings.len() { one(whole) } else { Switched { whole, stages, clock } }
 }
 
 impl Switched {
@@ -88,12 +85,59 @@ impl Switched {
     }
 }
 
-/// The recording cut where its law may have changed.
-fn cuts(model: &Model, recording: &Recording, hold: Option<Hold>) -> Vec<Recording> {
-    let changes = Posed::new(model, &[recording], hold).map(|posed| posed.changes()).unwrap_or_default();
-    let at = changes.into_iter().map(|elapsed| position(recording, elapsed));
-    let at: Vec<usize> = std::iter::once(0).chain(at).chain([recording.count()]).collect();
-    at.windows(2).filter_map(|pair| recording.section(pair[0]..pair[1]).ok()).collect()
+/// A recording whose law may change on its way.
+#[derive(Clone, Copy)]
+struct Course<'a> {
+    model: &'a Model,
+    recording: &'a Recording,
+    index: usize,
+    hold: Option<Hold>,
+    /// The diagnosis of all of it, where that is known.
+    known: Option<&'a Diagnosis>,
+}
+
+impl Course<'_> {
+    /// The first samples after its law may have changed.
+    fn cuts(&self) -> Vec<usize> {
+        let changes = Posed::new(self.model, &[self.recording], self.hold).map(|posed| posed.changes());
+        changes.unwrap_or_default().into_iter().map(|elapsed| position(self.recording, elapsed)).collect()
+    }
+
+    /// Its stages between those cuts that two laws explain much better than one; the weakest cut goes first.
+    fn stages(&self, cuts: &[usize]) -> Vec<StageDiagnosis> {
+        let mut edges: Vec<usize> =
+            std::iter::once(0).chain(cuts.iter().copied()).chain([self.recording.count()]).collect();
+        let mut stages: Vec<StageDiagnosis> =
+            edges.windows(2).filter_map(|pair| self.alone(pair[0]..pair[1])).collect();
+        if stages.len() + 1 < edges.len() {
+            return self.alone(0..self.recording.count()).into_iter().collect();
+        }
+        let join = |edges: &[usize]| self.alone(edges[0]..edges[2]);
+        let mut joined: Vec<Option<StageDiagnosis>> = edges.windows(3).map(join).collect();
+        loop {
+            let borders = joined.iter().enumerate();
+            let weights =
+                borders.filter_map(|(at, one)| Some((at, left(&stages[at], &stages[at + 1], one.as_ref()?)?)));
+            let weakest = weights.max_by(|a, b| a.1.total_cmp(&b.1));
+            let Some((at, _)) = weakest.filter(|(_, left)| *left >= APART) else { return stages };
+            let Some(one) = joined.remove(at) else { return stages };
+            stages.splice(at..at + 2, [one]);
+            edges.remove(at + 1);
+            for border in at.saturating_sub(1)..(at + 1).min(joined.len()) {
+                joined[border] = join(&edges[border..]);
+            }
+        }
+    }
+
+    /// A part of it, diagnosed.
+    fn alone(&self, range: Range<usize>) -> Option<StageDiagnosis> {
+        let known = self.known.filter(|_| range == (0..self.recording.count()));
+        let samples = self.recording.section(range).ok()?;
+        let own = || Posed::new(self.model, &[&samples], self.hold).and_then(|posed| posed.diagnose());
+        let diagnosis = known.cloned().or_else(own);
+        let (start, end) = (samples.t()[0], samples.t()[samples.count() - 1]);
+        Some(StageDiagnosis { recording: self.index, start, end, samples, diagnosis })
+    }
 }
 
 /// The first sample after so much recorded time, s.
@@ -110,22 +154,19 @@ fn position(recording: &Recording, elapsed: f64) -> usize {
     recording.count()
 }
 
-fn alone(model: &Model, recording: usize, samples: Recording, hold: Option<Hold>) -> StageDiagnosis {
-    let diagnosis = Posed::new(model, &[&samples], hold).and_then(|posed| posed.diagnose());
-    let (start, end) = (samples.t()[0], samples.t()[samples.count() - 1]);
-    StageDiagnosis { recording, start, end, samples, diagnosis }
-}
-
-/// Whether the stages' laws leave much less of the record than one law. A stage too short for a law of its own leaves what the whole does.
-fn are_apart(stages: &[StageDiagnosis], whole: &Diagnosis) -> bool {
-    let duration: f64 = stages.iter().map(|stage| stage.end - stage.start).sum();
-    (0..COUNT).filter(|which| !whole.errors[*which].after.is_nan()).all(|which| {
-        let left = |stage: &StageDiagnosis| {
+/// What the laws of two stages leave of what one law leaves of both, as a ratio of errors, in the window in which it is most. A stage too
+/// short for a law of its own leaves what the one law does. None where no one law is determined.
+fn left(first: &StageDiagnosis, second: &StageDiagnosis, both: &StageDiagnosis) -> Option<f64> {
+    let one = both.diagnosis.as_ref()?.errors;
+    let windows = (0..COUNT).filter(|which| !one[*which].after.is_nan());
+    let ratio = |which: usize| {
+        let energy = |stage: &StageDiagnosis| {
             let own = stage.diagnosis.as_ref().map(|own| own.errors[which]);
-            let own = own.filter(|error: &WindowError| error.after.is_finite()).unwrap_or(whole.errors[which]);
+            let own = own.filter(|error: &WindowError| error.after.is_finite()).unwrap_or(one[which]);
             (stage.end - stage.start) * own.after * own.after
         };
-        let energy: f64 = stages.iter().map(left).sum();
-        (energy / duration).sqrt() < APART * whole.errors[which].after
-    })
+        let duration = first.end - first.start + second.end - second.start;
+        ((energy(first) + energy(second)) / duration).sqrt() / one[which].after
+    };
+    windows.map(ratio).max_by(f64::total_cmp)
 }
