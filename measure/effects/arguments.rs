@@ -26,6 +26,9 @@ pub struct Arguments {
     /// RMS of the hidden force ÷ RMS of the excitation
     #[arg(long, value_delimiter = ',', default_values_t = [0.05, 0.1, 0.2])]
     pub strength: Vec<f64>,
+    /// By which part the linear stiffness rises on the way: a record that switches and lacks an effect
+    #[arg(long, default_value_t = 0.0)]
+    pub switch: f64,
     /// Only problems with this in their name: an effect id, "a+b", "nothing", "outside", "pairs", "single", "rigs"
     #[arg(long, default_value = "")]
     pub effect: String,
@@ -94,6 +97,7 @@ impl Arguments {
                         strength,
                         noise,
                         sensors: self.sensors,
+                        switch: self.switch,
                         samples: if self.quick { 2500 } else { self.samples },
                         seed: self.seed,
                         draw,

@@ -43,14 +43,15 @@ fn run(setting: &Setting, arguments: &Arguments) -> Option<Outcome> {
 
 /// What repeats one problem.
 fn repeat(setting: &Setting) -> String {
-    let Setting { secret, strength, noise, sensors, samples, seed, draw } = setting;
+    let Setting { secret, strength, noise, sensors, switch, samples, seed, draw } = setting;
     let effect = match secret {
         Secret::Missing(ids) => ids.join("+"),
         other => other.name(),
     };
     let sensors = sensors.to_possible_value().map_or(String::new(), |value| value.get_name().to_string());
+    let switch = if *switch == 0.0 { String::new() } else { format!(" --switch {switch}") };
     format!(
-        "--effect \"{effect}\" --strength {strength} --noise {noise} --sensors {sensors} --samples {samples} \
+        "--effect \"{effect}\" --strength {strength} --noise {noise} --sensors {sensors}{switch} --samples {samples} \
          --seed {seed} --only {draw}"
     )
 }

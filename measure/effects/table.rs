@@ -13,6 +13,8 @@ struct Row {
     invisible: usize,
     ratios: Vec<f64>,
     seconds: Vec<f64>,
+    /// Records that switch, and those whose switch alone was found.
+    switches: [usize; 2],
 }
 
 /// Rows by problem, by noise, and of all.
@@ -52,6 +54,8 @@ impl Table {
 impl Row {
     fn count(&mut self, outcome: &Outcome) {
         self.seconds.push(outcome.seconds);
+        self.switches[0] += usize::from(outcome.switch.is_some());
+        self.switches[1] += usize::from(outcome.switch == Some(true));
         if !outcome.visible {
             self.invisible += 1;
             return;
@@ -78,8 +82,8 @@ fn group(secret: &Secret) -> &'static str {
     }
 }
 
-const HEAD: &str = "| hidden | seen | right | first or tied | in a tie | wrong effect | \"adequate\" | \"unexplained\" | no law | not visible | error ÷ floor | CPU, s |\n\
-    |---|---|---|---|---|---|---|---|---|---|---|---|\n";
+const HEAD: &str = "| hidden | seen | right | first or tied | in a tie | wrong effect | \"adequate\" | \"unexplained\" | no law | not visible | error ÷ floor | CPU, s | switch found |\n\
+    |---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
 
 impl fmt::Display for Table {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -102,7 +106,11 @@ impl fmt::Display for Row {
         write!(f, "| {} | {seen} | {} | {} | {} ", self.name, share(of(Answer::Right)), share(either), self.ties)?;
         let [wrong, adequate] = [of(Answer::Wrong), of(Answer::Adequate)];
         write!(f, "| {wrong} | {adequate} | {} | {} ", of(Answer::Unexplained), of(Answer::NoLaw))?;
-        write!(f, "| {} | {} | {} |", self.invisible, middle(&self.ratios, 3), middle(&self.seconds, 2))
+        write!(f, "| {} | {} | {} ", self.invisible, middle(&self.ratios, 3), middle(&self.seconds, 2))?;
+        match self.switches {
+            [0, _] => write!(f, "| – |"),
+            [all, found] => write!(f, "| {:.1} % |", 100.0 * found as f64 / all as f64),
+        }
     }
 }
 

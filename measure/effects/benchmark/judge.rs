@@ -4,7 +4,10 @@ use super::problem::{Problem, Setting};
 use super::secret::{Secret, id};
 use super::sensors::Sensors;
 use rustix::time::{ClockId, clock_gettime};
-use switchid::diagnose::{Candidate, Diagnosis, Finding, Improvement, Posed, WindowError, same_effect};
+use std::ops::Range;
+use switchid::diagnose::{
+    Candidate, Diagnosis, Finding, Improvement, Posed, Switched, WindowError, diagnose_stages, same_effect,
+};
 use switchid::law::{Given, Hold, Model, Term};
 
 /// Ratio of held-out errors, with the true law and without, up to which a record shows what is hidden.
@@ -12,6 +15,9 @@ const VISIBLE: f64 = 0.9;
 
 /// Most by which the share that an answer explains may differ from the true one.
 const HONEST: f64 = 0.1;
+
+/// Natural periods within which the instant of a switch counts as found.
+const NEAR: f64 = 1.0;
 
 /// What a diagnosis came to, against the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +45,8 @@ pub struct Outcome {
     pub visible: bool,
     /// Whether the answer was a tie with the truth in it.
     pub tie: bool,
+    /// Whether the law's switch, and no other, was found; none where it has none.
+    pub switch: Option<bool>,
     /// Held-out error with the right effect ÷ that of the true form.
     pub ratio: Option<f64>,
     /// CPU time of the diagnosis, s.
@@ -54,6 +62,10 @@ pub fn judge(setting: &Setting, problem: &Problem) -> Outcome {
     let model = Model::of("draw", problem.model.iter().map(|term| (*term, Given::Fit)));
     let hold = (setting.sensors == Sensors::Ideal).then_some(problem.hold);
     let start = clock();
+    if let Some(switch) = problem.switch {
+        let found = diagnose_stages(&model, &[&problem.recording], hold);
+        return judge_stages(&model, hold, problem, switch, &found, clock() - start);
+    }
     let Some(posed) = Posed::new(&model, &[&problem.recording], hold) else {
         return Outcome::without_law(clock() - start);
     };
@@ -84,7 +96,7 @@ impl Outcome {
 
     fn without_law(seconds: f64) -> Outcome {
         let words = "no law of the model's form".into();
-        Outcome { answer: Answer::NoLaw, visible: true, tie: false, ratio: None, seconds, words }
+        Outcome { answer: Answer::NoLaw, visible: true, tie: false, ratio: None, switch: None, seconds, words }
     }
 }
 
@@ -122,7 +134,53 @@ fn judge_one(
     let visible = matches!(secret, Secret::Complete(_)) || true_error <= VISIBLE * base;
     let ratio = named.then(|| principal(&found.errors) / true_error);
     let words = format!("{} | base {base:.4} true {true_error:.4}", words(found));
-    Outcome { answer, visible, tie, ratio, seconds, words }
+    Outcome { answer, visible, tie, switch: None, ratio, seconds, words }
+}
+
+/// Of a record that switches, the hidden effect is to be named in one stage at least, and none that is not there in another.
+fn judge_stages(
+    model: &Model,
+    hold: Option<Hold>,
+    problem: &Problem,
+    switch: f64,
+    found: &Switched,
+    seconds: f64,
+) -> Outcome {
+    let truth = problem.lacking.first().map_or("", |term| id(*term));
+    let diagnoses = found.diagnoses().collect::<Vec<_>>();
+    let effects: Vec<&str> = diagnoses.iter().filter_map(|found| found.effect.as_deref()).collect();
+    let tied = |found: &&Diagnosis| found.indistinguishable.iter().flatten().any(|id| id == truth);
+    let is_named = |found: &&Diagnosis| found.effect.as_deref() == Some(truth);
+    let tie = diagnoses.iter().any(&tied);
+    let honest = |found: &&Diagnosis| found.effect.is_none() || is_named(found) || tied(found);
+    let answer = match found.finding() {
+        None => Answer::NoLaw,
+        Some(Finding::Adequate) if truth.is_empty() => Answer::Right,
+        Some(Finding::Adequate) => Answer::Adequate,
+        Some(Finding::Unexplained) => Answer::Unexplained,
+        Some(Finding::Missing) if truth.is_empty() || !diagnoses.iter().all(honest) => Answer::Wrong,
+        Some(Finding::Missing) if effects.contains(&truth) => Answer::Right,
+        Some(Finding::Missing) => Answer::Tied,
+    };
+    let places: Vec<f64> = found.stages.iter().skip(1).map(|stage| stage.start).collect();
+    let period = found.principal().map_or(0.0, |found| found.period);
+    let seen = places.len() == 1 && (places[0] - switch).abs() <= NEAR * period;
+    let parts = [0..index(problem, switch), index(problem, switch)..problem.recording.count()];
+    let shows = |part: Range<usize>| {
+        let section = problem.recording.section(part).ok()?;
+        let posed = Posed::new(model, &[&section], hold)?;
+        let error = |terms: &[Term]| Some(principal(&posed.errors(terms)?));
+        Some(error(&complete(problem, &|_| true))? <= VISIBLE * error(&problem.model)?)
+    };
+    let visible = truth.is_empty() || parts.into_iter().all(|part| shows(part) == Some(true));
+    let words = diagnoses.iter().map(|found| words(found)).collect::<Vec<_>>().join("\n    ");
+    let words = format!("switch {switch:.3}, found {places:.3?}, T₀ {period:.3}\n    {words}");
+    Outcome { answer, visible, tie, switch: Some(seen), ratio: None, seconds, words }
+}
+
+/// The first sample of the record from a time on.
+fn index(problem: &Problem, t: f64) -> usize {
+    problem.recording.t().partition_point(|own| *own < t)
 }
 
 /// Whether the share that an answer claims to explain is no more than what it would be of the whole error, within a tenth.
@@ -177,7 +235,7 @@ fn judge_several(posed: &Posed, problem: &Problem, start: f64) -> Outcome {
     let steps: Vec<String> =
         found.steps.iter().map(|step| format!("{:?} {:?} {:.4}", step.effect, step.ties, step.error())).collect();
     let words = format!("steps {}, then {} | true {whole:.4}", steps.join(", "), words(&found.last));
-    Outcome { answer, visible, tie, ratio, seconds, words }
+    Outcome { answer, visible, tie, switch: None, ratio, seconds, words }
 }
 
 /// Whether every effect that is there was added, or stands in a stated tie with one that was.

@@ -2,7 +2,7 @@
 
 use super::drive::{Drive, rms};
 use std::f64::consts::TAU;
-use switchid::law::{Hold, State, Term, Trajectory, term_series};
+use switchid::law::{Dynamics, Hold, Motion, State, Term, Trajectory, term_series};
 
 /// A motion without noise.
 #[derive(Clone, Debug, Default)]
@@ -43,6 +43,8 @@ pub struct Rig {
     /// A force at samples that nothing measures, ÷ [`Rig::amplitude`]; empty where there is none. Only a plant that
     /// runs straight has it.
     pub disturbance: Vec<f64>,
+    /// The sample from which on the linear stiffness is that many times as large. Only a plant that runs straight has it.
+    pub switch: Option<(usize, f64)>,
 }
 
 impl Rig {
@@ -54,6 +56,21 @@ impl Rig {
     /// The seed of a scenario, which FMI takes as a positive integer of 32 bits.
     pub fn fmi_seed(&self) -> u64 {
         self.seed & i32::MAX as u64
+    }
+}
+
+impl Law {
+    /// Its motion; none where a coefficient stands in its way.
+    pub fn dynamics(&self) -> Option<Dynamics<'_>> {
+        Dynamics::new(Motion { terms: &self.terms, coefficients: &self.coefficients }, &[]).ok()
+    }
+
+    /// The law with that many times its linear stiffness.
+    pub fn stiffened(&self, factor: f64) -> Law {
+        let mut law = self.clone();
+        let own = law.terms.iter().zip(&mut law.coefficients).filter(|(term, _)| **term == Term::power(1, 0));
+        own.for_each(|(_, coefficient)| *coefficient *= factor);
+        law
     }
 }
 

@@ -24,6 +24,8 @@ pub struct Setting {
     pub noise: f64,
     /// What measures the motion.
     pub sensors: Sensors,
+    /// By which part the stiffness rises on the way, for good; 0 where nothing switches.
+    pub switch: f64,
     /// Samples of the record, lost ones counted.
     pub samples: usize,
     /// Seed of the whole benchmark.
@@ -45,12 +47,17 @@ pub struct Problem {
     pub lacking: Vec<Term>,
     /// The record less the force that no term gives, where there is one.
     pub relieved: Option<Recording>,
+    /// When the law switches, s.
+    pub switch: Option<f64>,
     /// Excitation, channels and scales in words.
     pub words: String,
 }
 
 /// Attempts at a bounded motion.
 const ATTEMPTS: u64 = 60;
+
+/// Part of the record after which the law switches, give or take a fifth of it.
+const SWITCHES_AT: f64 = 0.55;
 
 /// Iterations of coefficient and excitation towards their strengths.
 const ITERATIONS: usize = 6;
@@ -63,6 +70,9 @@ impl Setting {
         (self.strength.to_bits(), self.noise.to_bits(), self.samples).hash(&mut hasher);
         if self.sensors != Sensors::Ideal {
             self.sensors.hash(&mut hasher);
+        }
+        if self.switch != 0.0 {
+            self.switch.to_bits().hash(&mut hasher);
         }
         hasher.finish()
     }
@@ -85,7 +95,9 @@ fn attempted(setting: &Setting, generator: &mut Generator) -> Option<Problem> {
 /// What drives and samples a plant of that law.
 fn rig(setting: &Setting, generator: &mut Generator, base: &Base, count: usize) -> Rig {
     // a scenario's own terms must have the inertia, and nothing disturbs it
-    let straight = matches!(setting.secret, Secret::Outside(_)) || setting.secret.has("inertia");
+    let straight =
+        matches!(setting.secret, Secret::Outside(_)) || setting.secret.has("inertia") || setting.switch != 0.0;
+    let place = |generator: &mut Generator| (SWITCHES_AT * count as f64 * generator.uniform(0.8..1.2)) as usize;
     let is_ideal = setting.sensors == Sensors::Ideal;
     Rig {
         drive: generator.choose(&Drive::ALL),
@@ -98,6 +110,7 @@ fn rig(setting: &Setting, generator: &mut Generator, base: &Base, count: usize) 
         seed: generator.seed(),
         direct_hold: setting.sensors.hold(generator),
         disturbance: setting.sensors.disturbance(generator, base.omega, count),
+        switch: (setting.switch != 0.0).then(|| (place(generator), 1.0 + setting.switch)),
     }
 }
 
@@ -213,6 +226,7 @@ fn measured(
         hold: rig.hold(),
         model: law.terms[..split].to_vec(),
         lacking: law.terms[split..].to_vec(),
+        switch: rig.switch.map(|(at, _)| at as f64 * rig.sample_time),
         relieved: matches!(setting.secret, Secret::Outside(_)).then(|| record(relieved)).and_then(Result::ok),
         words: words(rig, law, qd.is_some(), period),
     })
@@ -249,7 +263,8 @@ mod tests {
         for (sensors, period) in [(Sensors::Slow, 2.0), (Sensors::Fast, 0.25)] {
             for draw in 0..6 {
                 let secret = Secret::Complete(None);
-                let setting = Setting { secret, strength: 0.1, noise: 0.0, sensors, samples: 5000, seed: 1, draw };
+                let setting =
+                    Setting { secret, strength: 0.1, noise: 0.0, sensors, samples: 5000, switch: 0.0, seed: 1, draw };
                 let mut generator = Generator::new(setting.own_seed(0));
                 let mut base = base::draw(&mut generator, &setting.secret, sensors);
                 let mut rig = rig(&setting, &mut generator, &base, setting.samples);

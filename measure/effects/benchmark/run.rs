@@ -4,7 +4,7 @@ use super::generator::Generator;
 use super::outside::Agent;
 use super::plant::{Law, Rig, Track};
 use super::through_fmu;
-use switchid::law::{Dynamics, Hold, Motion, Samples, State};
+use switchid::law::{Hold, Samples, State};
 use switchid::simulate::{Hidden, Scenario, Stage, record};
 
 /// Steps per sample while strengths are sought, and in the end.
@@ -52,11 +52,16 @@ impl Rig {
         let samples = Samples { t: &t, excitation: &excitation, hold: self.direct_hold };
         let disturbance: Vec<f64> = self.disturbance.iter().map(|value| value * self.amplitude).collect();
         let disturbance = Samples { t: &t[..disturbance.len()], excitation: &disturbance, hold: Hold::Linear };
-        let dynamics = Dynamics::new(Motion { terms: &law.terms, coefficients: &law.coefficients }, &[]).ok()?;
+        let (place, factor) = self.switch.unwrap_or((usize::MAX, 1.0));
+        let later = law.stiffened(factor);
+        let mut dynamics = law.dynamics()?;
         let mut phase = dynamics.rest(State::default());
         let width = self.sample_time / parts as f64;
         let mut track = Track::default();
         for (k, now) in t.iter().enumerate() {
+            if k == place {
+                dynamics = later.dynamics()?;
+            }
             // what is held stays until the sample's end, also at it
             let is_held = |t: f64| self.direct_hold == Hold::Zero && t > *now;
             let measured = |t: f64| if is_held(t) { excitation[k] } else { samples.at(t) };

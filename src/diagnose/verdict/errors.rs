@@ -31,6 +31,11 @@ impl WindowError {
     pub fn ratio(&self) -> f64 {
         self.after / self.before
     }
+
+    /// Energy that is left beyond what the sensors alone would leave.
+    pub(super) fn beyond(&self) -> f64 {
+        (self.after * self.after - self.floor * self.floor).max(0.0)
+    }
 }
 
 pub(in crate::diagnose) fn errors(

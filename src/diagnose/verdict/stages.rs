@@ -13,8 +13,8 @@ use crate::identify::Recording;
 use crate::law::{Hold, Model};
 use std::ops::Range;
 
-/// Ratio of errors, in every window, below which two stages have laws of their own: half the error's energy.
-const APART: f64 = 0.7;
+/// Part of the energy beyond the sensors' that two laws leave at most, in every window, where two stages have laws of their own.
+const APART: f64 = 0.5;
 
 /// One stage of a recording, diagnosed alone.
 #[derive(Clone, Debug)]
@@ -79,7 +79,8 @@ impl Switched {
         found.min_by(|a, b| score(a).total_cmp(&score(b)))
     }
 
-    fn diagnoses(&self) -> impl Iterator<Item = &Diagnosis> {
+    /// Those of all stages that determine a law; the whole record's where it has no stages.
+    pub fn diagnoses(&self) -> impl Iterator<Item = &Diagnosis> {
         let whole = self.whole.iter().filter(|_| self.stages.is_empty());
         whole.chain(self.stages.iter().filter_map(|stage| stage.diagnosis.as_ref()))
     }
@@ -154,19 +155,19 @@ fn position(recording: &Recording, elapsed: f64) -> usize {
     recording.count()
 }
 
-/// What the laws of two stages leave of what one law leaves of both, as a ratio of errors, in the window in which it is most. A stage too
-/// short for a law of its own leaves what the one law does. None where no one law is determined.
+/// Energy that the laws of two stages leave beyond the sensors', as a part of what one law leaves of both, in the window in which it is
+/// most. A stage too short for a law of its own leaves what the one law does. None where no one law is determined; all where it is adequate.
 fn left(first: &StageDiagnosis, second: &StageDiagnosis, both: &StageDiagnosis) -> Option<f64> {
     let one = both.diagnosis.as_ref()?.errors;
-    let windows = (0..COUNT).filter(|which| !one[*which].after.is_nan());
     let ratio = |which: usize| {
         let energy = |stage: &StageDiagnosis| {
             let own = stage.diagnosis.as_ref().map(|own| own.errors[which]);
             let own = own.filter(|error: &WindowError| error.after.is_finite()).unwrap_or(one[which]);
-            (stage.end - stage.start) * own.after * own.after
+            (stage.end - stage.start) * own.beyond()
         };
         let duration = first.end - first.start + second.end - second.start;
-        ((energy(first) + energy(second)) / duration).sqrt() / one[which].after
+        (energy(first) + energy(second)) / duration / one[which].beyond()
     };
-    windows.map(ratio).max_by(f64::total_cmp)
+    let telling = (0..COUNT).filter(|which| one[*which].after > one[*which].limit);
+    Some(telling.map(ratio).max_by(f64::total_cmp).unwrap_or(1.0))
 }
