@@ -10,8 +10,9 @@ from pathlib import Path
 
 from . import hidden, improvement, scenarios, table
 from .hidden import HiddenEffect
+from .report.effect_views import effect_views
 from .report.page import write_page
-from .report.traces import improvement_traces, run_traces
+from .report.run_views import run_views
 from .run import perform
 from .scenarios import Scenario
 from .slave import Fmu
@@ -56,12 +57,12 @@ def unpack(source: Path, directory: Path) -> dict[str, Fmu]:
 
 
 def work(job: _Job, command: Path, out: Path) -> tuple[dict, dict]:
-    """One scenario in a worker process: figures and the report's traces."""
+    """One scenario in a worker process: figures, and what the report draws of them."""
     if isinstance(job, HiddenEffect):
         found = improvement.perform(job, _fmus, command, out / job.id)
-        return found.figures, improvement_traces(found)
+        return found.figures, effect_views(found)
     run = perform(job, _fmus)
-    return run.figures, run_traces(run)
+    return run.figures, run_views(run)
 
 
 def keep(fmus: dict[str, Fmu]) -> None:

@@ -13,7 +13,7 @@ from switchid_harness import hidden
 from switchid_harness.free_run import FreeRun, error_over_time, free_run_error, run_free
 from switchid_harness.improvement import Findings, Improvement, evaluate, find, model_text
 from switchid_harness.report.effects import effect_card, effect_row
-from switchid_harness.report.traces import improvement_traces
+from switchid_harness.report.effect_views import effect_views
 from switchid_harness.stepping import STEP
 from switchid_harness.table import effect_block, failures
 
@@ -166,11 +166,12 @@ def test_card_and_traces_are_complete_and_have_no_nan():
     found = _improvement()
     card = effect_card(found.figures)
     assert "&lt;velocity&gt;" in card and "<velocity>" not in card
-    assert "noise floor 0.4 %" in card and "+ Coulomb friction" in card
     plain = re.sub(r"<[^>]+>", "", card).replace("\u2009", " ")
     assert "1.0000 q̈ + 2.000 q3 + 0.20000 Coulomb friction = F" in plain
-    traces = improvement_traces(found)
-    assert {"q", "refitted.q", "improved.qd", "improved.error"} <= set(traces["names"])
+    drawn = effect_views(found)
+    assert {"q", "refitted.q", "improved.qd", "improved.error"} <= set(drawn["names"])
+    force = drawn["views"]["falls"][0]["layers"]
+    assert force[0]["bars"][1][0] == "+ Coulomb friction" and force[1]["mark"]["label"] == "noise floor 0.4 %"
     json.dumps(found.figures, allow_nan=False)
 
 

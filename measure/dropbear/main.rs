@@ -14,7 +14,7 @@ fn main() -> Result<(), Failure> {
     let modes = identify(&beam)?;
     print(&figures(&beam, &modes));
     if let Some(picture) = arguments.next() {
-        std::fs::write(picture, plot::svg(&beam, &modes)?)?;
+        std::fs::write(picture, plot::picture(&beam, &modes)?)?;
     }
     Ok(())
 }

@@ -1,13 +1,13 @@
 //! Detection delay against the false-alarm interval.
 
 use super::Failure;
-use super::chart::{Axis, Kind, Line, Panel};
 use super::delays::group::{Group, OURS, OWN_HEAD};
 use super::delays::{Outcome, Point, measure, records};
 use super::figure::{Figure, Picture, Section, table};
+use super::lines::{limit, line};
 use super::plant::Plant;
 use super::statistics::median_delay;
-use plotters::prelude::SeriesLabelPosition;
+use switchid::report::{Axis, Panel};
 
 /// Std of the sensor noise.
 const NOISE: f64 = 0.03;
@@ -43,17 +43,16 @@ impl Figure for Alarms {
              logarithm: four decades of rarer false alarms cost little. ÷ limit is (delay − 3 ms) ÷ limit, switch by switch.\n\n{}",
             table(&head, INTERVALS.into_iter().map(row))
         );
-        let line = |name: &str, colour: usize, kind: Kind, delay: fn(&Group) -> Option<f64>| {
-            Line::new(name, colour, kind, INTERVALS.into_iter().map(|interval| (interval, delay(&group(interval)))))
+        let points = |delay: fn(&Group) -> Option<f64>| {
+            INTERVALS.into_iter().map(move |interval| (interval, delay(&group(interval))))
         };
         let panel = Panel {
             title: format!("Duffing, σ = {NOISE}"),
-            x: Axis::log("false-alarm interval, s", &[10.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8]),
-            y: Axis::linear("median detection delay, s", &[0.0, 0.02, 0.04, 0.06, 0.08]),
-            legend: SeriesLabelPosition::UpperLeft,
-            lines: vec![
-                line("ours", 0, Kind::Marked, |group| median_delay(&group.detections(OURS))),
-                line("limit", 5, Kind::Thin, |group| median_delay(&group.limits(|limit| limit.detection))),
+            x: Axis::log("false-alarm interval, s").over(10.0, 1e8),
+            y: Axis::of("median detection delay, s").over(0.0, 0.08),
+            layers: vec![
+                line("ours", points(|group| median_delay(&group.detections(OURS)))),
+                limit("limit", points(|group| median_delay(&group.limits(|limit| limit.detection)))),
             ],
         };
         let caption = "Detection delay against the mean time between two false alarms that is allowed".into();

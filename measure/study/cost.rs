@@ -1,16 +1,16 @@
 //! Cost against the number of terms: time ratios, each measured against the smallest library in turns on one core.
 
 use super::Failure;
-use super::chart::{Axis, Kind, Line, Panel};
 use super::figure::{Claim, Figure, Picture, Section, table};
 use super::follow::sample;
+use super::lines::{limit, line};
 use super::plant::Plant;
 use super::statistics::{factor, median};
-use plotters::prelude::SeriesLabelPosition;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 use switchid::identify::{Identifier, Method, Sample, Settings};
 use switchid::law::{Given, Model, Term};
+use switchid::report::{Axis, Panel};
 use switchid::simulate::record;
 
 /// Libraries, by the highest degree of their monomials in q and q̇; 0 stands for the true terms alone.
@@ -160,22 +160,20 @@ fn times_table(times: &[Times]) -> String {
 }
 
 fn picture(times: &[Times]) -> Picture {
-    let line = |name: &str, colour: usize, of: fn(&Times) -> &[f64]| {
-        let points = times.iter().map(|own| (own.terms as f64, own.ratio(&times[0], of)));
-        Line::new(name, colour, Kind::Marked, points)
+    let measured = |name: &str, of: fn(&Times) -> &[f64]| {
+        line(name, times.iter().map(|own| (own.terms as f64, own.ratio(&times[0], of))))
     };
     let proportional = times.iter().map(|own| (own.terms as f64, Some(own.terms as f64 / times[0].terms as f64)));
     let square = proportional.clone().map(|(terms, ratio)| (terms, ratio.map(|ratio: f64| ratio * ratio)));
     let panel = Panel {
         title: "time against that of the true terms alone".into(),
-        x: Axis::log("terms", &[4.0, 6.0, 8.0, 11.0, 16.0, 22.0]),
-        y: Axis::log("time ÷ time with 4 terms", &[1.0, 2.0, 5.0, 10.0, 20.0, 50.0]),
-        legend: SeriesLabelPosition::UpperLeft,
-        lines: vec![
-            line("ours, a step", 0, OURS),
-            line("published, an identification", 1, PUBLISHED),
-            Line::new("as the terms", 5, Kind::Thin, proportional),
-            Line::new("as their square", 4, Kind::Thin, square),
+        x: Axis::log("terms").over(4.0, 22.0),
+        y: Axis::log("time ÷ time with 4 terms").over(1.0, 50.0),
+        layers: vec![
+            measured("ours, a step", OURS),
+            measured("published, an identification", PUBLISHED),
+            line("as their square", square),
+            limit("as the terms", proportional),
         ],
     };
     Picture { name: "cost".into(), caption: "Cost against the number of terms".into(), panels: vec![panel] }

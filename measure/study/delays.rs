@@ -3,16 +3,16 @@
 pub mod group;
 
 use super::Failure;
-use super::chart::{Axis, Kind, Line, Panel};
 use super::figure::{Figure, Picture, Section, split_table};
 use super::follow::{Run, follow};
 use super::limit::{self, Delays as Limits};
+use super::lines::{limit, line};
 use super::plant::Plant;
 use super::statistics::median_delay;
 use group::{BREAK, Group, HEAD, OURS, PUBLISHED};
-use plotters::prelude::SeriesLabelPosition;
 use serde::{Deserialize, Serialize};
 use switchid::identify::{Identifier, Method, Settings};
+use switchid::report::{Axis, Layer, Panel};
 use switchid::simulate::record;
 
 /// Std of the sensor noise.
@@ -105,25 +105,22 @@ impl Figure for Delays {
 /// Medians against noise: detections left, trackings right.
 fn picture(plant: Plant, measured: &[(Point, Outcome)]) -> Picture {
     let group = |noise: f64| Group::of(measured, |point| point.plant == plant && point.noise == noise);
-    let line = |name: &str, colour: usize, kind: Kind, delay: &dyn Fn(&Group) -> Option<f64>| {
-        Line::new(name, colour, kind, NOISES.into_iter().map(|noise| (noise, delay(&group(noise)))))
-    };
-    let panel = |title: &str, ticks: &[f64], lines: Vec<Line>| Panel {
+    let points = |delay: fn(&Group) -> Option<f64>| NOISES.into_iter().map(move |noise| (noise, delay(&group(noise))));
+    let panel = |title: &str, [from, to]: [f64; 2], layers: Vec<Layer>| Panel {
         title: title.into(),
-        x: Axis::log("σ of the sensor noise", &[0.001, 0.003, 0.01, 0.03, 0.1, 0.2]),
-        y: Axis::log("median delay, s", ticks),
-        legend: SeriesLabelPosition::UpperLeft,
-        lines,
+        x: Axis::log("σ of the sensor noise").over(0.001, 0.2),
+        y: Axis::log("median delay, s").over(from, to),
+        layers,
     };
     let detection = vec![
-        line("ours", 0, Kind::Marked, &|group| median_delay(&group.detections(OURS))),
-        line("published", 1, Kind::Marked, &|group| median_delay(&group.detections(PUBLISHED))),
-        line("limit", 5, Kind::Thin, &|group| median_delay(&group.limits(|limit| limit.detection))),
+        line("ours", points(|group| median_delay(&group.detections(OURS)))),
+        line("published", points(|group| median_delay(&group.detections(PUBLISHED)))),
+        limit("limit", points(|group| median_delay(&group.limits(|limit| limit.detection)))),
     ];
     let tracking = vec![
-        line("ours", 0, Kind::Marked, &|group| median_delay(&group.trackings(OURS))),
-        line("published", 1, Kind::Marked, &|group| median_delay(&group.trackings(PUBLISHED))),
-        line("limit", 5, Kind::Thin, &|group| median_delay(&group.limits(|limit| limit.tracking))),
+        line("ours", points(|group| median_delay(&group.trackings(OURS)))),
+        line("published", points(|group| median_delay(&group.trackings(PUBLISHED)))),
+        limit("limit", points(|group| median_delay(&group.limits(|limit| limit.tracking)))),
     ];
     Picture {
         name: format!("{}-delays", plant.id()),
@@ -131,9 +128,6 @@ fn picture(plant: Plant, measured: &[(Point, Outcome)]) -> Picture {
             "{}: delays against noise; a method without a point tracks less than half of its laws",
             plant.name()
         ),
-        panels: vec![
-            panel("detection", &[0.003, 0.01, 0.03, 0.1, 0.3, 1.0, 3.0], detection),
-            panel("tracking", &[0.3, 1.0, 3.0, 10.0, 30.0], tracking),
-        ],
+        panels: vec![panel("detection", [0.003, 3.0], detection), panel("tracking", [0.3, 30.0], tracking)],
     }
 }

@@ -1,9 +1,9 @@
 //! What a figure of the study is: points to be measured, one at a time, and what all of them together say.
 
 use super::Failure;
-use super::chart::Panel;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
+use switchid::report::Panel;
 
 /// A figure of the study.
 pub trait Figure {
@@ -52,7 +52,7 @@ pub struct Picture {
     pub name: String,
     /// What it shows, in words.
     pub caption: String,
-    /// Its panels, side by side.
+    /// Its panels, one below the other.
     pub panels: Vec<Panel>,
 }
 

@@ -7,12 +7,12 @@
 mod accuracy;
 mod alarms;
 mod arguments;
-mod chart;
 mod cost;
 mod delays;
 mod figure;
 mod follow;
 mod limit;
+mod lines;
 mod loops;
 mod page;
 mod plant;

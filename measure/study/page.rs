@@ -1,9 +1,9 @@
 //! The page: claims first, then section by section, pictures beside it in a folder of its name.
 
 use super::Failure;
-use super::chart;
 use super::figure::{Claim, Section};
 use std::path::{Path, PathBuf};
+use switchid::report::{Figure, svg};
 
 /// Characters in a line of the page.
 const LONGEST: usize = 120;
@@ -31,7 +31,8 @@ pub fn write(out: &Path, sections: &[Section], seeds: u64) -> Result<(), Failure
 pub fn pictures(out: &Path, section: &Section) -> Result<(), Failure> {
     std::fs::create_dir_all(out)?;
     for picture in &section.pictures {
-        std::fs::write(out.join(format!("{}.svg", picture.name)), chart::draw(&picture.panels)?)?;
+        let figure = Figure { panels: picture.panels.clone(), ..Figure::default() };
+        std::fs::write(out.join(format!("{}.svg", picture.name)), svg(&figure)?)?;
     }
     Ok(())
 }
@@ -87,16 +88,16 @@ fn broken(line: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::chart::{Axis, Kind, Line, Panel};
     use super::super::figure::Picture;
+    use super::super::lines::{decades, line};
     use super::*;
-    use plotters::prelude::SeriesLabelPosition;
+    use switchid::report::{Axis, Panel};
 
     fn section(points: &[(f64, f64)]) -> Section {
-        let line = Line::new("ours", 0, Kind::Marked, points.iter().map(|(x, y)| (*x, Some(*y))));
-        let axes = [Axis::log("σ", &[0.01, 0.1]), Axis::decades("e", points.iter().map(|point| point.1))];
-        let [x, y] = axes;
-        let panel = Panel { title: "t".into(), x, y, legend: SeriesLabelPosition::UpperLeft, lines: vec![line] };
+        let layers = [("ours", 1.0), ("published", 2.0)]
+            .map(|(name, factor)| line(name, points.iter().map(|(x, y)| (*x, Some(factor * y)))));
+        let y = decades("e", points.iter().map(|point| point.1));
+        let panel = Panel { title: "t".into(), x: Axis::log("σ").over(0.01, 0.1), y, layers: layers.to_vec() };
         Section {
             title: "Title",
             text: "words".into(),
@@ -129,7 +130,8 @@ mod tests {
     #[test]
     fn values_beyond_the_axes_and_none_at_all_are_drawn_too() {
         for points in [&[(0.001, 1e-300), (0.05, f64::NAN), (0.1, f64::INFINITY)][..], &[]] {
-            assert!(chart::draw(&section(points).pictures[0].panels).unwrap().starts_with("<svg"));
+            let panels = section(points).pictures[0].panels.clone();
+            assert!(svg(&Figure { panels, ..Figure::default() }).unwrap().starts_with("<svg"));
         }
     }
 }

@@ -84,7 +84,7 @@ pub(super) fn stages(opened: &Opened, found: &Identification, course: &Course) -
         let symbol = Some(coefficient.term.symbol()).filter(|symbol| !symbol.is_empty()).unwrap_or_else(|| "1".into());
         let mut layers: Vec<Layer> = bands(false).collect();
         layers.push(Layer::Area { name: "± std".into(), edges: sober(edges, &values) });
-        layers.push(Layer::line(&symbol, &course.t, &values));
+        layers.push(Layer::line("identified", &course.t, &values));
         layers.extend(alarms());
         let label = format!("coefficient of {symbol}");
         panels.push(Panel { title: String::new(), x: Axis::of("t, s"), y: Axis::of(&label), layers });
@@ -116,7 +116,7 @@ pub(super) fn comparison(found: &Comparison) -> Figure {
     let noise: Vec<[f64; 3]> = places.iter().map(|place| [place.t, -place.noise.sqrt(), place.noise.sqrt()]).collect();
     let noise = noise.into_iter().step_by(places.len().div_ceil(MOST).max(1)).collect();
     let marked = |of: Along| failing(side, &of, &places);
-    let measured = Layer::line("measured", &t, &of(|place| place.force));
+    let measured = Layer::reference("measured", &t, &of(|place| place.force));
     let predicted = Layer::line("the law", &t, &of(|place| place.force + place.residual));
     let time = |label: &str, layers: Vec<Layer>| Panel {
         title: String::new(),

@@ -6,7 +6,7 @@ use plotters::prelude::*;
 /// Width of a picture, pixels: what a page of text shows unscaled.
 pub(super) const WIDTH: u32 = 760;
 
-/// Colours of curves (Okabe and Ito, told apart by everybody), of bands, and of marks.
+/// Colours of curves (Okabe and Ito, told apart by everybody), and of marks; `figure.js` has the same.
 pub(super) const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -16,6 +16,9 @@ pub(super) const COLOURS: [RGBColor; 6] = [
     RGBColor(230, 159, 0),
 ];
 pub(super) const MARK: RGBColor = RGBColor(190, 60, 40);
+
+/// Colour of what was measured or is true.
+pub(super) const REFERENCE: RGBColor = RGBColor(80, 80, 80);
 
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 

@@ -1,6 +1,6 @@
 //! Panels of curves, points and bands, as SVG.
 
-use super::canvas::{Area, COLOURS, MARK, said};
+use super::canvas::{Area, COLOURS, MARK, REFERENCE, said};
 use super::figure::{Axis, Layer, Panel};
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
@@ -20,10 +20,25 @@ const CORNER: [f64; 2] = [0.15, 0.25];
 /// Share of the panel's width that half of a word takes.
 const EDGE: f64 = 0.08;
 
+/// How much of its colour an area has.
+const FAINT: f64 = 0.25;
+
+/// Points up to which a line shows each of them; `figure.js` has the same.
+const FEW: usize = 30;
+
 type Chart<'a, 'b, X, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>;
 
+/// What a panel is drawn with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    /// Whether its axis to the right stands below the next panel.
+    pub(super) shares: bool,
+    /// Whether its layers' names are told.
+    pub(super) legend: bool,
+}
+
 /// Draws a panel over these ranges of its axes.
-pub(super) fn curves<X, Y>(area: &Area, panel: &Panel, x: X, y: Y) -> Result<(), String>
+pub(super) fn curves<X, Y>(area: &Area, panel: &Panel, x: X, y: Y, frame: Frame) -> Result<(), String>
 where
     X: AsRangedCoord<Value = f64>,
     Y: AsRangedCoord<Value = f64>,
@@ -34,22 +49,30 @@ where
     if !panel.title.is_empty() {
         builder.caption(&panel.title, ("sans-serif", 13));
     }
-    builder.margin(8).margin_right(18).x_label_area_size(34).y_label_area_size(70);
+    builder.margin(8).margin_right(18).x_label_area_size(if frame.shares { 6 } else { 34 }).y_label_area_size(70);
     let mut chart = builder.build_cartesian_2d(x, y).map_err(said)?;
     let [from, to, low, high] = panel.extents();
-    let across = |value: &f64| tick(*value, to - from, &panel.x);
+    let across = |value: &f64| if frame.shares { String::new() } else { tick(*value, to - from, &panel.x) };
     let upwards = |value: &f64| tick(*value, high - low, &panel.y);
     let mut mesh = chart.configure_mesh();
-    mesh.light_line_style(TRANSPARENT).x_desc(&panel.x.label).y_desc(&panel.y.label);
+    mesh.light_line_style(TRANSPARENT).x_desc(if frame.shares { "" } else { &panel.x.label }).y_desc(&panel.y.label);
     mesh.x_label_formatter(&across).y_label_formatter(&upwards);
     mesh.draw().map_err(said)?;
     bands(&mut chart, panel)?;
-    let mut colours = COLOURS.iter().cycle();
+    let mut colours = COLOURS.iter().cycle().copied();
+    let mut next = colours.next().unwrap_or(BLACK);
     for layer in &panel.layers {
-        let colour = if layer.is_coloured() { colours.next().copied().unwrap_or(BLACK) } else { MARK };
+        let colour = match layer {
+            Layer::Mark { .. } => MARK,
+            Layer::Reference { .. } => REFERENCE,
+            _ => next,
+        };
         draw(&mut chart, layer, colour, [low, high])?;
+        if layer.takes_colour() {
+            next = colours.next().unwrap_or(BLACK);
+        }
     }
-    if panel.named() > 1 { legend(&mut chart, panel) } else { Ok(()) }
+    if frame.legend { legend(&mut chart, panel) } else { Ok(()) }
 }
 
 /// Stretches of the x axis, shaded by turns.
@@ -88,11 +111,15 @@ where
     X: Ranged<ValueType = f64>,
     Y: Ranged<ValueType = f64>,
 {
+    let within = |y: f64| y.clamp(low, high);
     let is_finite = |point: &&[f64; 2]| point.iter().all(|value| value.is_finite());
     match layer {
-        Layer::Line { points, .. } => {
+        Layer::Line { points, .. } | Layer::Reference { points, .. } => {
             for part in points.split(|point| !is_finite(&point)) {
-                let line = part.iter().map(|[x, y]| (*x, *y)).collect::<Vec<_>>();
+                let line = part.iter().map(|[x, y]| (*x, within(*y))).collect::<Vec<_>>();
+                if points.len() <= FEW && layer.takes_colour() {
+                    chart.draw_series(line.iter().map(|at| Circle::new(*at, 2, colour.filled()))).map_err(said)?;
+                }
                 chart.draw_series([PathElement::new(line, colour.stroke_width(1))]).map_err(said)?;
             }
         }
@@ -102,10 +129,10 @@ where
         }
         Layer::Area { edges, .. } => {
             for part in edges.split(|edge| edge.iter().any(|value| !value.is_finite())) {
-                let upper = part.iter().map(|[x, _, high]| (*x, *high));
-                let lower = part.iter().rev().map(|[x, low, _]| (*x, *low));
+                let upper = part.iter().map(|[x, _, high]| (*x, within(*high)));
+                let lower = part.iter().rev().map(|[x, low, _]| (*x, within(*low)));
                 let ring: Vec<(f64, f64)> = upper.chain(lower).collect();
-                chart.draw_series([Polygon::new(ring, colour.mix(0.25).filled())]).map_err(said)?;
+                chart.draw_series([Polygon::new(ring, colour.mix(FAINT).filled())]).map_err(said)?;
             }
         }
         Layer::Mark { at, label } => {
@@ -117,11 +144,12 @@ where
         }
         Layer::Band { .. } | Layer::Bars(_) => {}
     }
-    entry(chart, layer.name(), colour)
+    let faint = matches!(layer, Layer::Area { .. });
+    entry(chart, layer.name(), if faint { colour.mix(FAINT) } else { colour.to_rgba() })
 }
 
 /// An entry of the legend.
-fn entry<X, Y>(chart: &mut Chart<X, Y>, name: &str, colour: RGBColor) -> Result<(), String>
+fn entry<X, Y>(chart: &mut Chart<X, Y>, name: &str, colour: RGBAColor) -> Result<(), String>
 where
     X: Ranged<ValueType = f64>,
     Y: Ranged<ValueType = f64>,
@@ -142,7 +170,9 @@ where
 {
     let [from, to, low, high] = panel.extents();
     let points = panel.layers.iter().flat_map(|layer| match layer {
-        Layer::Line { points, .. } | Layer::Points { points, .. } => points.as_slice(),
+        Layer::Line { points, .. } | Layer::Reference { points, .. } | Layer::Points { points, .. } => {
+            points.as_slice()
+        }
         _ => &[],
     });
     let shares: Vec<[f64; 2]> = points.map(|[x, y]| [(x - from) / (to - from), (y - low) / (high - low)]).collect();

@@ -1,12 +1,13 @@
-//! What a figure shows, in data coordinates.
+//! What a figure shows, in data coordinates. Its JSON form, which `figure.js` draws, has the same names: `docs/figure-description.md`.
 
 use super::thin;
+use serde::{Serialize, Serializer};
 
 /// Length of the longest bar ÷ that of the shortest one up to which both are seen on one linear axis.
 const SEEN: f64 = 20.0;
 
 /// A figure: panels one below the other.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Figure {
     /// Its title.
     pub title: String,
@@ -17,7 +18,7 @@ pub struct Figure {
 }
 
 /// A panel: layers over a pair of axes, the first one lowest.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Panel {
     /// Its title.
     pub title: String,
@@ -30,41 +31,59 @@ pub struct Panel {
 }
 
 /// An axis.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Axis {
     /// Quantity and unit.
     pub label: String,
     /// Whether it is logarithmic.
     pub log: bool,
+    /// What it shows; all that there is where none is given.
+    pub range: Option<[f64; 2]>,
 }
 
 impl Axis {
     /// A linear axis.
     pub fn of(label: &str) -> Axis {
-        Axis { label: label.into(), log: false }
+        Axis { label: label.into(), ..Axis::default() }
     }
 
     /// A logarithmic axis.
     pub fn log(label: &str) -> Axis {
-        Axis { label: label.into(), log: true }
+        Axis { label: label.into(), log: true, range: None }
+    }
+
+    /// The axis over that range.
+    #[must_use]
+    pub fn over(self, from: f64, to: f64) -> Axis {
+        Axis { range: Some([from, to]), ..self }
     }
 
     /// An axis for bars of these lengths: from zero, where the shortest of them is to be seen beside the longest.
     pub fn of_bars(label: &str, lengths: impl Iterator<Item = f64>) -> Axis {
         let [least, most] =
             lengths.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], length| [least.min(length), most.max(length)]);
-        Axis { label: label.into(), log: least > 0.0 && most > SEEN * least }
+        Axis { label: label.into(), log: least > 0.0 && most > SEEN * least, range: None }
     }
 }
 
 /// What a panel draws.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Layer {
     /// A line through points.
     Line {
         /// Its name in the legend.
         name: String,
         /// Its points; a NaN interrupts it.
+        #[serde(serialize_with = "in_seven_digits")]
+        points: Vec<[f64; 2]>,
+    },
+    /// A line in dark grey: what was measured or is true, beside what was found.
+    Reference {
+        /// Its name in the legend.
+        name: String,
+        /// Its points; a NaN interrupts it.
+        #[serde(serialize_with = "in_seven_digits")]
         points: Vec<[f64; 2]>,
     },
     /// Points.
@@ -72,13 +91,15 @@ pub enum Layer {
         /// Their name in the legend.
         name: String,
         /// The points.
+        #[serde(serialize_with = "in_seven_digits")]
         points: Vec<[f64; 2]>,
     },
-    /// The area between two curves: x, lower, upper.
+    /// The area between two curves, in the colour of the next line: x, lower, upper.
     Area {
         /// Its name in the legend.
         name: String,
         /// Its edges; a NaN interrupts it.
+        #[serde(serialize_with = "in_seven_digits")]
         edges: Vec<[f64; 3]>,
     },
     /// Named bars from the left, one below the other, each with its text.
@@ -101,10 +122,22 @@ pub enum Layer {
     },
 }
 
+/// Points of seven digits each: more than a screen of any zoom shows of a few thousand. What is not finite is null.
+fn in_seven_digits<S: Serializer, const N: usize>(points: &[[f64; N]], serializer: S) -> Result<S::Ok, S::Error> {
+    let short =
+        |value: f64| Some(value).filter(|value| value.is_finite()).and_then(|own| format!("{own:.6e}").parse().ok());
+    serializer.collect_seq(points.iter().map(|point| point.map(short).to_vec() as Vec<Option<f64>>))
+}
+
 impl Layer {
     /// A line; of more than [`thin::MOST`] points the smallest and the largest of each bin.
     pub fn line(name: &str, x: &[f64], y: &[f64]) -> Layer {
         Layer::Line { name: name.into(), points: thin::envelope(x, y) }
+    }
+
+    /// A line that is the reference; thinned as [`Layer::line`].
+    pub fn reference(name: &str, x: &[f64], y: &[f64]) -> Layer {
+        Layer::Reference { name: name.into(), points: thin::envelope(x, y) }
     }
 
     /// Points; of more than [`thin::MOST`] every so many.
@@ -115,15 +148,18 @@ impl Layer {
 
 #[cfg(feature = "pictures")]
 impl Layer {
-    /// Whether it is drawn in a colour of its own.
-    pub(super) fn is_coloured(&self) -> bool {
-        !matches!(self, Layer::Band { .. } | Layer::Mark { .. })
+    /// Whether the next line has the next colour.
+    pub(super) fn takes_colour(&self) -> bool {
+        matches!(self, Layer::Line { .. } | Layer::Points { .. } | Layer::Bars(_))
     }
 
     /// Its name in the legend; empty where it has none.
     pub(super) fn name(&self) -> &str {
         match self {
-            Layer::Line { name, .. } | Layer::Points { name, .. } | Layer::Area { name, .. } => name,
+            Layer::Line { name, .. }
+            | Layer::Reference { name, .. }
+            | Layer::Points { name, .. }
+            | Layer::Area { name, .. } => name,
             Layer::Bars(_) | Layer::Band { .. } | Layer::Mark { .. } => "",
         }
     }
@@ -131,9 +167,9 @@ impl Layer {
 
 #[cfg(feature = "pictures")]
 impl Panel {
-    /// How many of its layers have a name: one needs no legend.
-    pub(super) fn named(&self) -> usize {
-        self.layers.iter().filter(|layer| !layer.name().is_empty()).count()
+    /// Names of its layers: one needs no legend.
+    pub(super) fn names(&self) -> Vec<&str> {
+        self.layers.iter().map(Layer::name).filter(|name| !name.is_empty()).collect()
     }
 
     /// The extents of what is drawn: x from, to, y from, to; finite and not empty.
@@ -151,7 +187,7 @@ impl Panel {
         };
         for layer in &self.layers {
             match layer {
-                Layer::Line { points, .. } | Layer::Points { points, .. } => {
+                Layer::Line { points, .. } | Layer::Reference { points, .. } | Layer::Points { points, .. } => {
                     points.iter().for_each(|[x, y]| take(*x, Some(*y)));
                 }
                 Layer::Area { edges, .. } => edges.iter().for_each(|[x, low, high]| {
@@ -163,8 +199,8 @@ impl Panel {
                 Layer::Mark { at, .. } => take(*at, None),
             }
         }
-        let [from, to] = widened(extents[0], extents[1], self.x.log);
-        let [low, high] = widened(extents[2], extents[3], self.y.log);
+        let [from, to] = self.x.range.unwrap_or_else(|| widened(extents[0], extents[1], self.x.log));
+        let [low, high] = self.y.range.unwrap_or_else(|| widened(extents[2], extents[3], self.y.log));
         [from, to, low, high]
     }
 }

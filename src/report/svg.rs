@@ -2,7 +2,7 @@
 
 use super::bars;
 use super::canvas::{Area, WIDTH, said};
-use super::curves::curves;
+use super::curves::{Frame, curves};
 use super::figure::{Figure, Layer, Panel};
 use plotters::prelude::*;
 
@@ -11,6 +11,9 @@ const PANEL: u32 = 180;
 const BAR: u32 = 44;
 const AROUND: u32 = 70;
 const TITLE: u32 = 30;
+
+/// Height of the numbers and the label of an axis to the right.
+const AXIS: u32 = 28;
 
 const LINE: u32 = 18;
 
@@ -23,19 +26,22 @@ const CAPTION: usize = 110;
 /// What the drawing failed on.
 pub fn svg(figure: &Figure) -> Result<String, String> {
     let caption = wrapped(&figure.caption);
-    let heights: Vec<u32> = figure.panels.iter().map(height).collect();
+    let frames: Vec<Frame> = (0..figure.panels.len()).map(|index| frame(&figure.panels, index)).collect();
+    let own = |(panel, frame): (&Panel, &Frame)| height(panel) - if frame.shares { AXIS } else { 0 };
+    let heights: Vec<u32> = figure.panels.iter().zip(&frames).map(own).collect();
+    let title = if figure.title.is_empty() { 0 } else { TITLE };
     let below = LINE * caption.len() as u32 + 8;
-    let total = TITLE + heights.iter().sum::<u32>() + below;
+    let total = title + heights.iter().sum::<u32>() + below;
     let mut text = String::new();
     {
         let area = SVGBackend::with_string(&mut text, (WIDTH, total)).into_drawing_area();
         area.fill(&WHITE).map_err(said)?;
         let style = ("sans-serif", 16).into_font().color(&BLACK);
         area.draw(&Text::new(figure.title.clone(), (12, 8), style)).map_err(said)?;
-        let mut top = TITLE;
-        for (panel, height) in figure.panels.iter().zip(&heights) {
+        let mut top = title;
+        for ((panel, height), frame) in figure.panels.iter().zip(&heights).zip(&frames) {
             let own = area.clone().shrink((0, top), (WIDTH, *height));
-            draw(&own, panel)?;
+            draw(&own, panel, *frame)?;
             top += height;
         }
         for (index, line) in caption.into_iter().enumerate() {
@@ -45,6 +51,20 @@ pub fn svg(figure: &Figure) -> Result<String, String> {
         area.present().map_err(said)?;
     }
     Ok(text)
+}
+
+/// What of a panel's surroundings another one shows.
+fn frame(panels: &[Panel], index: usize) -> Frame {
+    let names = panels[index].names();
+    let repeats = index > 0 && names == panels[index - 1].names();
+    Frame { shares: shares_axis(&panels[index..]), legend: names.len() > 1 && !repeats }
+}
+
+/// Whether the first panel's axis to the right stands below the second one.
+fn shares_axis(panels: &[Panel]) -> bool {
+    let [first, second, ..] = panels else { return false };
+    let has_bars = first.layers.iter().any(|layer| matches!(layer, Layer::Bars(_)));
+    !has_bars && first.x == second.x && first.extents()[..2] == second.extents()[..2]
 }
 
 fn height(panel: &Panel) -> u32 {
@@ -64,7 +84,7 @@ fn wrapped(text: &str) -> Vec<String> {
     lines
 }
 
-fn draw(area: &Area, panel: &Panel) -> Result<(), String> {
+fn draw(area: &Area, panel: &Panel, frame: Frame) -> Result<(), String> {
     if let Some(Layer::Bars(bars)) = panel.layers.iter().find(|layer| matches!(layer, Layer::Bars(_))) {
         return bars::bars(area, panel, bars);
     }
@@ -72,9 +92,9 @@ fn draw(area: &Area, panel: &Panel) -> Result<(), String> {
     let margin = if panel.y.log { 0.0 } else { 0.05 * (high - low) };
     let (low, high) = (low - margin, high + margin);
     match (panel.x.log, panel.y.log) {
-        (false, false) => curves(area, panel, from..to, low..high),
-        (false, true) => curves(area, panel, from..to, (low..high).log_scale()),
-        (true, false) => curves(area, panel, (from..to).log_scale(), low..high),
-        (true, true) => curves(area, panel, (from..to).log_scale(), (low..high).log_scale()),
+        (false, false) => curves(area, panel, from..to, low..high, frame),
+        (false, true) => curves(area, panel, from..to, (low..high).log_scale(), frame),
+        (true, false) => curves(area, panel, (from..to).log_scale(), low..high, frame),
+        (true, true) => curves(area, panel, (from..to).log_scale(), (low..high).log_scale(), frame),
     }
 }

@@ -9,7 +9,6 @@ mod importers;
 mod inspect;
 mod libclang;
 mod licences;
-mod picture;
 mod platforms;
 mod python;
 mod readme;
@@ -83,12 +82,11 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         ("wine", [quick]) if quick == "--quick" => wine::compare_quickly(),
         ("importers", []) => importers::importers(),
         ("bench", rest) => cargo(&["bench", "--package", MEASURE, "--bench", "step", "--"], rest),
-        (program @ ("figures" | "study" | "effects" | "faults" | "known-laws" | "dropbear"), rest) => {
+        (program @ ("figures" | "study" | "effects" | "faults" | "known-laws" | "dropbear" | "picture"), rest) => {
             cargo(&["run", "--quiet", "--release", "--package", MEASURE, "--bin", program, "--"], rest)
         }
         ("large", rest) => large(rest),
         ("real", rest) => real::real(rest),
-        ("picture", []) => picture::picture(),
         ("--help" | "-h" | "help", _) => {
             println!("{USAGE}");
             Ok(())

@@ -36,15 +36,9 @@ def effect_card(effect: dict) -> str:
         f'<article class="effects-one" data-effect="{escape(effect["id"])}"><h3>{escape(effect["title"])}'
         f"<small>{escape(effect['set'])}</small></h3>"
         f'<div class="card found"><h4>What the command line says of the first record</h4><ul>{answer}</ul></div>'
-        f'<div class="card">{_laws(effect)}</div><div class="falls">{_force_stairs(effect)}{_free_stairs(effect)}</div>'
+        f'<div class="card">{_laws(effect)}</div><div class="falls"></div>'
         f'<div class="motion"></div><div class="error"></div>{gate_table(effect)}</article>'
     )
-
-
-def effect_meta(figures: dict, traces: dict) -> dict:
-    """What the script needs to know beside the traces."""
-    layout = {key: traces[key] for key in ("points", "names")}
-    return {"end": figures["end"], "stages": [{"start": 0.0, "end": figures["end"]}], **layout}
 
 
 def _laws(effect: dict) -> str:
@@ -55,28 +49,3 @@ def _laws(effect: dict) -> str:
         rows.append((kind, MODELS[name], equation(*laws)))
     lines = "".join(f'<div class="law {kind}"><span>{words}</span><div>{law}</div></div>' for kind, words, law in rows)
     return f"<h4>Laws</h4>{lines}"
-
-
-def _force_stairs(effect: dict) -> str:
-    floor = effect["models"]["improved"]["noise_floor"]
-    title = f"Force residual on the fresh record, windows of {effect['window']:.2f} s"
-    return _stairs(effect, title, "force_residual", floor)
-
-
-def _free_stairs(effect: dict) -> str:
-    return _stairs(effect, "Free-run error on the fresh record", "free_run_error", None)
-
-
-def _stairs(effect: dict, title: str, key: str, floor: float | None) -> str:
-    """A bar for each model, lengths in proportion; the noise floor is a line across both."""
-    labels = ["the model, refitted", f"+ {named(effect)}" if effect["diagnosis"]["effect"] else "nothing added"]
-    values = [effect["models"][name][key] for name in MODELS]
-    longest = max([*values, floor or 0.0], default=0.0) or 1.0
-    mark = "" if floor is None else f'<i class="floor" style="left:{100.0 * floor / longest:.2f}%"></i>'
-    rows = "".join(
-        f'<span>{escape(label)}</span><div><i class="fall {name}" style="width:{100.0 * value / longest:.2f}%"></i>{mark}'
-        f"</div><b>{percent(value)}</b>"
-        for name, label, value in zip(MODELS, labels, values)
-    )
-    legend = "" if floor is None else f'<p class="note"><i class="floor-key"></i>noise floor {percent(floor)}</p>'
-    return f'<section class="card"><h4>{escape(title)}</h4><div class="stairs">{rows}</div>{legend}</section>'

@@ -4,20 +4,21 @@ import json
 from html import escape
 from pathlib import Path
 
-from ..figures import LEVEL
-from .effects import effect_card, effect_meta, effect_row
+from plotly.offline import get_plotlyjs
+
+from .effects import effect_card, effect_row
 from .fragments import overview_row, run_fragment
 from .overview import summary
 
 _ASSETS = Path(__file__).parent / "assets"
-_SCRIPTS = ["decode.js", "axes.js", "chart.js", "views.js", "effects.js", "app.js"]
+_SCRIPTS = ["figure.js", "decode.js", "app.js"]
 
 
 Results = list[tuple[dict, dict]]
 
 
 def write_page(path: Path, seed: int, results: Results, improvements: Results) -> None:
-    """Writes the report. Figures and traces of every run, and of every hidden effect, as `traces` makes them."""
+    """Writes the report. Figures of every run and of every hidden effect, each with what `run_views` and `effect_views` make."""
     path.write_text(page(seed, results, improvements), encoding="utf-8")
 
 
@@ -26,6 +27,7 @@ def page(seed: int, results: Results, improvements: Results) -> str:
     runs, effects = ([figures for figures, _ in group] for group in (results, improvements))
     parts = {
         "style": _asset("style.css"),
+        "plotly": get_plotlyjs(),
         "script": "\n".join(_asset(name) for name in _SCRIPTS),
         "flow": _asset("flow.svg"),
         "summary": summary(seed, runs, effects),
@@ -34,10 +36,7 @@ def page(seed: int, results: Results, improvements: Results) -> str:
         "options": "\n".join(_option(run) for run in runs),
         "effect-rows": "\n".join(effect_row(effect) for effect in effects),
         "effects": "\n".join(effect_card(effect) for effect in effects),
-        "data": "\n".join(
-            [_data(figures, traces, _meta(figures, traces)) for figures, traces in results]
-            + [_data(figures, traces, effect_meta(figures, traces)) for figures, traces in improvements]
-        ),
+        "data": "\n".join(_data(figures, drawn) for figures, drawn in [*results, *improvements]),
     }
     text = _asset("page.html")
     for name, part in parts.items():
@@ -53,21 +52,11 @@ def _option(run: dict) -> str:
     return f'<option value="{escape(run["id"])}">{escape(run["set"])}: {escape(run["title"])}</option>'
 
 
-def _meta(figures: dict, traces: dict) -> dict:
-    """What the script needs to know of a run beside its traces."""
-    stages = [{"start": s["start"], "end": s["end"], "truth": s["coefficients"]} for s in figures["stages"]]
-    alarms = {
-        method: {"detected": [s["detected"] for s in m["stages"]], "false": m["false_alarms"]}
-        for method, m in figures["methods"].items()
-    }
-    layout = {key: traces[key] for key in ("points", "names", "terms", "status")}
-    return {"end": figures["end"], "stages": stages, "alarms": alarms, "level": LEVEL, **layout}
-
-
-def _data(figures: dict, traces: dict, layout: dict) -> str:
+def _data(figures: dict, drawn: dict) -> str:
     run = escape(figures["id"])
-    meta = json.dumps(layout, allow_nan=False).replace("</", "<\\/")
+    described = {key: drawn[key] for key in ("points", "names", "views")}
+    meta = json.dumps(described, allow_nan=False, separators=(",", ":")).replace("</", "<\\/")
     return (
         f'<script type="application/json" id="meta-{run}">{meta}</script>\n'
-        f'<script type="text/plain" id="data-{run}">{traces["data"]}</script>'
+        f'<script type="text/plain" id="data-{run}">{drawn["data"]}</script>'
     )

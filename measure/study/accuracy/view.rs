@@ -1,13 +1,13 @@
 //! The points of one plant beside its limits, in tables and pictures.
 
 use super::super::Failure;
-use super::super::chart::{Axis, Kind, Line, Panel};
 use super::super::figure::{Picture, table};
 use super::super::limit;
+use super::super::lines::{decades, limit as limit_line, line};
 use super::super::plant::Plant;
 use super::super::statistics::{factor, mean, median, quantile, small};
 use super::{Errors, NOISES, Point, lengths};
-use plotters::prelude::SeriesLabelPosition;
+use switchid::report::{Axis, Panel};
 
 /// Noise at which lengths of record are compared.
 pub const NOISE: f64 = 0.1;
@@ -131,25 +131,18 @@ impl<'a> View<'a> {
 
     pub fn against_noise(&self) -> Picture {
         let noises = &NOISES[1..];
-        let line = |number: usize, length: f64, method: Method| {
-            let points = noises.iter().map(|noise| (*noise, self.mean(method, *noise, length)));
-            Line::new(&format!("{length} s"), number, Kind::Marked, points)
+        let measured = |length: f64, method: Method| {
+            line(&format!("{length} s"), noises.iter().map(|noise| (*noise, self.mean(method, *noise, length))))
         };
-        let limit = |number: usize, length: f64| {
-            let points = noises.iter().map(|noise| (*noise, Some(self.limit(*noise, length))));
-            Line::new("", number, Kind::Thin, points)
-        };
-        let numbered = || self.plant.intervals().into_iter().enumerate();
+        let least_of =
+            |length: f64| limit_line("", noises.iter().map(|noise| (*noise, Some(self.limit(*noise, length)))));
+        let intervals = || self.plant.intervals().into_iter();
         let least = self.limit(noises[0], self.longest());
         let panel = |title: &str, method: Method| Panel {
             title: title.into(),
-            x: Axis::log("σ of the sensor noise", &[0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2]),
-            y: Axis::decades("mean e", [0.3 * least, 1.0]),
-            legend: SeriesLabelPosition::UpperLeft,
-            lines: numbered()
-                .map(|(number, length)| line(number, length, method))
-                .chain(numbered().map(|(number, length)| limit(number, length)))
-                .collect(),
+            x: Axis::log("σ of the sensor noise").over(0.002, 0.2),
+            y: decades("mean e", [0.3 * least, 1.0]),
+            layers: intervals().map(|length| measured(length, method)).chain(intervals().map(least_of)).collect(),
         };
         Picture {
             name: format!("{}-noise", self.plant.id()),
@@ -162,24 +155,22 @@ impl<'a> View<'a> {
     }
 
     pub fn against_length(&self) -> Picture {
-        let line = |name: &str, colour: usize, method: Method, noise: f64| {
-            let points = self.lengths.iter().map(|length| (*length, self.median(method, noise, *length)));
-            Line::new(name, colour, Kind::Marked, points)
+        let measured = |name: &str, method: Method, noise: f64| {
+            line(name, self.lengths.iter().map(|length| (*length, self.median(method, noise, *length))))
         };
-        let computed = |name: &str, colour: usize, values: &[f64], noise: f64| {
-            let points = self.lengths.iter().zip(values).map(|(length, limit)| (*length, Some(limit * noise * noise)));
-            Line::new(name, colour, Kind::Thin, points)
+        let computed = |values: &[f64], noise: f64| {
+            let of = |(length, limit): (&f64, &f64)| (*length, Some(limit * noise * noise));
+            self.lengths.iter().zip(values).map(of).collect::<Vec<_>>()
         };
         let panel = |noise: f64| Panel {
             title: format!("σ = {noise}"),
-            x: Axis::log("record, s", &ticks(self.plant)),
-            y: Axis::decades("median e", [0.1 * self.limit(noise, self.longest()), 10.0]),
-            legend: SeriesLabelPosition::UpperRight,
-            lines: vec![
-                line("ours", 0, OURS, noise),
-                line("published", 1, PUBLISHED, noise),
-                computed("limit, true terms", 5, &self.true_terms, noise),
-                computed("limit, whole model", 4, &self.whole_model, noise),
+            x: Axis::log("record, s").over(self.lengths[0], self.longest()),
+            y: decades("median e", [0.1 * self.limit(noise, self.longest()), 10.0]),
+            layers: vec![
+                measured("ours", OURS, noise),
+                measured("published", PUBLISHED, noise),
+                line("limit, whole model", computed(&self.whole_model, noise)),
+                limit_line("limit, true terms", computed(&self.true_terms, noise)),
             ],
         };
         Picture {
@@ -191,12 +182,5 @@ impl<'a> View<'a> {
             ),
             panels: vec![panel(0.01), panel(NOISE)],
         }
-    }
-}
-
-fn ticks(plant: Plant) -> Vec<f64> {
-    match plant {
-        Plant::Duffing => vec![0.6, 1.0, 2.0, 5.0, 10.0, 30.0],
-        Plant::VanDerPol => vec![1.5, 3.0, 6.0, 12.0, 24.0, 40.0],
     }
 }

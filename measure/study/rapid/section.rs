@@ -1,12 +1,12 @@
 //! What rapid switching says.
 
-use super::super::chart::{Axis, Kind, Line, Panel};
 use super::super::figure::{Claim, Picture, Section, split_table};
 use super::super::follow::{RIGHT, Run, Stage};
+use super::super::lines::{limit, line};
 use super::super::plant::Plant;
 use super::super::statistics::{factor, mean, median, percent, quantile, share, small};
 use super::{NOISES, Outcome, Point, SPACINGS, settings};
-use plotters::prelude::SeriesLabelPosition;
+use switchid::report::{Axis, Panel};
 
 /// Switches within half a period defeat a method that identifies fewer than this share of the laws.
 const DEFEATED: f64 = 0.5;
@@ -158,20 +158,19 @@ fn coverage(scores: Vec<f64>) -> [String; 2] {
 }
 
 fn picture(plant: Plant, measured: &[(Point, Outcome)]) -> Picture {
-    let line = |name: &str, colour: usize, kind: Kind, noise: f64, value: &dyn Fn(&Group, f64) -> f64| {
-        let of = |spacing: f64| value(&Group::of(measured, plant, noise, spacing), spacing * plant.period());
-        Line::new(name, colour, kind, SPACINGS.into_iter().map(|spacing| (spacing, Some(100.0 * of(spacing)))))
+    let points = |noise: f64, value: fn(&Group, f64) -> f64| {
+        let of = move |spacing: f64| value(&Group::of(measured, plant, noise, spacing), spacing * plant.period());
+        SPACINGS.into_iter().map(move |spacing| (spacing, Some(100.0 * of(spacing))))
     };
     let panel = |noise: f64| Panel {
         title: format!("σ = {noise}"),
-        x: Axis::log("time between switches, natural periods", &SPACINGS),
-        y: Axis::linear("% of the laws", &[0.0, 20.0, 40.0, 60.0, 80.0, 100.0]),
-        legend: SeriesLabelPosition::LowerRight,
-        lines: vec![
-            line("ours: detected", 2, Kind::Marked, noise, &|group, _| group.detected(OURS)),
-            line("ours: identified", 0, Kind::Marked, noise, &|group, _| group.identified(OURS)),
-            line("published: identified", 1, Kind::Marked, noise, &|group, _| group.identified(PUBLISHED)),
-            line("could be identified", 5, Kind::Thin, noise, &|group, length| group.possible(length)),
+        x: Axis::log("time between switches, natural periods").over(SPACINGS[0], SPACINGS[SPACINGS.len() - 1]),
+        y: Axis::of("% of the laws").over(0.0, 100.0),
+        layers: vec![
+            line("ours: identified", points(noise, |group, _| group.identified(OURS))),
+            line("published: identified", points(noise, |group, _| group.identified(PUBLISHED))),
+            line("ours: detected", points(noise, |group, _| group.detected(OURS))),
+            limit("could be identified", points(noise, |group, length| group.possible(length))),
         ],
     };
     Picture {

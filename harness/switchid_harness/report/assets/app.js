@@ -1,31 +1,39 @@
 /* Choosing a run and showing it. */
 
 const chooser = document.getElementById("chooser");
-let view = null;
-let shown = null;
+let zoom = null;
 
-async function show(id) {
+/* Every panel of a view, one below or beside the other in its place of the page. */
+function fill(parent, run, panels, zoom) {
+  parent.replaceChildren(...panels.map((panel) => {
+    const place = document.createElement("div");
+    place.className = "plot";
+    show(place, () => resolved(panel, run.traces), zoom);
+    return place;
+  }));
+}
+
+async function showRun(id) {
   const run = await loadRun(id);
-  shown = run;
-  view = new View(run);
+  zoom = new Zoom();
   const fragment = document.getElementById("fragment-" + id).content.cloneNode(true);
-  section("laws").append(fragment.querySelector(".laws"));
-  section("figures").append(fragment.querySelector(".figures"));
-  showState(run, view);
-  showPrediction(run, view);
-  showPortraits(run);
-  showCoefficients(run, view);
-  showError(run, view);
-  showDeviation(run, view);
-  view.redraw();
+  document.getElementById("laws").replaceChildren(fragment.querySelector(".laws"));
+  document.getElementById("figures").replaceChildren(fragment.querySelector(".figures"));
+  for (const [name, panels] of Object.entries(run.views)) fill(document.getElementById(name), run, panels, zoom);
   chooser.value = id;
   document.querySelectorAll(".overview tbody tr").forEach((row) => row.classList.toggle("chosen", row.dataset.run === id));
   document.body.dataset.shown = id;
 }
 
+/* A hidden effect: both models beside the plant on the fresh record. */
+async function showEffect(article) {
+  const run = await loadRun(article.dataset.effect);
+  for (const [name, panels] of Object.entries(run.views)) fill(article.querySelector("." + name), run, panels, new Zoom());
+}
+
 function choose(id, jump) {
   history.replaceState(null, "", "#" + id);
-  show(id);
+  showRun(id);
   if (jump) document.getElementById("run").scrollIntoView();
 }
 
@@ -37,15 +45,12 @@ function turn(by) {
 chooser.addEventListener("change", () => choose(chooser.value, false));
 document.getElementById("previous").addEventListener("click", () => turn(-1));
 document.getElementById("next").addEventListener("click", () => turn(1));
-document.getElementById("whole").addEventListener("click", () => view && view.whole());
+document.getElementById("whole").addEventListener("click", () => zoom && zoom.show("t, s", null, null));
 document.querySelectorAll(".overview tbody tr").forEach((row) => {
   row.addEventListener("click", () => choose(row.dataset.run, true));
   row.addEventListener("keydown", (event) => { if (event.key === "Enter") choose(row.dataset.run, true); });
 });
-const everyView = () => (view ? [view, ...effectViews] : effectViews);
-window.addEventListener("scroll", () => everyView().forEach((each) => each.schedule()), { passive: true });
-window.addEventListener("resize", () => { if (shown) showPortraits(shown); everyView().forEach((each) => each.redraw()); });
+document.querySelectorAll("[data-effect]").forEach(showEffect);
 
 const wanted = decodeURIComponent(location.hash.slice(1));
-show([...chooser.options].some((option) => option.value === wanted) ? wanted : chooser.options[0].value);
-window.addEventListener("beforeprint", () => everyView().forEach((each) => each.charts.forEach((chart) => chart.draw())));
+showRun([...chooser.options].some((option) => option.value === wanted) ? wanted : chooser.options[0].value);
