@@ -16,7 +16,7 @@ const SEED: u64 = 20_417;
 const SAMPLES: usize = 2000;
 
 fn setting(secret: Secret, strength: f64, noise: f64, draw: u64) -> Setting {
-    Setting { secret, strength, noise, sensors: Sensors::Ideal, samples: SAMPLES, seed: SEED, draw }
+    Setting { secret, strength, noise, sensors: Sensors::Ideal, switch: 0.0, samples: SAMPLES, seed: SEED, draw }
 }
 
 /// The outcomes of problems that their records can show.
