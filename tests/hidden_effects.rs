@@ -58,6 +58,27 @@ fn the_hidden_effect_comes_first() {
     assert!(median < 1.1, "error with the effect found ÷ error of the true form: {median}");
 }
 
+/// The stiffness rises by 30 % on the way.
+#[test]
+fn a_switch_and_a_hidden_effect_are_told_apart() {
+    let ids = [
+        "coulomb_friction",
+        "constant_force",
+        "quadratic_stiffness",
+        "one_sided_stop",
+        "asymmetric_damping",
+        "cogging",
+    ];
+    let each = ids.into_iter().flat_map(|id| [0, 1].map(|draw| (id, draw)));
+    let beside = |(id, draw): (&str, u64)| {
+        let secret = Secret::Missing(vec![id.into()]);
+        Setting { switch: 0.3, samples: 2 * SAMPLES, ..setting(secret, 0.2, 0.002, draw) }
+    };
+    let outcomes = visible(each.map(beside).collect());
+    assert_share(&outcomes, 6, 0.9, |outcome| matches!(outcome.answer, Answer::Right | Answer::Tied));
+    assert_share(&outcomes, 6, 0.9, |outcome| outcome.switch == Some(true));
+}
+
 /// Of drives, joints and dampers, at 5 and 20 % of the force.
 #[test]
 fn what_real_rigs_have_comes_first_or_in_a_stated_tie() {
