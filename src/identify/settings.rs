@@ -126,7 +126,16 @@ pub enum SettingsError {
         /// How many samples the settings ask for.
         samples: f64,
     },
+    /// The deviation's interval holds too many samples.
+    #[error("deviation.interval ÷ sample_time = {samples} samples: at most 10 million are kept")]
+    DeviationInterval {
+        /// How many samples the settings ask for.
+        samples: f64,
+    },
 }
+
+/// Samples that are kept at most: half a gigabyte.
+const LONGEST: f64 = 1e7;
 
 impl Settings {
     /// Checks every range.
@@ -161,9 +170,28 @@ impl Settings {
             }
         }
         let samples = self.max_window / self.sample_time;
-        if !(100.0..=1e7).contains(&samples) {
+        if !(100.0..=LONGEST).contains(&samples) {
             return Err(SettingsError::Window { samples });
         }
+        let samples = self.deviation_interval / self.sample_time;
+        if samples > LONGEST {
+            return Err(SettingsError::DeviationInterval { samples });
+        }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_would_keep_too_many_samples_is_refused() {
+        let refused = |settings: Settings| settings.check().unwrap_err().to_string();
+        let window = refused(Settings { max_window: 1e6, ..Settings::default() });
+        assert!(window.starts_with("max_window ÷ sample_time = 1000000000 samples"), "{window}");
+        let deviation = refused(Settings { deviation_interval: 1e6, ..Settings::default() });
+        assert!(deviation.starts_with("deviation.interval ÷ sample_time = 1000000000 samples"), "{deviation}");
+        assert_eq!(Settings::default().check(), Ok(()));
     }
 }

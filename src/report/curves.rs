@@ -1,7 +1,8 @@
 //! Panels of curves, points and bands, as SVG.
 
-use super::canvas::{Area, COLOURS, MARK, REFERENCE, said};
+use super::canvas::{Area, COLOURS, MARK, REFERENCE, WIDTH, said};
 use super::figure::{Axis, Layer, Panel};
+use super::thin::envelope_of;
 use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -19,6 +20,9 @@ const CORNER: [f64; 2] = [0.15, 0.25];
 
 /// Share of the panel's width that half of a word takes.
 const EDGE: f64 = 0.08;
+
+/// Points of a line that a picture shows at most: two for each of its pixels.
+const SEEN: usize = 2 * WIDTH as usize;
 
 /// How much of its colour an area has.
 const FAINT: f64 = 0.25;
@@ -116,7 +120,8 @@ where
     match layer {
         Layer::Line { points, .. } | Layer::Reference { points, .. } => {
             for part in points.split(|point| !is_finite(&point)) {
-                let line = part.iter().map(|[x, y]| (*x, within(*y))).collect::<Vec<_>>();
+                let (x, y): (Vec<f64>, Vec<f64>) = part.iter().map(|[x, y]| (*x, within(*y))).unzip();
+                let line: Vec<(f64, f64)> = envelope_of(&x, &y, SEEN).into_iter().map(|[x, y]| (x, y)).collect();
                 if points.len() <= FEW && layer.takes_colour() {
                     chart.draw_series(line.iter().map(|at| Circle::new(*at, 2, colour.filled()))).map_err(said)?;
                 }
@@ -125,7 +130,8 @@ where
         }
         Layer::Points { points, .. } => {
             let dot = |[x, y]: &[f64; 2]| Circle::new((*x, *y), 1, colour.mix(0.5).filled());
-            chart.draw_series(points.iter().filter(is_finite).map(dot)).map_err(said)?;
+            let shown = points.iter().step_by(points.len().div_ceil(SEEN).max(1)).filter(is_finite);
+            chart.draw_series(shown.map(dot)).map_err(said)?;
         }
         Layer::Area { edges, .. } => {
             for part in edges.split(|edge| edge.iter().any(|value| !value.is_finite())) {

@@ -6,11 +6,16 @@ pub const MOST: usize = 4000;
 /// The series itself, or its first point, the smallest and the largest value of each of half as many bins, in the order in which
 /// they come, and its last point. Gaps stay gaps.
 pub(super) fn envelope(x: &[f64], y: &[f64]) -> Vec<[f64; 2]> {
+    envelope_of(x, y, MOST)
+}
+
+/// The same with another number of points at most.
+pub(super) fn envelope_of(x: &[f64], y: &[f64], most: usize) -> Vec<[f64; 2]> {
     let count = x.len().min(y.len());
-    if count <= MOST {
+    if count <= most {
         return x.iter().zip(y).map(|(x, y)| [*x, *y]).collect();
     }
-    let bins = MOST / 2 - 1;
+    let bins = most / 2 - 1;
     let bin = |index: usize| {
         let range = index * count / bins..(index + 1) * count / bins;
         let by_value = |a: &usize, b: &usize| y[*a].total_cmp(&y[*b]);

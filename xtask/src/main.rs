@@ -5,6 +5,7 @@ mod crosscheck;
 mod error;
 mod files;
 mod fmu;
+mod fuzz;
 mod importers;
 mod inspect;
 mod libclang;
@@ -33,6 +34,8 @@ usage: cargo xtask CHORE
                      and the list of licences anew
   wine [--quick]     steps the Windows binaries that `fmu --platforms` built under Wine, beside the Linux ones;
                      quickly: the identifier alone, built for it, after `fmu`
+  fuzz [--sequences N] [--seed S] [--threads N]
+                     random FMI calls and changed states on the identifier's and the plants' binaries
   importers          plant and identifier in fmpy, fmpy.ssp, ecospy and libcosimpy: equal trajectories
   bench [ARGUMENT..] cost per sample by phase, terms and window; arguments go to the
                      benchmark (--help lists them)
@@ -80,6 +83,7 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         ("fmu", [platforms]) if platforms == "--platforms" => fmu::renew(true),
         ("wine", []) => wine::compare(),
         ("wine", [quick]) if quick == "--quick" => wine::compare_quickly(),
+        ("fuzz", rest) => fuzz::fuzz(rest),
         ("importers", []) => importers::importers(),
         ("bench", rest) => cargo(&["bench", "--package", MEASURE, "--bench", "step", "--"], rest),
         (program @ ("figures" | "study" | "effects" | "faults" | "known-laws" | "dropbear" | "picture"), rest) => {

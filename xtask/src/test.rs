@@ -4,7 +4,7 @@ use crate::command::{cargo, run};
 use crate::crosscheck::harness;
 use crate::error::Error;
 use crate::steps::Steps;
-use crate::{fmu, libclang, licences, python, readme};
+use crate::{fmu, fuzz, libclang, licences, python, readme};
 use std::path::Path;
 use std::process::Command;
 
@@ -16,7 +16,7 @@ const CHECK: &str = "switchid-fmu-check";
 /// # Errors
 /// [`Error::Steps`]; [`Error::Data`] when real records are missing in CI.
 pub fn test() -> Result<(), Error> {
-    let mut steps = Steps::new(15);
+    let mut steps = Steps::new(16);
     steps.check("real records", real_records);
     steps.check("licences of the FMUs' crates", licences::check);
     steps.check("format", || cargo_run(&["fmt", "--all", "--check"]));
@@ -29,6 +29,7 @@ pub fn test() -> Result<(), Error> {
     steps.check("Rust tests", || cargo_run(&["test", "--release", "--quiet", "--no-fail-fast"]));
     steps.check("measuring programs", || cargo_run(&["test", "--release", "--quiet", "--package", "switchid-measure"]));
     steps.check("FMUs", fmu::build);
+    steps.check("random FMI calls", fuzz::bounded);
     steps.check("FMUs through the fmi crate", fmi_crate);
     steps.check("command line of the cross-check", fmu::build_command);
     steps.check("commands of the documents", readme::commands);

@@ -8,4 +8,6 @@ mod parameters;
 mod slave;
 mod stream;
 
+pub use slave::IdentifierSlave;
+
 switchid_fmu_slave::export!(slave::IdentifierSlave);

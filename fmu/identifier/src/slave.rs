@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use switchid::identify::{Identifier, OutputValue, Outputs, Sample, SavedLaws, SavedLawsError, SensorState, Skipped};
 use switchid::law::{Model, ModelError, Term};
-use switchid_fmu_slave::{Category, Description, Log, Slave, SlaveError, Value, Values, seconds};
+use switchid_fmu_slave::{Category, Description, Log, Slave, SlaveError, Value, Values, memory, seconds};
 use thiserror::Error;
 
 /// The model's file in the resources.
@@ -15,8 +15,8 @@ const MODEL_FILE: &str = "model.toml";
 /// The known laws' file in the resources, where there is one.
 const LAWS_FILE: &str = "laws.toml";
 
-/// How much more memory an identifier takes than its record: sensitivities and hypotheses beside it.
-const ROOM: f64 = 2.0;
+/// How much more memory an identifier's record takes than its samples alone, with as much again for the host; a test measures it.
+const RECORD: f64 = 3.0;
 
 /// Why the resources are refused.
 #[derive(Debug, Error)]
@@ -78,6 +78,8 @@ struct Running {
 }
 
 impl Slave for IdentifierSlave {
+    const ROOM: usize = 10 << 20;
+
     fn instantiate(resources: &Path, description: &Description) -> Result<IdentifierSlave, SlaveError> {
         let library = read_model(&resources.join(MODEL_FILE))?;
         let find = |name: &str| position(description, name);
@@ -98,7 +100,7 @@ impl Slave for IdentifierSlave {
         let model = self.parameters.model(&self.library, values)?;
         let settings = self.parameters.settings(values);
         settings.check()?;
-        probe(settings.max_window / settings.sample_time)?;
+        probe((settings.max_window + settings.deviation_interval) / settings.sample_time)?;
         let identifier = Identifier::new(&model, settings)?.with_known_laws(&self.known)?;
         let outputs = Outputs::new(&terms(&self.library), &identifier);
         let running = Running { identifier, outputs, watch: Watch::default() };
@@ -176,9 +178,8 @@ fn say_skipped(skipped: Skipped, log: &mut Log) {
 
 /// Where the record would not fit, says so: an allocation that fails on the way would end the host.
 fn probe(samples: f64) -> Result<(), ResourceError> {
-    let bytes = samples * size_of::<Sample>() as f64 * ROOM;
-    let failed = Vec::<u8>::new().try_reserve_exact(bytes as usize).is_err();
-    if failed { Err(ResourceError::Memory { megabytes: bytes * 1e-6 }) } else { Ok(()) }
+    let bytes = samples * size_of::<Sample>() as f64 * RECORD + IdentifierSlave::ROOM as f64;
+    memory::ask(bytes as usize).map_err(|_| ResourceError::Memory { megabytes: bytes * 1e-6 })
 }
 
 fn to_fmi(value: OutputValue) -> Value {

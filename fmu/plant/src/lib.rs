@@ -10,5 +10,7 @@ mod places;
 mod slave;
 mod specimen;
 
+pub use slave::PlantSlave;
+
 switchid_fmu_slave::export!(slave::PlantSlave);
 switchid_fmu_slave::export_exchange!(slave::PlantSlave);

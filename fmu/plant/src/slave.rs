@@ -54,6 +54,8 @@ enum Kind {
 }
 
 impl Slave for PlantSlave {
+    const ROOM: usize = 512 << 10;
+
     fn instantiate(resources: &Path, description: &Description) -> Result<PlantSlave, SlaveError> {
         let law = read_law(&resources.join(LAW_FILE))?;
         // the plant of a law without inertia can have none besides, which its description says

@@ -3,6 +3,7 @@
 use crate::ctypes::{CO_SIMULATION, MODEL_EXCHANGE};
 use crate::description::{INTERFACE_FILE, Interface};
 use crate::location;
+use crate::memory::{self, OutOfMemory};
 use crate::slave::{Slave, SlaveError};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -48,6 +49,9 @@ pub enum CreationError {
         /// As in the resources.
         expected: String,
     },
+    /// There is too little memory.
+    #[error(transparent)]
+    Memory(#[from] OutOfMemory),
     /// The slave refuses its resources.
     #[error("{0}")]
     Slave(SlaveError),
@@ -71,6 +75,7 @@ pub fn read<S: Slave>(request: &Request) -> Result<(Interface, S), CreationError
     if ![CO_SIMULATION, MODEL_EXCHANGE].contains(&request.kind) {
         return Err(CreationError::UnknownType { found: request.kind });
     }
+    memory::ask(S::ROOM)?;
     let resources = find_resources(request.location.ok_or(CreationError::NoLocation)?);
     let interface = read_interface(&resources, request)?;
     let bare = |guid: &str| guid.trim_matches(['{', '}']).to_string();

@@ -2,9 +2,13 @@
 //!
 //! It is no simulator: it does what it is told, also what the standard forbids, and keeps every message.
 
+mod counting;
 mod exchange;
+mod mistakes;
 
+pub use counting::Counting;
 pub use exchange::Exchange;
+pub use mistakes::Mistake;
 
 use crate::ctypes::*;
 use std::ffi::{CStr, CString, c_void};

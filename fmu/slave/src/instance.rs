@@ -5,12 +5,16 @@
 use crate::calls::{Call, Phase};
 use crate::description::{Causality, Interface, Variability};
 use crate::log::{Category, Log, seconds};
+use crate::memory::{self, OutOfMemory};
 use crate::seal::{self, SealError};
 use crate::slave::{Slave, SlaveError};
 use crate::states::States;
 use crate::values::{Value, ValueError, Values};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
+
+/// A state as it is used ÷ as it is written, at most, with the bytes themselves: a small number takes one byte of eight.
+const UNPACKED: usize = 9;
 
 /// Why a call is refused.
 #[derive(Debug, Error)]
@@ -29,6 +33,9 @@ pub enum CallError {
     /// The slave refuses.
     #[error("{0}")]
     Slave(#[from] SlaveError),
+    /// There is too little memory.
+    #[error(transparent)]
+    Memory(#[from] OutOfMemory),
     /// A null pointer where there must be none.
     #[error("{what} is a null pointer")]
     Null {
@@ -278,6 +285,7 @@ impl<S: Slave> Instance<S> {
             return Ok(());
         }
         self.state.values.check_parameters(&self.interface.description)?;
+        memory::ask(S::ROOM)?;
         let mut slave = self.fresh.clone();
         let (time, values) = (self.state.start_time, &mut self.state.values);
         match self.state.exchange {
@@ -452,6 +460,8 @@ impl<S: Slave> Instance<S> {
     fn read(&self, bytes: &[u8]) -> Result<Snapshot<S>, SealError> {
         let content = |why: String| SealError::Content { why };
         let state = seal::open(bytes, &self.interface.guid)?;
+        let (size, _) = lz4_flex::block::uncompressed_size(state).map_err(|error| content(error.to_string()))?;
+        memory::ask(UNPACKED * size + S::ROOM).map_err(|error| content(error.to_string()))?;
         let state = lz4_flex::decompress_size_prepended(state).map_err(|error| content(error.to_string()))?;
         let saved: Snapshot<S> = postcard::from_bytes(&state).map_err(|error| content(error.to_string()))?;
         if saved.exchange != self.state.exchange {

@@ -27,6 +27,7 @@ mod instance;
 pub mod interface;
 mod location;
 mod log;
+pub mod memory;
 mod seal;
 mod slave;
 mod states;

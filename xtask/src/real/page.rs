@@ -90,7 +90,7 @@ fn answers(record: &Record, found: &Diagnosis, better: &Value) -> String {
     let items = [
         format!("begins with {}", record.terms.keys().cloned().collect::<Vec<_>>().join(", ")),
         format!("T₀ {} s (the reference: {} s)", short(found.period), short(Some(record.period))),
-        format!("**we name** {named}; errors {errors}; what is left {left}"),
+        format!("**we name** {named}; errors {errors}; {left}"),
         format!(
             "**an expert signs** {right}; the reference's errors {} → {} at 0.3 T₀",
             several(&own),
