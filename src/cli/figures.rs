@@ -38,7 +38,9 @@ fn channels(recording: &Recording, units: Units) -> Vec<Panel> {
 /// How long series are drawn; empty where they are drawn whole.
 fn thinned(count: usize) -> String {
     match count > MOST {
-        true => format!("Of {count} samples the smallest and the largest of every {} or more are drawn.", 2 * count / MOST),
+        true => {
+            format!("Of {count} samples the smallest and the largest of every {} or more are drawn.", 2 * count / MOST)
+        }
         false => String::new(),
     }
 }

@@ -145,7 +145,7 @@ mod tests {
             ..Diagnosis::default()
         };
         let better = serde_json::json!({"verdict": "unexplained", "steps": [{"effect": null, "error": 0.2}]});
-        let text = answers(record, &found, &better);
+        let text = answers(record, &found, &better).split_whitespace().collect::<Vec<_>>().join(" ");
         for words in
             ["**we name** coulomb_friction", "0.200/0.200/0.200 → 0.040", "coulomb_friction 0.036", "as it came 0.200"]
         {
