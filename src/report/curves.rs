@@ -130,13 +130,16 @@ where
         }
         Layer::Points { points, .. } => {
             let dot = |[x, y]: &[f64; 2]| Circle::new((*x, *y), 1, colour.mix(0.5).filled());
-            let shown = points.iter().step_by(points.len().div_ceil(SEEN).max(1)).filter(is_finite);
+            let shown = points.iter().step_by(points.len().div_ceil(WIDTH as usize).max(1)).filter(is_finite);
             chart.draw_series(shown.map(dot)).map_err(said)?;
         }
         Layer::Area { edges, .. } => {
             for part in edges.split(|edge| edge.iter().any(|value| !value.is_finite())) {
-                let upper = part.iter().map(|[x, _, high]| (*x, within(*high)));
-                let lower = part.iter().rev().map(|[x, low, _]| (*x, within(*low)));
+                let edges = |at: usize| {
+                    let (x, y): (Vec<f64>, Vec<f64>) = part.iter().map(|edge| (edge[0], within(edge[at]))).unzip();
+                    envelope_of(&x, &y, SEEN).into_iter().map(|[x, y]| (x, y)).collect::<Vec<(f64, f64)>>()
+                };
+                let (lower, upper) = (edges(1).into_iter().rev(), edges(2).into_iter());
                 let ring: Vec<(f64, f64)> = upper.chain(lower).collect();
                 chart.draw_series([Polygon::new(ring, colour.mix(FAINT).filled())]).map_err(said)?;
             }

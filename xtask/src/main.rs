@@ -1,11 +1,11 @@
 //! Chores of the project, and the measuring programs behind the figures of its documents: `cargo xtask --help`.
 
+mod binaries;
 mod command;
 mod crosscheck;
 mod error;
 mod files;
 mod fmu;
-mod fuzz;
 mod importers;
 mod inspect;
 mod libclang;
@@ -36,6 +36,7 @@ usage: cargo xtask CHORE
                      quickly: the identifier alone, built for it, after `fmu`
   fuzz [--sequences N] [--seed S] [--threads N]
                      random FMI calls and changed states on the identifier's and the plants' binaries
+  endurance [HOURS]  cost, memory and accuracy of the identifier's FMU over simulated hours
   importers          plant and identifier in fmpy, fmpy.ssp, ecospy and libcosimpy: equal trajectories
   bench [ARGUMENT..] cost per sample by phase, terms and window; arguments go to the
                      benchmark (--help lists them)
@@ -83,7 +84,8 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         ("fmu", [platforms]) if platforms == "--platforms" => fmu::renew(true),
         ("wine", []) => wine::compare(),
         ("wine", [quick]) if quick == "--quick" => wine::compare_quickly(),
-        ("fuzz", rest) => fuzz::fuzz(rest),
+        ("fuzz", rest) => binaries::fuzz(rest),
+        ("endurance", rest) => binaries::endurance(rest),
         ("importers", []) => importers::importers(),
         ("bench", rest) => cargo(&["bench", "--package", MEASURE, "--bench", "step", "--"], rest),
         (program @ ("figures" | "study" | "effects" | "faults" | "known-laws" | "dropbear" | "picture"), rest) => {

@@ -4,7 +4,7 @@ use crate::command::{cargo, run};
 use crate::crosscheck::harness;
 use crate::error::Error;
 use crate::steps::Steps;
-use crate::{fmu, fuzz, libclang, licences, python, readme};
+use crate::{binaries, fmu, libclang, licences, python, readme};
 use std::path::Path;
 use std::process::Command;
 
@@ -29,7 +29,7 @@ pub fn test() -> Result<(), Error> {
     steps.check("Rust tests", || cargo_run(&["test", "--release", "--quiet", "--no-fail-fast"]));
     steps.check("measuring programs", || cargo_run(&["test", "--release", "--quiet", "--package", "switchid-measure"]));
     steps.check("FMUs", fmu::build);
-    steps.check("random FMI calls", fuzz::bounded);
+    steps.check("random FMI calls", binaries::bounded);
     steps.check("FMUs through the fmi crate", fmi_crate);
     steps.check("command line of the cross-check", fmu::build_command);
     steps.check("commands of the documents", readme::commands);

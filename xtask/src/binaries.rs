@@ -1,4 +1,4 @@
-//! Random FMI calls on the FMUs' binaries.
+//! What the FMUs' binaries bear: random FMI calls, simulated hours.
 
 use crate::command::{cargo, run};
 use crate::error::Error;
@@ -14,11 +14,23 @@ const BOUNDED: &str = "20000";
 /// # Errors
 /// What cargo says; sequences that end the process or get what FMI does not have.
 pub fn fuzz(arguments: &[String]) -> Result<(), Error> {
+    on_binaries("fuzz", arguments)
+}
+
+/// Builds the binaries and steps the identifier's for simulated hours, 24 where none are given.
+///
+/// # Errors
+/// What cargo says; a step that fails.
+pub fn endurance(arguments: &[String]) -> Result<(), Error> {
+    on_binaries("endurance", arguments)
+}
+
+fn on_binaries(program: &str, arguments: &[String]) -> Result<(), Error> {
     for package in BINARIES {
         run(cargo(&["build", "--quiet", "--release", "--package"]).arg(package), CARGO)?;
     }
-    let program = ["run", "--quiet", "--release", "--package", "switchid-measure", "--bin", "fuzz", "--"];
-    run(cargo(&program).args(arguments), CARGO)
+    let run_it = ["run", "--quiet", "--release", "--package", "switchid-measure", "--bin", program, "--"];
+    run(cargo(&run_it).args(arguments), CARGO)
 }
 
 /// The part that belongs to the tests.
