@@ -55,6 +55,16 @@ impl Binary {
         std::fs::write(&path, text).map_err(file("write", &path))
     }
 
+    /// Copies a file into that folder, under its own name, which is given back.
+    ///
+    /// # Errors
+    /// [`Error::File`].
+    pub fn copy(&self, from: &Path) -> Result<String, Error> {
+        let name = from.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        std::fs::copy(from, self.folder.path().join(&name)).map_err(file("copy", from))?;
+        Ok(name)
+    }
+
     /// Runs the program with `--json`.
     ///
     /// # Errors

@@ -43,6 +43,9 @@ impl Page {
     /// # Errors
     /// [`Error::Start`], [`Error::File`].
     pub fn add(&mut self, binary: &Binary, record: &Record, data: &str) -> Result<(), Error> {
+        // pictures tell the name that the program was given
+        let data = binary.copy(Path::new(data))?;
+        let data = data.as_str();
         binary.write("model.toml", &record.model())?;
         let picture = |what: &str| self.pictures.join(format!("{}-{what}.svg", record.name)).display().to_string();
         let (lacks, after) = (picture("lacks"), picture("after"));
