@@ -7,8 +7,9 @@ import zlib
 
 import numpy as np
 import pytest
+from browser import drawn
 from fake import TERMS, FakePlant, Puppet
-from plotly.offline import get_plotlyjs
+from plotly.offline import get_plotlyjs, get_plotlyjs_version
 
 from switchid_harness import scenarios
 from switchid_harness.report.equations import digits, equation, power
@@ -61,6 +62,46 @@ def test_the_page_holds_every_run_with_traces_of_one_length(results):
     assert "<!--" not in re.sub(r"<!doctype html>", "", text)
 
 
+def named_traces(panel: dict) -> set[str]:
+    """Names of the store's traces that a panel's layers are drawn from."""
+    contents = [content for layer in panel["layers"] for content in layer.values()]
+    points = [content.get("points", content.get("edges")) for content in contents]
+    return {name for found in points if isinstance(found, dict) for name in found.values() if isinstance(name, str)}
+
+
+def test_every_panel_names_traces_that_the_page_has(results):
+    views = results[0][1]["views"]
+    assert set(views) == {"state", "prediction", "portraits", "coefficients", "error", "deviation"}
+    named = set().union(*(named_traces(panel) for panels in views.values() for panel in panels))
+    assert named == set(results[0][1]["names"])
+
+
+def test_coefficients_are_drawn_about_the_true_ones_with_switches_and_false_alarms(results):
+    figures, described = results[0]
+    stiffness = next(panel for panel in described["views"]["coefficients"] if "q³" in panel["y"]["label"])
+    layers = [layer for layer in stiffness["layers"] if "band" not in layer]
+    assert [next(iter(layer)) for layer in layers] == ["reference", "area", "line", "line"]
+    assert {value for _, value in layers[0]["reference"]["points"]} == {2.0}
+    low, high = stiffness["y"]["range"]
+    assert low < 2.0 < high
+    assert sum("band" in layer for layer in stiffness["layers"]) == len(figures["stages"])
+    published = described["views"]["deviation"][1]
+    assert "1 false alarm" in published["title"]
+    assert [layer["mark"]["at"] for layer in published["layers"] if "mark" in layer] == [pytest.approx(7.3, abs=2e-3)]
+
+
+def test_a_browser_draws_every_panel_and_zooms_them_together(results, tmp_path):
+    found = drawn(page(1, results, []), tmp_path)
+    panels = sum(len(panels) for panels in results[0][1]["views"].values())
+    assert found["errors"] == [] and found["plots"] == found["drawn"] == panels
+    # one stretch in every panel over time, the status's among them
+    assert found["zoomed"] == panels - len(results[0][1]["views"]["portraits"])
+
+
+def test_both_pages_hold_the_same_plotly():
+    assert get_plotlyjs_version() == "3.0.1", "tests/page.rs names the version of the Rust crate's page"
+
+
 def test_report_json_has_no_nan(results):
     json.dumps(results[0][0], allow_nan=False)
 
@@ -78,5 +119,5 @@ def test_no_coefficient_is_no_law():
 
 def test_numbers():
     assert digits(0.0, None) == "0" and digits(123.456, 0.5) == "123.5"
-    assert power(0.0314) == "0.031" and power(1.0) == "1"
+    assert power(0.0314) == "0.031" and power(1.0) == "1" and power(-172.0) == "−170"
     assert power(1.04e-14) == "1.0 · 10<sup>−14</sup>" and power(None) == "–"

@@ -1,1 +1,1 @@
-"""The report: one self-contained page, no network, charts drawn on canvases by the page's own script."""
+"""The report: one self-contained page, no network; plotly, which the page holds, draws its figures."""

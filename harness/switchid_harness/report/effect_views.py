@@ -10,6 +10,7 @@ from .store import Store, grid
 _TIME = axis("t, s")
 _CHANNELS = {"q": "displacement q", "qd": "velocity q̇"}
 _ERRORS = (1e-9, 1e3)
+_DRAWN = dict(reversed(MODELS.items()))  # in the colours of their laws: what was added is ours, as in every run
 _SHOWN = 8.0  # s of the motion that are in view at first
 
 
@@ -45,7 +46,7 @@ def _motion(run, store: Store) -> list[Panel]:
     middle, panels = 0.5 * float(run.time[-1]), []
     time = axis("t, s", shown=(middle - 0.5 * _SHOWN, middle + 0.5 * _SHOWN))
     for index, (name, words) in enumerate(_CHANNELS.items()):
-        both = [(words, run.predicted[model][:, index], f"{model}.{name}") for model, words in MODELS.items()]
+        both = [(words, run.predicted[model][:, index], f"{model}.{name}") for model, words in _DRAWN.items()]
         motion = [line(label, series("t", store.add(own, values))) for label, values, own in both]
         measured = reference("measured", series("t", name))
         panels.append(panel(time, axis(words), [measured, *motion]))
@@ -56,7 +57,7 @@ def _motion(run, store: Store) -> list[Panel]:
 
 
 def _error(run, store: Store) -> Panel:
-    names = {model: store.add(f"{model}.error", error_over_time(run, model)) for model in MODELS}
+    names = {model: store.add(f"{model}.error", error_over_time(run, model)) for model in _DRAWN}
     lines = [line(MODELS[model], series("t", name)) for model, name in names.items()]
     label = axis("free-run error in q ÷ std of q", log=True, shown=store.extent(list(names.values()), _ERRORS))
     return panel(_TIME, label, lines, title="Free-run error over the last second")

@@ -28,7 +28,7 @@ def power(value: float | None, decimals: int = 1) -> str:
     if value == 0.0:
         return "0"
     if 0.01 <= abs(value) < 1000.0:
-        return f"{value:.{decimals + 1}g}".replace("-", "−")
+        return f"{float(f'{value:.{decimals + 1}g}'):g}".replace("-", "−")
     mantissa, exponent = f"{value:.{decimals}e}".split("e")
     return f"{mantissa} · 10<sup>{int(exponent)}</sup>".replace("-", "−")
 

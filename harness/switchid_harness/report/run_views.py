@@ -7,6 +7,7 @@ from ..figures import LEVEL
 from ..laws import in_order, symbol
 from ..run import METHODS, UNKNOWN_STD, Run
 from ..stepping import Track
+from ..table import alarms
 from .store import Store, grid
 
 _TIME = axis("t, s")
@@ -43,11 +44,11 @@ def _shown_terms(run: Run) -> list[str]:
 
 
 def _marked(run: Run, method: str, layers: list[dict]) -> list[dict]:
-    """Layers over the stages as bands, with a method's detections and its false alarms."""
+    """Layers over the stages as bands, with a method's alarms: those apart from a band's edge are false."""
     stages = [band(stage["start"], stage["end"]) for stage in run.figures["stages"]]
     found = run.figures["methods"][method]
     detected = [mark(stage["detected"]) for stage in found["stages"] if stage["detected"] is not None]
-    return [*stages, *layers, *detected, *(mark(time, "false") for time in found["false_alarms"])]
+    return [*stages, *layers, *detected, *(mark(time) for time in found["false_alarms"])]
 
 
 def _state(run: Run) -> list[Panel]:
@@ -150,4 +151,5 @@ def _deviation(run: Run, store: Store, method: str) -> Panel:
     names = {words: store.add(f"{method}.{words}", outputs[words]) for words in ("deviation", "threshold")}
     lines = [line(words, series("t", name)) for words, name in names.items()]
     shown = store.extent(list(names.values()), _DEVIATIONS)
-    return panel(_TIME, axis("deviation", log=True, shown=shown), _marked(run, method, lines), title=METHODS[method])
+    title = f"{METHODS[method]}: {alarms(run.figures['methods'][method])}"
+    return panel(_TIME, axis("deviation", log=True, shown=shown), _marked(run, method, lines), title=title)

@@ -4,13 +4,15 @@
 
 const COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00"];
 const FEW = 30; // points up to which a line shows each of them
-const REFERENCE = "#505050", MARK = "#be3c28";
+const REFERENCE = "#505050", MARK = "#be3c28", RULE = "#e3e6ea", ZERO = "#c8cdd4";
+const BELOW = 3.5; // width of a reference that lines are drawn over: it is seen on both sides of them
+const BUTTONS = ["zoom2d", "pan2d", "resetScale2d", "toImage"];
 
 const column = (points, at) => points.map((point) => point[at]);
 
-function curve(layer, mode, colour) {
+function curve(layer, mode, colour, width = 1.2) {
   const { name, points } = layer;
-  return { x: column(points, 0), y: column(points, 1), name, mode, showlegend: name !== "", line: { color: colour, width: 1.2 }, marker: { color: colour, size: 3 } };
+  return { x: column(points, 0), y: column(points, 1), name, mode, showlegend: name !== "", line: { color: colour, width }, marker: { color: colour, size: 3 } };
 }
 
 /* The stretches of an area between its gaps: each a lower edge, and an upper one that fills down to it. */
@@ -32,27 +34,31 @@ function bars(rows, colour) {
   return { type: "bar", orientation: "h", x: column(all, 1), y: column(all, 0), text: column(all, 2), textposition: "outside", cliponaxis: false, marker: { color: colour }, showlegend: false };
 }
 
+/* Whether the layer has a colour of its own: the next one has the next. */
+const takesColour = (layer) => Boolean(layer.line || layer.points || layer.bars);
+
 /* What plotly draws over the axes, in the description's order. */
 function traces(layers) {
   let next = 0;
   const drawn = [];
-  for (const layer of layers) {
+  for (const [k, layer] of layers.entries()) {
     const colour = COLOURS[next % COLOURS.length];
     if (layer.line) drawn.push(curve(layer.line, layer.line.points.length > FEW ? "lines" : "lines+markers", colour));
     if (layer.points) drawn.push(curve(layer.points, "markers", colour));
-    if (layer.reference) drawn.push(curve(layer.reference, "lines", REFERENCE));
+    if (layer.reference) drawn.push(curve(layer.reference, "lines", REFERENCE + "b0", layers.slice(k).some(takesColour) ? BELOW : 1.2));
     if (layer.area) drawn.push(...area(layer.area, colour));
     if (layer.bars) drawn.push(bars(layer.bars, colour));
-    if (layer.line || layer.points || layer.bars) next += 1;
+    if (takesColour(layer)) next += 1;
   }
   return drawn;
 }
 
-/* Bands and marks: a shape each, and the word above it. Words on a logarithmic axis stand at the logarithm. */
-function upright(panel) {
+/* Bands and marks: a shape each, and its word, above the panel or, where the legend stands there, within. Words on a
+   logarithmic axis stand at the logarithm. */
+function upright(panel, hasLegend) {
   const shapes = [], words = [];
   const shape = (from, to, style) => shapes.push({ type: "rect", xref: "x", yref: "paper", x0: from, x1: to, y0: 0, y1: 1, ...style });
-  const word = (at, text) => text && words.push({ x: panel.x.log ? Math.log10(at) : at, y: 1, xref: "x", yref: "paper", yanchor: "bottom", text, showarrow: false });
+  const word = (at, text) => text && words.push({ x: panel.x.log ? Math.log10(at) : at, y: 1, xref: "x", yref: "paper", yanchor: hasLegend ? "top" : "bottom", text, showarrow: false, font: { size: 11 }, bgcolor: hasLegend ? "#ffffffa0" : undefined });
   panel.layers.filter((layer) => layer.band || layer.mark).forEach(({ band, mark }, k) => {
     if (band) {
       shape(band.from, band.to, { fillcolor: "#000", opacity: k % 2 ? 0.11 : 0.05, layer: "below", line: { width: 0 } });
@@ -68,20 +74,23 @@ function upright(panel) {
 function axis({ label, log, range }) {
   const shown = range && { range: log ? range.map(Math.log10) : range };
   // an axis without a label has names in place of numbers
-  return { title: { text: label }, ...(label && { type: log ? "log" : "linear", exponentformat: log ? "power" : "none" }), ...shown };
+  const rules = { gridcolor: RULE, zerolinecolor: ZERO };
+  return { title: { text: label, standoff: 5 }, ...rules, ...(label && { type: log ? "log" : "linear", exponentformat: log ? "power" : "none", ...(log && range && range[1] < 100 * range[0] && { dtick: "D2" }) }), ...shown };
 }
 
 function layout(panel, height) {
   const named = panel.layers.filter((layer) => ["line", "reference", "points", "area"].some((kind) => layer[kind]?.name));
+  const hasLegend = named.length > 1;
   return {
     title: { text: panel.title, font: { size: 15 }, x: 0, xref: "paper", xanchor: "left" },
     height,
-    margin: { t: panel.title ? 56 : 34, b: 46, r: 20 },
-    showlegend: named.length > 1,
-    legend: { orientation: "h", x: 0, xanchor: "left", y: 1.02, yanchor: "bottom", font: { size: 11 }, bgcolor: "#ffffffc0" },
+    // behind the longest bar stands its text
+    margin: { t: panel.title ? 56 : 34, b: 46, r: panel.layers.some((layer) => layer.bars) ? 70 : 20 },
+    showlegend: hasLegend,
+    legend: { orientation: "h", traceorder: "normal", x: 0, xanchor: "left", y: 1.02, yanchor: "bottom", font: { size: 11 }, bgcolor: "#ffffffc0" },
     xaxis: axis(panel.x),
     yaxis: { ...axis(panel.y), automargin: true },
-    ...upright(panel),
+    ...upright(panel, hasLegend),
   };
 }
 
@@ -124,7 +133,7 @@ const seen = new IntersectionObserver((entries) => entries.filter((entry) => ent
 function show(place, panel, zoom) {
   waiting.set(place, () => {
     const described = panel();
-    Plotly.newPlot(place, traces(described.layers), layout(described, place.clientHeight), { responsive: true, displaylogo: false });
+    Plotly.newPlot(place, traces(described.layers), layout(described, place.clientHeight), { responsive: true, displaylogo: false, modeBarButtons: [BUTTONS] });
     zoom.add(place, described.x.label);
   });
   seen.observe(place);
