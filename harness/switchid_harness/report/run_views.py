@@ -143,7 +143,9 @@ def _status(run: Run) -> Panel:
         edges = np.flatnonzero(np.diff(status))
         kept = np.unique(np.concatenate([[0], edges, edges + 1, [len(status) - 1]]))
         lines.append(line(words, [[round(float(run.record.time[k]), 4), float(status[k])] for k in kept]))
-    return panel(_TIME, axis("status", shown=(-0.5, 3.5)), lines, title=_STATUS)
+    # few points are shown each, for which plotly would widen the axis
+    time = axis("t, s", shown=(0.0, float(run.figures["end"])))
+    return panel(time, axis("status", shown=(-0.5, 3.5)), lines, title=_STATUS)
 
 
 def _deviation(run: Run, store: Store, method: str) -> Panel:
