@@ -20,6 +20,9 @@ const STRIDE: usize = 40;
 /// Space above and below the true values of a coefficient, as a share of their range.
 const SPACE: f64 = 0.35;
 
+/// Space above the motion for the alarms' words and below it, as shares of its greatest value.
+const AROUND_MOTION: [f64; 2] = [0.1, 0.35];
+
 /// What was identified, sample by sample drawn, and when switches were noticed.
 #[derive(Default)]
 struct Course {
@@ -78,19 +81,24 @@ impl Course {
 
 fn motion(readings: &[Reading]) -> Panel {
     let (t, q): (Vec<f64>, Vec<f64>) = readings.iter().step_by(STRIDE).map(|reading| (reading.t, reading.q)).unzip();
-    panel("q", vec![Layer::reference("measured", &t, &q)], None)
+    let most = q.iter().fold(0.0, |most: f64, q| most.max(q.abs()));
+    let [below, above] = AROUND_MOTION.map(|share| most * (1.0 + share));
+    panel("q", vec![Layer::reference("measured", &t, &q)], Some([-below, above]))
 }
 
 fn panel(label: &str, layers: Vec<Layer>, range: Option<[f64; 2]>) -> Panel {
     Panel { title: String::new(), x: Axis::of("t, s"), y: Axis { range, ..Axis::of(label) }, layers }
 }
 
-/// The stages' bands, and the alarms with the delay of each where it is `told`.
+/// The stages' bands, and the alarms with the delay of each where it is `told`; before the first switch it is false.
 fn alarms(scenario: &Scenario, alarms: &[f64], told: bool) -> Vec<Layer> {
     let ends = scenario.stages.iter().skip(1).map(|stage| stage.start).chain([scenario.duration]);
     let band = |(stage, to): (&Stage, f64)| Layer::Band { from: stage.start, to, label: String::new() };
-    let delay = |at: f64| 1e3 * (at - scenario.stages[scenario.stage_at(at)].start);
-    let label = |at: f64| if told { format!("+{:.0} ms", delay(at)) } else { String::new() };
+    let label = |at: f64| match scenario.stage_at(at) {
+        _ if !told => String::new(),
+        0 => "false".into(),
+        stage => format!("+{:.0} ms", 1e3 * (at - scenario.stages[stage].start)),
+    };
     let marks = alarms.iter().map(|at| Layer::Mark { at: *at, label: label(*at) });
     scenario.stages.iter().zip(ends).map(band).chain(marks).collect()
 }
@@ -117,4 +125,39 @@ fn coefficient(term: Term, scenario: &Scenario, course: &Course) -> Panel {
         Layer::line("identified", &course.t, &values),
     ];
     panel(&format!("coefficient of {}", term.symbol()), layers, Some([low - space, high + space]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_alarm_is_marked_with_its_delay() {
+        let scenario = Builtin::DuffingSine.scenario();
+        let switch = scenario.stages[1].start;
+        let layers = alarms(&scenario, &[0.5 * switch, switch + 0.25], true);
+        let bands = layers.iter().filter(|layer| matches!(layer, Layer::Band { .. })).count();
+        let marks: Vec<&str> = layers
+            .iter()
+            .filter_map(|layer| if let Layer::Mark { label, .. } = layer { Some(label.as_str()) } else { None })
+            .collect();
+        assert_eq!((bands, marks), (scenario.stages.len(), vec!["false", "+250 ms"]));
+    }
+
+    #[test]
+    fn a_coefficient_that_is_not_known_is_a_gap_beside_the_true_one() {
+        let scenario = Builtin::DuffingSine.scenario();
+        let term = scenario.terms[0];
+        let known = vec![[f64::NAN; 2], [1.1, 0.2]];
+        let course = Course { t: vec![0.0, 1.0], coefficients: vec![(term, known)], alarms: Vec::new() };
+        let layers = coefficient(term, &scenario, &course).layers;
+        let [Layer::Area { edges, .. }, Layer::Reference { points: truth, .. }, Layer::Line { points, .. }] =
+            &layers[..]
+        else {
+            panic!("{layers:?}")
+        };
+        assert!(edges[0][1].is_nan() && points[0][1].is_nan());
+        assert!((edges[1][1] - 0.9).abs() < 1e-12 && (edges[1][2] - 1.3).abs() < 1e-12 && points[1] == [1.0, 1.1]);
+        assert_eq!(truth.len(), 2 * scenario.stages.len());
+    }
 }

@@ -119,7 +119,10 @@ fn a_report_can_be_zoomed_in_a_browser() {
     std::fs::create_dir_all(&folder).unwrap();
     let page = page(&folder);
     assert!(page.len() < 8_000_000, "{} bytes", page.len());
-    assert!(page.contains("plotly.js v3.0.1"), "harness/tests/test_report.py names the version of the cross-check's page");
+    assert!(
+        page.contains("plotly.js v3.0.1"),
+        "harness/tests/test_report.py names the version of the cross-check's page"
+    );
     let probed = page.replacen("</body>", PROBE, 1);
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = format!("http://{}/", listener.local_addr().unwrap());
