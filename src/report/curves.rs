@@ -24,6 +24,9 @@ const EDGE: f64 = 0.08;
 /// Points of a line that a picture shows at most: two for each of its pixels.
 const SEEN: usize = 2 * WIDTH as usize;
 
+/// Width of a reference that lines are drawn over, pixels: it is seen on both sides of them.
+const BELOW: u32 = 3;
+
 /// How much of its colour an area has.
 const FAINT: f64 = 0.25;
 
@@ -65,13 +68,14 @@ where
     bands(&mut chart, panel)?;
     let mut colours = COLOURS.iter().cycle().copied();
     let mut next = colours.next().unwrap_or(BLACK);
-    for layer in &panel.layers {
-        let colour = match layer {
-            Layer::Mark { .. } => MARK,
-            Layer::Reference { .. } => REFERENCE,
-            _ => next,
+    for (index, layer) in panel.layers.iter().enumerate() {
+        let is_below = panel.layers[index..].iter().any(Layer::takes_colour);
+        let (colour, width) = match layer {
+            Layer::Mark { .. } => (MARK, 1),
+            Layer::Reference { .. } => (REFERENCE, if is_below { BELOW } else { 1 }),
+            _ => (next, 1),
         };
-        draw(&mut chart, layer, colour, [low, high])?;
+        draw(&mut chart, layer, (colour, width), [low, high])?;
         if layer.takes_colour() {
             next = colours.next().unwrap_or(BLACK);
         }
@@ -109,8 +113,13 @@ where
     Ok(())
 }
 
-/// Draws a layer in that colour; a mark from below to above.
-fn draw<X, Y>(chart: &mut Chart<X, Y>, layer: &Layer, colour: RGBColor, [low, high]: [f64; 2]) -> Result<(), String>
+/// Draws a layer in that colour, lines that wide; a mark from below to above.
+fn draw<X, Y>(
+    chart: &mut Chart<X, Y>,
+    layer: &Layer,
+    (colour, width): (RGBColor, u32),
+    [low, high]: [f64; 2],
+) -> Result<(), String>
 where
     X: Ranged<ValueType = f64>,
     Y: Ranged<ValueType = f64>,
@@ -119,13 +128,12 @@ where
     let is_finite = |point: &&[f64; 2]| point.iter().all(|value| value.is_finite());
     match layer {
         Layer::Line { points, .. } | Layer::Reference { points, .. } => {
-            for part in points.split(|point| !is_finite(&point)) {
-                let (x, y): (Vec<f64>, Vec<f64>) = part.iter().map(|[x, y]| (*x, within(*y))).unzip();
-                let line: Vec<(f64, f64)> = envelope_of(&x, &y, SEEN).into_iter().map(|[x, y]| (x, y)).collect();
+            for part in points.split(|point| !is_finite(&point)).filter(|part| !part.is_empty()) {
+                let line = seen(chart, part.iter().map(|[x, y]| (*x, within(*y))));
                 if points.len() <= FEW && layer.takes_colour() {
                     chart.draw_series(line.iter().map(|at| Circle::new(*at, 2, colour.filled()))).map_err(said)?;
                 }
-                chart.draw_series([PathElement::new(line, colour.stroke_width(1))]).map_err(said)?;
+                chart.draw_series([PathElement::new(line, colour.stroke_width(width))]).map_err(said)?;
             }
         }
         Layer::Points { points, .. } => {
@@ -134,11 +142,9 @@ where
             chart.draw_series(shown.map(dot)).map_err(said)?;
         }
         Layer::Area { edges, .. } => {
-            for part in edges.split(|edge| edge.iter().any(|value| !value.is_finite())) {
-                let edges = |at: usize| {
-                    let (x, y): (Vec<f64>, Vec<f64>) = part.iter().map(|edge| (edge[0], within(edge[at]))).unzip();
-                    envelope_of(&x, &y, SEEN).into_iter().map(|[x, y]| (x, y)).collect::<Vec<(f64, f64)>>()
-                };
+            let parts = edges.split(|edge| edge.iter().any(|value| !value.is_finite()));
+            for part in parts.filter(|part| !part.is_empty()) {
+                let edges = |at: usize| seen(chart, part.iter().map(|edge| (edge[0], within(edge[at]))));
                 let (lower, upper) = (edges(1).into_iter().rev(), edges(2).into_iter());
                 let ring: Vec<(f64, f64)> = upper.chain(lower).collect();
                 chart.draw_series([Polygon::new(ring, colour.mix(FAINT).filled())]).map_err(said)?;
@@ -155,6 +161,23 @@ where
     }
     let faint = matches!(layer, Layer::Area { .. });
     entry(chart, layer.name(), if faint { colour.mix(FAINT) } else { colour.to_rgba() })
+}
+
+/// Points of a line that can be seen: two for each pixel, and of a level stretch its ends.
+fn seen<X, Y>(chart: &Chart<X, Y>, points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)>
+where
+    X: Ranged<ValueType = f64>,
+    Y: Ranged<ValueType = f64>,
+{
+    let (x, y): (Vec<f64>, Vec<f64>) = points.unzip();
+    let points: Vec<(f64, f64)> = envelope_of(&x, &y, SEEN).into_iter().map(|[x, y]| (x, y)).collect();
+    let pixels: Vec<(i32, i32)> = points.iter().map(|point| chart.backend_coord(point)).collect();
+    let is_level = |at: usize| {
+        let [before, own, after] = [pixels[at - 1], pixels[at], pixels[at + 1]];
+        before.1 == own.1 && own.1 == after.1 && before.0 <= own.0 && own.0 <= after.0
+    };
+    let is_kept = |at: &usize| *at == 0 || *at + 1 == points.len() || !is_level(*at);
+    (0..points.len()).filter(is_kept).map(|at| points[at]).collect()
 }
 
 /// An entry of the legend.
@@ -184,7 +207,8 @@ where
         }
         _ => &[],
     });
-    let shares: Vec<[f64; 2]> = points.map(|[x, y]| [(x - from) / (to - from), (y - low) / (high - low)]).collect();
+    let shares: Vec<[f64; 2]> =
+        points.map(|[x, y]| [share(*x, [from, to], &panel.x), share(*y, [low, high], &panel.y)]).collect();
     let inside =
         |share: &[f64; 2], middle: [f64; 2]| (0..2).all(|axis| (share[axis] - middle[axis]).abs() < CORNER[axis]);
     let hidden = |middle: [f64; 2]| shares.iter().filter(|share| inside(share, middle)).count();
@@ -193,6 +217,11 @@ where
     let mut labels = chart.configure_series_labels();
     let style = labels.background_style(WHITE.mix(0.8)).border_style(BLACK.mix(0.3)).label_font(("sans-serif", 11));
     style.position(position).draw().map_err(said)
+}
+
+/// Where on an axis a value stands: 0 at its start, 1 at its end.
+fn share(value: f64, [from, to]: [f64; 2], axis: &Axis) -> f64 {
+    if axis.log { (value / from).ln() / (to / from).ln() } else { (value - from) / (to - from) }
 }
 
 /// A number at an axis, with as many decimals as its range needs.
