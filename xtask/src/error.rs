@@ -103,10 +103,12 @@ pub enum Error {
     #[error("xtask/src/real/reference.toml: {0}")]
     Reference(#[from] toml::de::Error),
     /// A platform's binary gives other values.
-    #[error("{fmu} gives other values under Wine than on Linux")]
+    #[error("{fmu} of {platform} gives other values than that of this machine")]
     Platforms {
         /// The FMU.
         fmu: String,
+        /// Its platform.
+        platform: &'static str,
     },
     /// A platform's binary is not as it must be.
     #[error("{path} {what}")]

@@ -6,6 +6,7 @@ mod crosscheck;
 mod error;
 mod files;
 mod fmu;
+mod foreign;
 mod importers;
 mod inspect;
 mod libclang;
@@ -14,9 +15,9 @@ mod platforms;
 mod python;
 mod readme;
 mod real;
+mod sanitize;
 mod steps;
 mod test;
-mod wine;
 
 use error::Error;
 use std::process::ExitCode;
@@ -32,12 +33,15 @@ usage: cargo xtask CHORE
   fmu [--platforms]  builds SwitchedIdentifier.fmu, Duffing.fmu, VanDerPol.fmu into target/fmu, for this
                      machine or for Linux (x86-64, ARM) and Windows, and modelDescription.xml at the root
                      and the list of licences anew
-  wine [--quick]     steps the Windows binaries that `fmu --platforms` built under Wine, beside the Linux ones;
-                     quickly: the identifier alone, built for it, after `fmu`
+  foreign [--quick]  steps the binaries that `fmu --platforms` built, Windows' under Wine and ARM's under QEMU,
+                     beside this machine's; quickly: the identifier alone, under Wine, built for it after `fmu`
   fuzz [--sequences N] [--seed S] [--threads N]
                      random FMI calls and changed states on the identifier's and the plants' binaries
+  sanitize [--sequences N] [--seed S] [--threads N]
+                     tests of the slave's crate and random FMI calls with AddressSanitizer in all of it
   endurance [HOURS]  cost, memory and accuracy of the identifier's FMU over simulated hours
-  importers          plant and identifier in fmpy, fmpy.ssp, ecospy and libcosimpy: equal trajectories
+  importers          plant and identifier in fmpy, fmpy.ssp, ecospy, libcosimpy and fmi-sim: equal
+                     trajectories
   bench [ARGUMENT..] cost per sample by phase, terms and window; arguments go to the
                      benchmark (--help lists them)
   figures [SEEDS] [SCENARIO] | --against-limits [FIRST..END] [ROW] [--only TEXT] [--threads N]
@@ -82,9 +86,10 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         ("test", []) => test::test(),
         ("fmu", []) => fmu::renew(false),
         ("fmu", [platforms]) if platforms == "--platforms" => fmu::renew(true),
-        ("wine", []) => wine::compare(),
-        ("wine", [quick]) if quick == "--quick" => wine::compare_quickly(),
+        ("foreign", []) => foreign::compare(),
+        ("foreign", [quick]) if quick == "--quick" => foreign::compare_quickly(),
         ("fuzz", rest) => binaries::fuzz(rest),
+        ("sanitize", rest) => sanitize::sanitize(rest),
         ("endurance", rest) => binaries::endurance(rest),
         ("importers", []) => importers::importers(),
         ("bench", rest) => cargo(&["bench", "--package", MEASURE, "--bench", "step", "--"], rest),

@@ -4,7 +4,7 @@ use crate::command::{cargo, run};
 use crate::crosscheck::harness;
 use crate::error::Error;
 use crate::steps::Steps;
-use crate::{binaries, fmu, libclang, licences, python, readme};
+use crate::{binaries, fmu, foreign, libclang, licences, python, readme, sanitize};
 use std::path::Path;
 use std::process::Command;
 
@@ -16,7 +16,7 @@ const CHECK: &str = "switchid-fmu-check";
 /// # Errors
 /// [`Error::Steps`]; [`Error::Data`] when real records are missing in CI.
 pub fn test() -> Result<(), Error> {
-    let mut steps = Steps::new(16);
+    let mut steps = Steps::new(18);
     steps.check("real records", real_records);
     steps.check("licences of the FMUs' crates", licences::check);
     steps.check("format", || cargo_run(&["fmt", "--all", "--check"]));
@@ -30,6 +30,8 @@ pub fn test() -> Result<(), Error> {
     steps.check("measuring programs", || cargo_run(&["test", "--release", "--quiet", "--package", "switchid-measure"]));
     steps.check("FMUs", fmu::build);
     steps.check("random FMI calls", binaries::bounded);
+    steps.check("slave under AddressSanitizer", sanitize::slave);
+    steps.check("Windows binary under Wine", foreign::compare_quickly);
     steps.check("FMUs through the fmi crate", fmi_crate);
     steps.check("command line of the cross-check", fmu::build_command);
     steps.check("commands of the documents", readme::commands);

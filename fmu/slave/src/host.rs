@@ -36,7 +36,7 @@ macro_rules! function_table {
             pub fn load(path: &std::path::Path) -> Result<$table, libloading::Error> {
                 // SAFETY: the library is an FMU's, of which FMI says what it exports; it is never unloaded.
                 unsafe {
-                    let library = Box::leak(Box::new(libloading::Library::new(path)?));
+                    let library = std::mem::ManuallyDrop::new(libloading::Library::new(path)?);
                     Ok($table { $($field: *library.get(concat!(stringify!($symbol), "\0").as_bytes())?,)* })
                 }
             }

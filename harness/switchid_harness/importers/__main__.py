@@ -6,10 +6,15 @@ import sys
 import tempfile
 from pathlib import Path
 
-from . import by_cosim, by_ecos, by_fmpy, by_solver, fmi_library
+from . import by_cosim, by_ecos, by_fmi_sim, by_fmpy, by_solver, fmi_library
 from .case import CannotDo, Case, Fmus, cases
 
-IMPORTERS = {"fmpy.ssp": by_fmpy.ssp, "ecospy": by_ecos.simulate, "libcosimpy": by_cosim.simulate}
+IMPORTERS = {
+    "fmpy.ssp": by_fmpy.ssp,
+    "ecospy": by_ecos.simulate,
+    "libcosimpy": by_cosim.simulate,
+    "fmi-sim": by_fmi_sim.simulate,
+}
 """Beside the reference, which is a loop over fmpy's slaves."""
 
 CLOSE = 1e-6

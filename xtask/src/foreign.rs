@@ -1,4 +1,6 @@
-//! The Windows binaries stepped under Wine beside the Linux ones: the same values, bit by bit or to rounding.
+//! The binaries of other platforms stepped here, beside this machine's: the same values, bit by bit or to rounding.
+//!
+//! Windows' run under Wine, those of 64-bit ARM under QEMU.
 
 use crate::command::{cargo, probe, root, run};
 use crate::error::Error;
@@ -9,12 +11,32 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use switchid::fmu::{DUFFING, Fmu, identifier, plant};
 use switchid::law::Model;
-use switchid_fmu_package::{LINUX64, WIN64};
+use switchid_fmu_package::{AARCH64_LINUX, LINUX64, Platform, WIN64};
 
-const WINE: &str = "install Wine (Debian: `apt-get install wine64`)";
+/// What runs the programs of another platform.
+struct Emulator {
+    platform: Platform,
+    /// What it is called, with the arguments that come before the program.
+    programs: &'static [&'static [&'static str]],
+    remedy: &'static str,
+}
 
-/// What Wine is called; Debian's wine64 is not on the path.
-const PROGRAMS: [&str; 3] = ["wine64", "wine", "/usr/lib/wine/wine64"];
+/// Debian's wine64 is not on the path.
+const WINE: Emulator = Emulator {
+    platform: WIN64,
+    programs: &[&["wine64"], &["wine"], &["/usr/lib/wine/wine64"]],
+    remedy: "install Wine (Debian: `apt-get install wine64`)",
+};
+
+/// The C library of ARM lies where Debian puts it.
+const QEMU: Emulator = Emulator {
+    platform: AARCH64_LINUX,
+    programs: &[
+        &["qemu-aarch64", "-L", "/usr/aarch64-linux-gnu"],
+        &["qemu-aarch64-static", "-L", "/usr/aarch64-linux-gnu"],
+    ],
+    remedy: "install QEMU and ARM's C library (Debian: `apt-get install qemu-user libc6-arm64-cross`)",
+};
 
 /// Largest relative difference of an output: sine, cosine and exponential come from two C libraries and differ in the last
 /// bits; filters pass that on.
@@ -39,25 +61,31 @@ struct Stepper {
 /// Compares the binaries that `cargo xtask fmu --platforms` built.
 ///
 /// # Errors
-/// What cargo, pip and Wine say; outputs that differ.
+/// What cargo, pip and the emulators say; outputs that differ.
 pub fn compare() -> Result<(), Error> {
-    let wine = find()?;
-    let replay = [platforms::build_replay(LINUX64)?, platforms::build_replay(WIN64)?];
-    for (package, (fmu, settings)) in BINARIES.into_iter().zip(subjects()?) {
-        let [linux, windows] = [(LINUX64, &replay[0]), (WIN64, &replay[1])]
-            .map(|(platform, replay)| Stepper { replay: replay.clone(), library: platforms::path(platform, package) });
-        step_both(wine, &fmu, settings, &linux, &windows)?;
+    let own = platforms::build_replay(LINUX64)?;
+    for emulator in [WINE, QEMU] {
+        let program = emulator.find()?;
+        let replay = platforms::build_replay(emulator.platform)?;
+        for (package, (fmu, settings)) in BINARIES.into_iter().zip(subjects()?) {
+            let stepper = |platform, replay: &Path| Stepper {
+                replay: replay.to_path_buf(),
+                library: platforms::path(platform, package),
+            };
+            let [linux, foreign] = [stepper(LINUX64, &own), stepper(emulator.platform, &replay)];
+            emulator.step_both(program, &fmu, settings, &linux, &foreign)?;
+        }
     }
     Ok(())
 }
 
-/// The same of the identifier alone, built for Windows with little optimisation, which changes no number: two minutes, not ten.
+/// The same of the identifier under Wine alone, built with little optimisation, which changes no number: three minutes, not ten.
 /// The Linux one is that of `cargo xtask fmu`. Without Wine nothing is done, unless in CI.
 ///
 /// # Errors
 /// As [`compare`].
 pub fn compare_quickly() -> Result<(), Error> {
-    let wine = match find() {
+    let program = match WINE.find() {
         Err(error) if std::env::var_os("CI").is_none() => {
             eprintln!("{error}: the Windows binary is not tried");
             return Ok(());
@@ -71,7 +99,7 @@ pub fn compare_quickly() -> Result<(), Error> {
         Stepper { replay: release.join("switchid-fmu-replay"), library: release.join(LINUX64.file(BINARIES[0])) };
     let (replay, library) = platforms::build_for_wine(BINARIES[0])?;
     let [(fmu, settings), _] = subjects()?;
-    step_both(wine, &fmu, settings, &linux, &Stepper { replay, library })
+    WINE.step_both(program, &fmu, settings, &linux, &Stepper { replay, library })
 }
 
 /// Each FMU with parameters under which something happens.
@@ -80,29 +108,48 @@ fn subjects() -> Result<[(Fmu, &'static [&'static str]); 2], Error> {
     Ok([(identifier, &["model=3"]), (plant(DUFFING)?, &["noise.q=0.01"])])
 }
 
-fn find() -> Result<&'static str, Error> {
-    let starts = |program: &&str| probe(Command::new(program).arg("--version"), WINE).is_ok_and(|(works, _)| works);
-    let lacking = || std::io::Error::from(std::io::ErrorKind::NotFound);
-    PROGRAMS.into_iter().find(starts).ok_or_else(|| Error::Start {
-        program: PROGRAMS[0].into(),
-        source: lacking(),
-        remedy: WINE,
-    })
-}
+impl Emulator {
+    fn find(&self) -> Result<&'static [&'static str], Error> {
+        let starts = |words: &&&[&str]| {
+            probe(Command::new(words[0]).arg("--version"), self.remedy).is_ok_and(|(works, _)| works)
+        };
+        self.programs.iter().find(starts).copied().ok_or_else(|| Error::Start {
+            program: self.programs[0][0].into(),
+            source: std::io::Error::from(std::io::ErrorKind::NotFound),
+            remedy: self.remedy,
+        })
+    }
 
-fn step_both(wine: &str, fmu: &Fmu, settings: &[&str], linux: &Stepper, windows: &Stepper) -> Result<(), Error> {
-    let folder = unpack(fmu)?;
-    let mut native = Command::new(&linux.replay);
-    native.args([&folder, &linux.library]);
-    let mut foreign = Command::new(wine);
-    foreign.arg(&windows.replay).args([&folder, &windows.library].map(|path| windows_path(path)));
-    foreign.env("WINEDEBUG", "-all").env("WINEPREFIX", root().join("target/wine"));
-    provide_random(windows.replay.parent().unwrap_or(Path::new(".")))?;
-    let [one, other] = [step(native, settings)?, step(foreign, settings)?];
-    let differ = || Error::Platforms { fmu: fmu.name().into() };
-    let (count, worst) = difference(&one, &other).ok_or_else(differ)?;
-    println!("{}: {count} outputs after {STEPS} steps, largest relative difference {worst:.1e}", fmu.name());
-    if worst > ROUNDING { Err(differ()) } else { Ok(()) }
+    fn step_both(
+        &self,
+        words: &[&str],
+        fmu: &Fmu,
+        settings: &[&str],
+        linux: &Stepper,
+        foreign: &Stepper,
+    ) -> Result<(), Error> {
+        let folder = unpack(fmu)?;
+        let mut native = Command::new(&linux.replay);
+        native.args([&folder, &linux.library]);
+        let mut emulated = Command::new(words[0]);
+        emulated.args(&words[1..]).arg(&foreign.replay);
+        emulated.args([&folder, &foreign.library].map(|path| self.path(path)));
+        if self.platform == WIN64 {
+            emulated.env("WINEDEBUG", "-all").env("WINEPREFIX", root().join("target/wine"));
+            provide_random(foreign.replay.parent().unwrap_or(Path::new(".")))?;
+        }
+        let [one, other] = [step(native, settings, self.remedy)?, step(emulated, settings, self.remedy)?];
+        let differ = || Error::Platforms { fmu: fmu.name().into(), platform: self.platform.name };
+        let (count, worst) = difference(&one, &other).ok_or_else(differ)?;
+        let (name, platform) = (fmu.name(), self.platform.name);
+        println!("{name}, {platform}: {count} outputs after {STEPS} steps, largest relative difference {worst:.1e}");
+        if worst > ROUNDING { Err(differ()) } else { Ok(()) }
+    }
+
+    /// A path as the emulated program reads it.
+    fn path(&self, path: &Path) -> String {
+        if self.platform == WIN64 { windows_path(path) } else { path.display().to_string() }
+    }
 }
 
 /// Wine's drive Z is the root directory.
@@ -120,7 +167,7 @@ fn provide_random(folder: &Path) -> Result<(), Error> {
     }
     let mut compile = platforms::zig_compiler()?;
     compile.args(["-target", "x86_64-windows-gnu", "-shared", "-o"]).args([&library, &source]).arg("-ladvapi32");
-    run(&mut compile, WINE)
+    run(&mut compile, WINE.remedy)
 }
 
 fn unpack(fmu: &Fmu) -> Result<PathBuf, Error> {
@@ -134,12 +181,12 @@ fn unpack(fmu: &Fmu) -> Result<PathBuf, Error> {
     Ok(folder)
 }
 
-fn step(mut command: Command, settings: &[&str]) -> Result<String, Error> {
+fn step(mut command: Command, settings: &[&str], remedy: &'static str) -> Result<String, Error> {
     command.arg(STEPS).args(settings);
     let output = command.output().map_err(|source| Error::Start {
         program: command.get_program().to_string_lossy().into_owned(),
         source,
-        remedy: WINE,
+        remedy,
     })?;
     if !output.status.success() {
         eprint!("{}", String::from_utf8_lossy(&output.stderr));
