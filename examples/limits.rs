@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let t: Vec<f64> = (0..=12_000).map(|k| 1e-3 * f64::from(k)).collect();
     let force = |t: f64| 2.0 * (1.5 * t).sin();
     let drives = t.windows(2).map(|pair| Drive::Line(force(pair[0]), force(pair[1]))).collect();
-    let motion = Motion { terms: law.terms(), coefficients: law.coefficients() };
+    let motion = Motion::new(law.terms(), law.coefficients());
     let course = Course::own(&motion, State { q: 0.5, qd: 0.0 }, t, drives);
 
     let found = bound(&law, &[course], Sensors([Some(0.01), Some(0.01)]), Start::Unknown)?;

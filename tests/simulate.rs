@@ -64,7 +64,7 @@ fn a_switch_between_two_samples_happens_at_its_instant() {
     let scenario = Scenario { inner_step: 1e-3, ..switching(ExcitationKind::Sine) };
     let before = plant_at(&scenario, [0.312]);
     let held = before.reading().excitation;
-    let motion = |stage: usize| Motion { terms: &DUFFING, coefficients: &scenario.stages[stage].coefficients };
+    let motion = |stage: usize| Motion::new(&DUFFING, &scenario.stages[stage].coefficients);
     let first = motion(0).step_held(before.truth().state, 0.31234567 - 0.312, held);
     let second = motion(1).step_held(first, 0.31299 - 0.31234567, held);
     let expected = motion(2).step_held(second, 0.313 - 0.31299, held);

@@ -98,7 +98,7 @@ fn course(scenario: &Scenario, readings: &[Reading], stage: usize, state: State)
     let last = readings.partition_point(|reading| reading.t < end);
     let t = std::iter::once(start).chain(readings[first..last].iter().map(|reading| reading.t)).collect();
     let drives = readings[first - 1..last - 1].iter().map(|reading| Drive::Held(reading.excitation)).collect();
-    let motion = Motion { terms: &scenario.terms, coefficients: &scenario.stages[stage].coefficients };
+    let motion = Motion::new(&scenario.terms, &scenario.stages[stage].coefficients);
     Course::own(&motion, state, t, drives)
 }
 

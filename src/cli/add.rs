@@ -158,7 +158,7 @@ fn text(arguments: &Arguments, found: &Addition, input: &Input) -> String {
         text += "its coefficient is within its uncertainty: this record does not show it\n";
     }
     for ((term, value), std) in law.terms.iter().zip(&law.coefficients).zip(&law.std) {
-        let name = law.effect_name(*term);
+        let name = Catalogue::name_of(*term);
         let _ = writeln!(text, "  {name:<28} {:>30}", quantity(*value, *std, unit_of(*term, &input.units)));
     }
     for (name, value) in inner(law) {

@@ -10,7 +10,7 @@ use super::pictures::PictureArguments;
 use super::progress::Waiting;
 use super::words::{percent, quantity};
 use crate::diagnose::{Clock, Improvement, Law, Posed, Step, WindowError, improved_model};
-use crate::law::unit_of;
+use crate::law::{Catalogue, unit_of};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;
@@ -195,7 +195,7 @@ fn text(arguments: &Arguments, found: &Found, input: &Input) -> String {
     text += "\nthe law now:\n";
     let law = &found.law;
     for ((term, value), std) in law.terms.iter().zip(&law.coefficients).zip(&law.std) {
-        let name = law.effect_name(*term);
+        let name = Catalogue::name_of(*term);
         let _ = writeln!(text, "  {name:<28} {:>30}", quantity(*value, *std, unit_of(*term, &input.units)));
     }
     text += "\n";

@@ -203,13 +203,13 @@ impl Pairs {
     /// The coefficients of a law, by term.
     pub(super) fn coefficients(law: &Law) -> Pairs {
         let pairs = law.terms.iter().zip(&law.coefficients);
-        Pairs(pairs.map(|(term, value)| (law.term_name(*term), *value)).collect())
+        Pairs(pairs.map(|(term, value)| (term.name(), *value)).collect())
     }
 
     /// The std of those that were sought.
     pub(super) fn std(law: &Law) -> Pairs {
         let sought = law.terms.iter().zip(&law.std).filter(|(_, std)| **std > 0.0);
-        Pairs(sought.map(|(term, std)| (law.term_name(*term), *std)).collect())
+        Pairs(sought.map(|(term, std)| (term.name(), *std)).collect())
     }
 }
 

@@ -62,8 +62,8 @@ pub(super) fn noise(std: &[(impl AsRef<str>, f64)], units: &Units) -> String {
 /// What stands behind an effect's coefficient: the catalogue's equation, the user's formula.
 pub(super) fn effect_of(term: Term, law: &Law) -> String {
     match (term, Catalogue::of(term)) {
-        (Term::Expression(index), _) => {
-            law.expressions.get(usize::from(index)).map_or_else(|| term.name(), |own| own.text().into())
+        (Term::Expression(own), _) => {
+            law.expressions.get(own.place()).map_or_else(|| term.name(), |own| own.text().into())
         }
         (_, Some(entry)) => entry.equation.into(),
         _ => term.symbol(),

@@ -45,7 +45,7 @@ pub struct Taken {
 pub fn open_recording(data: &str, model: &Model) -> Result<Opened, DataError> {
     let (source, content) = Source::open(data)?;
     let (layout, signals, form) = read(&source, content, model)?;
-    let unmet = model.terms.iter().find(|entry| model.uses_excitation(entry.term) && layout.excitation.is_none());
+    let unmet = model.terms.iter().find(|entry| entry.term.uses_excitation() && layout.excitation.is_none());
     if let Some(entry) = unmet {
         let (file, kind) = (source.file, source.kind);
         return Err(DataError::NeedsExcitation { file, kind, term: entry.key.clone() });

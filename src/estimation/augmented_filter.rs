@@ -7,7 +7,7 @@
 use super::covariance::{carry, correct};
 use super::filter::{Channel, Filter, times, white_acceleration};
 use super::pass::{IntervalMap, Observation};
-use crate::law::{Compiled, Motion, State, Term};
+use crate::law::{Compiled, Expression, Motion, State, Term};
 use serde::{Deserialize, Serialize};
 
 /// What a filter follows: the law's terms and which of their coefficients are free.
@@ -15,6 +15,8 @@ use serde::{Deserialize, Serialize};
 pub struct Unknowns<'a> {
     /// All terms.
     pub terms: &'a [Term],
+    /// The user's own effects that they name.
+    pub own: &'a [Expression],
     /// Places of the free ones among them, n.
     pub free: &'a [usize],
     /// The free ones, n.
@@ -127,7 +129,7 @@ impl AugmentedFilter {
         let parts = observation.drive.parts(parts);
         let dt = observation.dt / parts as f64;
         let AugmentedFilter { compiled, slopes, scaled_slopes, map, state, all, .. } = self;
-        compiled.compile(&Motion { terms: unknowns.terms, coefficients: all });
+        compiled.compile(&Motion::new(unknowns.terms, all).with(unknowns.own));
         let mut first = true;
         for part in 0..parts {
             let excitation = observation.drive.part(part, parts);
@@ -228,7 +230,7 @@ mod tests {
     }
 
     fn unknowns() -> Unknowns<'static> {
-        Unknowns { terms: &TERMS, free: &[0, 1, 2], free_terms: &TERMS, inertia: 0, free_inertia: Some(0) }
+        Unknowns { terms: &TERMS, own: &[], free: &[0, 1, 2], free_terms: &TERMS, inertia: 0, free_inertia: Some(0) }
     }
 
     /// A filter that begins with coefficients a tenth off and is told that they may be, after `seconds` of a driven
@@ -238,7 +240,7 @@ mod tests {
         let all = TRUTH.map(|value| 1.1 * value);
         let start = Start { all: &all, reach: &TRUTH, width: 0.2, first: at_rest() };
         joint.begin(&unknowns(), &start);
-        let (motion, mut state) = (Motion { terms: &TERMS, coefficients: &TRUTH }, State::default());
+        let (motion, mut state) = (Motion::new(&TERMS, &TRUTH), State::default());
         for k in 0..(seconds / DT) as usize {
             let force = 30.0 * (5.0 * k as f64 * DT).sin() + 10.0;
             state = motion.step_linear(state, DT, force, force);

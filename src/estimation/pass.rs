@@ -315,7 +315,8 @@ mod tests {
     fn the_first_run_takes_steps_as_fine_as_the_second() {
         let (omega, dt) = (50.0_f64, 0.01);
         let terms = [Term::Inertia, Term::power(1, 0)];
-        let motion = Motion { terms: &terms, coefficients: &[1.0, omega * omega] };
+        let coefficients = [1.0, omega * omega];
+        let motion = Motion::new(&terms, &coefficients);
         let noise = Noise { sensor: [1e-8, 1e-8 * omega * omega], process: 1e-12 };
         let at = |t: f64| [(omega * t).cos(), -omega * (omega * t).sin()];
         let mut pass = Pass::new(1);

@@ -24,14 +24,6 @@ pub enum FmuError {
         /// The keys of these terms, with the inner parameter where that is what lacks.
         terms: String,
     },
-    /// A term that no plant knows.
-    #[error(
-        "[terms]: \"{key}\" is an effect of your own, which a plant FMU cannot carry: take it out, or `switchid simulate` the model"
-    )]
-    Expression {
-        /// The key.
-        key: String,
-    },
     /// A term of a law without inertia that needs the past.
     #[error(
         "[terms]: the force of \"{key}\" needs the past, which the plant FMU of a law without inertia does not keep: take it out, or \

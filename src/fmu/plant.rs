@@ -2,7 +2,7 @@
 
 use super::FmuError;
 use super::description::describe;
-use crate::law::{Catalogue, Entry, InnerParameter, InnerRange, InnerUnit};
+use crate::law::{Catalogue, Entry, Expression, InnerParameter, InnerRange, InnerUnit};
 use crate::simulate::{Excitation, ParametricLaw, is_smooth};
 use switchid_fmu_package::variables::{at_least, choice, derivative, input, output, real, variable};
 use switchid_fmu_package::{Fmu, documentation};
@@ -91,7 +91,8 @@ pub(super) fn pack(description: Description, law_file: &str) -> Result<Fmu, FmuE
 pub fn plant_description(law: &ParametricLaw) -> Description {
     let stages = (1..=STAGES).flat_map(|number| stage(law, number));
     let hidden = Catalogue::ENTRIES.iter().flat_map(hidden);
-    let variables = general().into_iter().chain([driver()]).chain(drive()).chain(stages).chain(hidden);
+    let own = law.effects.iter().flat_map(own_effect);
+    let variables = general().into_iter().chain([driver()]).chain(drive()).chain(stages).chain(hidden).chain(own);
     let variables: Vec<Variable> = variables.chain(measured()).chain(truth(law)).collect();
     describe(&law.name, &law.description, vec![excitations()], variables)
 }
@@ -159,6 +160,17 @@ pub(super) fn hidden(entry: &'static Entry) -> impl Iterator<Item = Variable> {
         move |parameter| inner(&name, parameter)
     });
     std::iter::once(real(name, 0.0, None, text)).chain(inner)
+}
+
+/// The same of an effect of the user's own.
+pub(super) fn own_effect(own: &Expression) -> impl Iterator<Item = Variable> {
+    let name = format!("hidden.{}", own.name());
+    let text = format!("Effect in every stage: coefficient of {} on the left-hand side; 0 = absent", own.text());
+    let coefficient = real(name.clone(), 0.0, None, text);
+    let inner = own.parameters().iter().zip(own.values()).map(move |(inner, value)| {
+        real(format!("{name}.{inner}"), *value, None, format!("Inner parameter {inner} of the effect"))
+    });
+    std::iter::once(coefficient).chain(inner)
 }
 
 fn inner(effect: &str, parameter: &InnerParameter) -> Variable {

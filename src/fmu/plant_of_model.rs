@@ -6,7 +6,7 @@
 use super::plant::{pack, plant_description, with_equations};
 use super::specimen::{pack_specimen, specimen_description};
 use super::{Fmu, FmuError, ports};
-use crate::law::{Given, Model, ModelTerm, SiUnit, Term, Units, equation};
+use crate::law::{Expression, Given, Model, ModelTerm, SiUnit, Term, Units, equation};
 use crate::simulate::{ParametricLaw, is_smooth};
 use switchid_fmu_slave::{Description, Kind};
 
@@ -15,8 +15,7 @@ use switchid_fmu_slave::{Description, Kind};
 /// specimen: inputs q and qd, output F.
 ///
 /// # Errors
-/// [`FmuError::NoNumbers`] where a coefficient or an inner parameter has no number, [`FmuError::Expression`] for a user's own
-/// effect, [`FmuError::Memory`] for a specimen that needs the past, and what packing refuses.
+/// [`FmuError::NoNumbers`] where a coefficient or an inner parameter has no number, [`FmuError::Memory`] for a specimen that needs the past, and what packing refuses.
 pub fn plant_of_model(name: &str, model: &Model) -> Result<Fmu, FmuError> {
     model.check()?;
     let moves = !model.is_force_law();
@@ -34,7 +33,7 @@ pub fn plant_of_model(name: &str, model: &Model) -> Result<Fmu, FmuError> {
         (false, _) => specimen_description(&law),
     };
     start(&mut description, "q0", 0.0);
-    for (entry, value) in numbers.iter().filter(|(entry, _)| has_inner(entry)) {
+    for (entry, value) in numbers.iter().filter(|(entry, _)| is_hidden(entry)) {
         let effect = format!("hidden.{}", entry.term.name());
         start(&mut description, &effect, *value);
         for (inner, value) in model.inner_names(entry.term).iter().zip(model.inner_values(entry.term)) {
@@ -58,9 +57,6 @@ fn check_specimen(model: &Model) -> Result<(), FmuError> {
 
 /// Every term with its coefficient.
 fn numbers(model: &Model) -> Result<Vec<(&ModelTerm, f64)>, FmuError> {
-    if let Some(entry) = model.terms.iter().find(|entry| matches!(entry.term, Term::Expression(_))) {
-        return Err(FmuError::Expression { key: entry.key.clone() });
-    }
     let lacking: Vec<String> = model.terms.iter().flat_map(|entry| lacking(model, entry)).collect();
     if !lacking.is_empty() {
         return Err(FmuError::NoNumbers { terms: lacking.join(", ") });
@@ -80,8 +76,9 @@ fn lacking(model: &Model, entry: &ModelTerm) -> Vec<String> {
     coefficient.into_iter().chain(inner.map(|(inner, _)| format!("{inner} of \"{key}\""))).collect()
 }
 
-fn has_inner(entry: &ModelTerm) -> bool {
-    !entry.open.is_empty()
+/// Whether the law file has no place for it, so that it is one of the plant's `hidden.*`.
+fn is_hidden(entry: &ModelTerm) -> bool {
+    !entry.open.is_empty() || matches!(entry.term, Term::Expression(_))
 }
 
 /// The plant's law as its resources hold it.
@@ -91,17 +88,26 @@ fn law_file(name: &str, model: &Model, numbers: &[(&ModelTerm, f64)]) -> String 
         numbers.iter().map(|(entry, value)| (entry.term, *value, None)).collect();
     let description = format!("{}: {}", model.name, equation(&shown, true));
     let (mut parameters, mut terms) = (String::new(), String::new());
-    for (entry, value) in numbers.iter().filter(|(entry, _)| !has_inner(entry)) {
+    for (entry, value) in numbers.iter().filter(|(entry, _)| !is_hidden(entry)) {
         let (parameter, term) = (parameter(entry), entry.term.name());
         let text = quote(&format!("Coefficient of {term} on the left-hand side"));
         parameters += &format!("{parameter} = {{ start = {value:?}, description = {text} }}\n");
         terms += &format!("{} = \"{parameter}\"\n", quote(&term));
     }
+    let of_law = |own: &&Expression| numbers.iter().any(|(entry, _)| entry.term.name() == own.name());
+    let effects: String = model.expressions.iter().filter(of_law).map(own_effect).collect();
     format!(
-        "name = {}\ndescription = {}\namplitude = 1.0\nomega = 1.0\n\n[parameters]\n{parameters}\n[terms]\n{terms}",
+        "name = {}\ndescription = {}\namplitude = 1.0\nomega = 1.0\n\n[parameters]\n{parameters}\n[terms]\n{terms}{effects}",
         quote(name),
         quote(&description)
     )
+}
+
+/// An effect of the user's own as the law file has it.
+fn own_effect(own: &Expression) -> String {
+    let inner = own.parameters().iter().zip(own.values()).map(|(name, value)| format!("{name} = {value:?}\n"));
+    let formula = toml::Value::from(own.text());
+    format!("\n[effects.{}]\nexpression = {formula}\n{}", own.name(), inner.collect::<String>())
 }
 
 /// What the stages call the coefficient of a term: the user's name for the term where it can name a parameter.

@@ -2,7 +2,7 @@
 
 use super::FmuError;
 use super::description::describe;
-use super::plant::{NEVER, STAGES, hidden, true_coefficients};
+use super::plant::{NEVER, STAGES, hidden, own_effect, true_coefficients};
 use crate::law::Catalogue;
 use crate::simulate::ParametricLaw;
 use switchid_fmu_package::variables::{at_least, input, output, real, variable};
@@ -25,7 +25,12 @@ pub(super) fn specimen_description(law: &ParametricLaw) -> Description {
     let effects = Catalogue::ENTRIES
         .iter()
         .filter(|entry| entry.term.is_pointwise() && !entry.term.is_inertial() && !entry.term.uses_excitation());
-    let variables = imposed().into_iter().chain(sensor()).chain(stages).chain(effects.flat_map(hidden));
+    let variables = imposed()
+        .into_iter()
+        .chain(sensor())
+        .chain(stages)
+        .chain(effects.flat_map(hidden))
+        .chain(law.effects.iter().flat_map(own_effect));
     let variables: Vec<Variable> = variables.chain(force()).chain(true_coefficients(law)).collect();
     describe(&law.name, &law.description, Vec::new(), variables)
 }

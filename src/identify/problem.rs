@@ -1,7 +1,7 @@
 //! What is sought: the model's terms, split into known and free coefficients.
 
 use super::settings::{Channels, Settings};
-use crate::law::{Given, Hold, Model, Term};
+use crate::law::{Expression, Given, Hold, Model, Motion, Term};
 use crate::weak::Row;
 use serde::{Deserialize, Serialize};
 
@@ -10,6 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct Problem {
     /// All terms of the model.
     pub terms: Vec<Term>,
+    /// The user's own effects that they name.
+    pub own: Vec<Expression>,
     /// Positions of the free terms among `terms`.
     pub free: Vec<usize>,
     /// The free terms themselves.
@@ -40,6 +42,7 @@ impl Problem {
         let free: Vec<usize> = (0..entries.len()).filter(|index| entries[*index].1.is_free()).collect();
         Problem {
             terms: entries.iter().map(|(term, _)| *term).collect(),
+            own: model.expressions.clone(),
             free_terms: free.iter().map(|index| entries[*index].0).collect(),
             maybe: free.iter().map(|index| entries[*index].1 == Given::Maybe).collect(),
             known: entries
@@ -51,6 +54,11 @@ impl Problem {
             channels,
             hold: settings.hold,
         }
+    }
+
+    /// The law with these coefficients, one for each of its terms.
+    pub fn motion<'a>(&'a self, coefficients: &'a [f64]) -> Motion<'a> {
+        Motion::new(&self.terms, coefficients).with(&self.own)
     }
 
     /// Number of free coefficients.

@@ -5,7 +5,7 @@
 //! only the force is wanted. The order of a sum, and so its last bits, depend on nothing but terms and coefficients.
 
 use super::effect::Effect;
-use super::{Monomial, Motion, State, Term};
+use super::{Expression, Monomial, Motion, State, Term};
 use serde::{Deserialize, Serialize};
 
 /// Factors of q or q̇: the powers, then the effects'; a power of two, so that a place is never out of range.
@@ -53,6 +53,9 @@ impl Shapes {
             Term::Effect(effect @ Effect::StribeckFriction { .. }) => {
                 Shapes::place(&mut self.qd, SHAPED_QD, effect).map(|qd| Places { qd, ..Places::default() })
             }
+            Term::Expression(own) if own.place() < Compiled::MAX_OWN => {
+                Some(Places { excitation: OWN + own.place() as u8, ..Places::default() })
+            }
             Term::Effect(Effect::ExcitationGainNonlinearity { power }) => {
                 Some(Places { excitation: power.value() as u8, ..Places::default() })
             }
@@ -88,6 +91,9 @@ const OF_QD: [Effect; 3] = [Effect::CoulombFriction, Effect::QuadraticDamping, E
 
 /// Where |F| stands in the excitation's table.
 const SIZE: u8 = EFFECTS;
+
+/// Where the first of the user's own effects stands in the excitation's table: they are functions of all three, and no product.
+const OWN: u8 = SIZE + 1;
 
 /// A term that the law has: its places and its coefficient.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -129,6 +135,8 @@ pub struct Compiled {
     count: usize,
     free: [Free; Compiled::MAX_TERMS],
     shapes: Shapes,
+    /// The user's own effects.
+    own: Vec<Expression>,
     reach: Reach,
     free_reach: Reach,
     /// What multiplies q̈: `mass[0] + mass[1] q²`.
@@ -147,6 +155,7 @@ impl Default for Compiled {
             count: 0,
             free: [Free::default(); Compiled::MAX_TERMS],
             shapes: Shapes::default(),
+            own: Vec::new(),
             reach: Reach::default(),
             free_reach: Reach::default(),
             mass: [0.0; 2],
@@ -167,8 +176,11 @@ impl Compiled {
     /// The most terms of a law: its tables have this fixed size, so that no step allocates.
     pub const MAX_TERMS: usize = 32;
 
+    /// The most expressions of a law.
+    pub const MAX_OWN: usize = FACTORS - OWN as usize;
+
     /// The first term that a compiled law cannot have: one with memory, or one more effect with inner parameters than there are
-    /// places (3 of q, 3 of q̇).
+    /// places (3 of q, 3 of q̇), or an expression beyond the first [`Compiled::MAX_OWN`].
     pub fn refused(terms: &[Term]) -> Option<Term> {
         let mut shapes = Shapes::default();
         terms.iter().copied().find(|term| *term != Term::Inertia && shapes.places(*term).is_none())
@@ -207,6 +219,9 @@ impl Compiled {
 
     /// Takes the motion.
     pub fn compile(&mut self, motion: &Motion) {
+        if self.own != motion.own {
+            self.own = motion.own.to_vec();
+        }
         self.count = 0;
         self.mass = [0.0; 2];
         self.reach = Reach::default();
@@ -247,7 +262,7 @@ impl Compiled {
     /// Writes the law's factors at a point.
     #[inline]
     pub(super) fn fill(&self, table: &mut Table, state: State, excitation: f64) {
-        table.fill(&self.shapes, self.reach, state, excitation);
+        table.fill(&self.shapes, &self.own, self.reach, state, excitation);
     }
 
     /// Writes the law's and the free terms' factors at a point.
@@ -256,7 +271,7 @@ impl Compiled {
         let (law, free) = (self.reach, self.free_reach);
         let excited = law.excitation.max(free.excitation);
         let reach = Reach { q: law.q.max(free.q), qd: law.qd.max(free.qd), excitation: excited };
-        table.fill(&self.shapes, reach, state, excitation);
+        table.fill(&self.shapes, &self.own, reach, state, excitation);
     }
 
     /// (q̈, 1 ÷ mass).
@@ -272,7 +287,7 @@ impl Compiled {
 
     /// \[∂/∂q, ∂/∂q̇\] of the law's force.
     #[inline]
-    pub(super) fn gradient(&self, table: &Table, state: State) -> [f64; 2] {
+    pub(super) fn gradient(&self, table: &Table, state: State, excitation: f64) -> [f64; 2] {
         let (mut by_q, mut by_qd) = ([0.0; FACTORS], [0.0; FACTORS]);
         differentiate(&mut by_q, &table.q, self.reach.q);
         differentiate(&mut by_qd, &table.qd, self.reach.qd);
@@ -298,6 +313,10 @@ impl Compiled {
             let (q, qd) = (usize::from(places.q) & MASK, usize::from(places.qd) & MASK);
             gradient[0] += scaled * by_q[q] * table.qd[qd];
             gradient[1] += scaled * table.q[q] * by_qd[qd];
+            if let Some(own) = places.excitation.checked_sub(OWN).and_then(|place| self.own.get(usize::from(place))) {
+                let (own_by_q, own_by_qd) = own.gradient(state.q, state.qd, excitation);
+                gradient = [gradient[0] + coefficient * own_by_q, gradient[1] + coefficient * own_by_qd];
+            }
         }
         gradient
     }
@@ -317,11 +336,15 @@ impl Table {
     pub(super) const EMPTY: Table = Table { q: [0.0; FACTORS], qd: [0.0; FACTORS], excitation: [0.0; FACTORS] };
 
     #[inline]
-    fn fill(&mut self, shapes: &Shapes, reach: Reach, state: State, excitation: f64) {
+    fn fill(&mut self, shapes: &Shapes, own: &[Expression], reach: Reach, state: State, excitation: f64) {
         powers(&mut self.q, state.q, reach.q);
         powers(&mut self.qd, state.qd, reach.qd);
         powers(&mut self.excitation, excitation, reach.excitation);
         self.excitation[usize::from(SIZE)] = excitation.abs();
+        if reach.excitation >= OWN {
+            let slots = &mut self.excitation[usize::from(OWN)..];
+            own.iter().zip(slots).for_each(|(own, slot)| *slot = own.value(state.q, state.qd, excitation, f64::NAN));
+        }
         if reach.q >= EFFECTS {
             let slots = &mut self.q[usize::from(EFFECTS)..];
             OF_Q.iter().zip(slots).for_each(|(effect, slot)| *slot = effect.force(state.q, 0.0, 0.0));
@@ -372,12 +395,18 @@ fn differentiate(slots: &mut [f64; FACTORS], powers: &[f64; FACTORS], reach: u8)
 mod tests {
     use super::*;
 
+    fn own() -> [Expression; 2] {
+        [("drag", "abs(qd)^1.5*sign(qd)*q"), ("push", "F*tanh(3*q) + qd^2")]
+            .map(|(name, text)| Expression::parse(name, text).unwrap())
+    }
+
     fn every_kind() -> (Vec<Term>, Vec<f64>) {
         let monomial = |q, qd, excitation| Term::Monomial(Monomial { q, qd, excitation });
         let monomials =
             [(0, 0, 0), (1, 0, 0), (3, 2, 0), (9, 0, 0), (0, 5, 0), (1, 0, 2)].map(|(q, qd, f)| monomial(q, qd, f));
         let effects = Effect::ALL.into_iter().filter(|effect| effect.is_pointwise()).map(Term::Effect);
-        let terms: Vec<Term> = [Term::Inertia].into_iter().chain(monomials).chain(effects).collect();
+        let own = own().into_iter().enumerate().map(|(place, own)| own.term(place)).collect::<Vec<_>>();
+        let terms: Vec<Term> = [Term::Inertia].into_iter().chain(monomials).chain(effects).chain(own).collect();
         let coefficients = (0..terms.len()).map(|index| 0.3 + 0.17 * index as f64).collect();
         (terms, coefficients)
     }
@@ -386,7 +415,8 @@ mod tests {
     fn agrees_with_the_terms_one_by_one() {
         let (terms, mut coefficients) = every_kind();
         coefficients[2] = 0.0;
-        let motion = Motion { terms: &terms, coefficients: &coefficients };
+        let own = own();
+        let motion = Motion::new(&terms, &coefficients).with(&own);
         let mut compiled = Compiled::default();
         compiled.seek(&terms);
         compiled.compile(&motion);
@@ -397,14 +427,15 @@ mod tests {
             let (acceleration, inverse) = compiled.acceleration(&table, excitation);
             let expected = motion.acceleration(state, excitation);
             assert!((acceleration / expected - 1.0).abs() < 1e-13, "{acceleration} against {expected}");
-            let gradient = compiled.gradient(&table, state);
+            let gradient = compiled.gradient(&table, state, excitation);
             let mut slopes = vec![0.0; terms.len()];
             compiled.slopes(&table, acceleration, inverse, &mut slopes);
             let mut sums = [0.0; 2];
             for ((term, coefficient), slope) in terms.iter().zip(&coefficients).zip(&slopes) {
-                let (by_q, by_qd) = term.gradient(q, qd, excitation);
+                let (by_q, by_qd) = term.gradient_of(&own, state, excitation);
                 sums = [sums[0] + coefficient * by_q, sums[1] + coefficient * by_qd];
-                let expected = -(term.force(q, qd, excitation) + term.mass(q) * acceleration) / motion.mass(q);
+                let force = term.force_of(&own, state, excitation);
+                let expected = -(force + term.mass(q) * acceleration) / motion.mass(q);
                 assert!(
                     (slope - expected).abs() < 1e-13 * (1.0 + expected.abs()),
                     "{term}: {slope} against {expected}"
@@ -425,10 +456,12 @@ mod tests {
         assert_eq!(Compiled::refused(&every_kind().0), None);
         assert_eq!(Compiled::refused(&gaps(3)), None);
         assert_eq!(Compiled::refused(&gaps(4)), Some(gaps(4)[3]));
+        let own = |place: usize| own()[0].term(place);
+        assert_eq!(Compiled::refused(&[own(Compiled::MAX_OWN - 1), own(Compiled::MAX_OWN)]), Some(own(5)));
         let hysteresis = Term::Effect(Effect::prototype("hysteresis").unwrap());
         assert_eq!(Compiled::refused(&[Term::Inertia, hysteresis]), Some(hysteresis));
         let mut compiled = Compiled::default();
-        compiled.compile(&Motion { terms: &[Term::Inertia, hysteresis], coefficients: &[1.0, 2.0] });
+        compiled.compile(&Motion::new(&[Term::Inertia, hysteresis], &[1.0, 2.0]));
         let mut table = Table::EMPTY;
         compiled.fill(&mut table, State::default(), 0.0);
         assert!(compiled.acceleration(&table, 0.0).0.is_nan());
@@ -438,12 +471,12 @@ mod tests {
     fn follows_only_coefficients_that_have_changed() {
         let (terms, mut coefficients) = every_kind();
         let mut compiled = Compiled::default();
-        compiled.follow(&Motion { terms: &terms, coefficients: &coefficients });
+        compiled.follow(&Motion::new(&terms, &coefficients));
         let first = compiled.clone();
-        compiled.follow(&Motion { terms: &terms, coefficients: &coefficients });
+        compiled.follow(&Motion::new(&terms, &coefficients));
         assert_eq!(compiled.mass, first.mass);
         coefficients[0] = 2.5;
-        compiled.follow(&Motion { terms: &terms, coefficients: &coefficients });
+        compiled.follow(&Motion::new(&terms, &coefficients));
         assert!(compiled.mass[0] != first.mass[0]);
     }
 }

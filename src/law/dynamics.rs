@@ -6,7 +6,7 @@
 
 use super::memory::{LARGEST, parts};
 use super::reversal::{MOST_CUTS, NEGLIGIBLE, REFINEMENTS, direction_from_rest, release, rest_within};
-use super::{Effect, Expression, History, Motion, State, Term};
+use super::{Effect, History, Motion, State, Term};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -61,7 +61,6 @@ pub enum DynamicsError {
 #[derive(Clone, Copy, Debug)]
 pub struct Dynamics<'a> {
     motion: Motion<'a>,
-    expressions: &'a [Expression],
 }
 
 /// The instant of a stage of a step: time, present excitation, and which of start, middle and end it is.
@@ -89,19 +88,19 @@ impl<'h, H: History> Instant<'h, H> {
 }
 
 impl<'a> Dynamics<'a> {
-    /// A law of these terms and coefficients; `expressions` are those that its terms name.
+    /// The law of that motion.
     ///
     /// # Errors
     /// [`DynamicsError`] for too many internal states or an expression that is not there.
-    pub fn new(motion: Motion<'a>, expressions: &'a [Expression]) -> Result<Dynamics<'a>, DynamicsError> {
+    pub fn new(motion: Motion<'a>) -> Result<Dynamics<'a>, DynamicsError> {
         let count = motion.terms.iter().filter_map(|term| term.effect()).map(Effect::memory_length).sum();
         if count > MAX_MEMORY {
             return Err(DynamicsError::Memory { count });
         }
-        let absent = |term: &&Term| matches!(term, Term::Expression(index) if usize::from(*index) >= expressions.len());
+        let absent = |term: &&Term| matches!(term, Term::Expression(own) if own.place() >= motion.own.len());
         match motion.terms.iter().find(absent) {
-            Some(term) => Err(DynamicsError::Expression { term: *term, count: expressions.len() }),
-            None => Ok(Dynamics { motion, expressions }),
+            Some(term) => Err(DynamicsError::Expression { term: *term, count: motion.own.len() }),
+            None => Ok(Dynamics { motion }),
         }
     }
 
@@ -245,8 +244,8 @@ impl<'a> Dynamics<'a> {
         match term {
             Term::Effect(Effect::ExcitationDelay { delay }) => instant.excitation - instant.delayed(delay.value()),
             Term::Effect(effect) if effect.memory_length() > 0 => effect.feature(state, instant.excitation, memory),
-            Term::Expression(index) => {
-                self.expressions[usize::from(index)].value(state.q, state.qd, instant.excitation, instant.t())
+            Term::Expression(own) => {
+                self.motion.own[own.place()].value(state.q, state.qd, instant.excitation, instant.t())
             }
             _ => term.force(state.q, state.qd, instant.excitation),
         }
@@ -278,8 +277,8 @@ fn refined(mut share: f64, by: impl Fn(f64) -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::Hold;
     use crate::law::history::Samples;
+    use crate::law::{Expression, Hold, Own};
 
     fn effect(id: &str, inner: &[f64]) -> Term {
         Term::Effect(Effect::prototype(id).unwrap().with_inner(inner).unwrap())
@@ -292,7 +291,7 @@ mod tests {
     fn end(terms: &[Term], coefficients: &[f64], steps: usize) -> Phase {
         let drag = Expression::parse("drag", "tanh(3*qd) + 0.2*sin(t)*F").unwrap();
         let expressions = [drag];
-        let dynamics = Dynamics::new(Motion { terms, coefficients }, &expressions).unwrap();
+        let dynamics = Dynamics::new(Motion::new(terms, coefficients).with(&expressions)).unwrap();
         let dt = 2.0 / steps as f64;
         let excitation = |t: f64| 1.5 * (1.3 * t).sin() + 0.2;
         let start = dynamics.rest(State { q: 0.8, qd: -0.3 });
@@ -302,7 +301,7 @@ mod tests {
     #[test]
     fn converges_with_order_four() {
         let resonator = effect("hidden_resonator", &[3.0, 0.05]);
-        let smooth = [resonator, effect("excitation_delay", &[0.23]), Term::Expression(0)];
+        let smooth = [resonator, effect("excitation_delay", &[0.23]), Term::Expression(Own::new(0, "x", false))];
         let terms = terms(&smooth);
         let coefficients = [1.3, 0.3, 4.0, 0.7, 0.4, 0.6, 0.3];
         let exact = end(&terms, &coefficients, 8192);
@@ -319,8 +318,8 @@ mod tests {
     #[test]
     fn a_law_without_memory_moves_as_motion_does() {
         let terms = terms(&[effect("dead_zone_stiffness", &[0.2])]);
-        let motion = Motion { terms: &terms, coefficients: &[1.3, 0.3, 4.0, 0.7, 2.0] };
-        let dynamics = Dynamics::new(motion, &[]).unwrap();
+        let motion = Motion::new(&terms, &[1.3, 0.3, 4.0, 0.7, 2.0]);
+        let dynamics = Dynamics::new(motion).unwrap();
         let state = State { q: 0.8, qd: -0.3 };
         let moved = dynamics.step(&dynamics.rest(state), 0.0, 0.01, &|t: f64| 0.4 + 3.0 * t).state;
         let expected = motion.step_linear(state, 0.01, 0.4, 0.43);
@@ -347,8 +346,9 @@ mod tests {
     fn a_hidden_mass_moves_as_two_coupled_masses_do() {
         let (mass, stiffness, hidden, omega) = (2.0, 5.0, 0.5, 3.0);
         let terms = [Term::Inertia, Term::power(1, 0), effect("hidden_resonator", &[omega, 0.0])];
-        let motion = Motion { terms: &terms, coefficients: &[mass, stiffness, hidden] };
-        let dynamics = Dynamics::new(motion, &[]).unwrap();
+        let coefficients = [mass, stiffness, hidden];
+        let motion = Motion::new(&terms, &coefficients);
+        let dynamics = Dynamics::new(motion).unwrap();
         let mut phase = dynamics.rest(State { q: 0.3, qd: 0.0 });
         let energy = |phase: &Phase| {
             let ([y, yd, ..], State { q, qd }) = (phase.memory, phase.state);
@@ -366,8 +366,8 @@ mod tests {
         let late = terms(&[effect("excitation_delay", &[delay])]);
         let coefficients = [1.3, 0.3, 4.0, 0.7, 1.0];
         let excitation = |t: f64| (2.0 * t).sin() + t;
-        let here = Dynamics::new(Motion { terms: &late, coefficients: &coefficients }, &[]).unwrap();
-        let there = Dynamics::new(Motion { terms: &base, coefficients: &coefficients[..4] }, &[]).unwrap();
+        let here = Dynamics::new(Motion::new(&late, &coefficients)).unwrap();
+        let there = Dynamics::new(Motion::new(&base, &coefficients[..4])).unwrap();
         let phase = here.rest(State { q: 0.8, qd: -0.3 });
         let a = here.step(&phase, 1.0, 0.01, &excitation);
         let b = there.step(&phase, 1.0, 0.01, &|t: f64| excitation(t - delay));
@@ -377,7 +377,7 @@ mod tests {
     #[test]
     fn hysteresis_saturates_at_its_yield_displacement() {
         let terms = [Term::Inertia, effect("hysteresis", &[0.05, 0.7, 1.6])];
-        let dynamics = Dynamics::new(Motion { terms: &terms, coefficients: &[1.0, 0.0] }, &[]).unwrap();
+        let dynamics = Dynamics::new(Motion::new(&terms, &[1.0, 0.0])).unwrap();
         let start = dynamics.rest(State { q: 0.0, qd: 2.0 });
         let there = (0..100).fold(start, |phase, step| dynamics.step(&phase, step as f64 * 0.01, 0.01, &|_: f64| 0.0));
         assert!((there.memory[0] - 0.05).abs() < 1e-9, "{}", there.memory[0]);
@@ -389,7 +389,7 @@ mod tests {
         let force: Vec<f64> = (0..20).map(|index| f64::from(index * index % 7)).collect();
         let samples = Samples { t: &times, excitation: &force, hold: Hold::Zero };
         let terms = [Term::Inertia, effect("excitation_delay", &[0.013])];
-        let dynamics = Dynamics::new(Motion { terms: &terms, coefficients: &[1.0, 1.0] }, &[]).unwrap();
+        let dynamics = Dynamics::new(Motion::new(&terms, &[1.0, 1.0])).unwrap();
         let step = |phase, step: usize| dynamics.step(&phase, times[step], 0.01, &samples);
         let velocity = (0..19).fold(dynamics.rest(State::default()), step).state.qd;
         let expected = force[0] * 0.013 + force[..17].iter().sum::<f64>() * 0.01 + force[17] * 0.007;
@@ -399,10 +399,10 @@ mod tests {
     #[test]
     fn what_cannot_be_integrated_is_refused() {
         let many: Vec<Term> = (1..6).map(|n| effect("hidden_resonator", &[f64::from(n), 0.0])).collect();
-        let motion = Motion { terms: &many, coefficients: &[1.0; 5] };
-        assert_eq!(Dynamics::new(motion, &[]).unwrap_err(), DynamicsError::Memory { count: 10 });
-        let absent = [Term::Expression(1)];
-        let motion = Motion { terms: &absent, coefficients: &[1.0] };
-        assert!(matches!(Dynamics::new(motion, &[]), Err(DynamicsError::Expression { .. })));
+        let motion = Motion::new(&many, &[1.0; 5]);
+        assert_eq!(Dynamics::new(motion).unwrap_err(), DynamicsError::Memory { count: 10 });
+        let absent = [Term::Expression(Own::new(1, "x", false))];
+        let motion = Motion::new(&absent, &[1.0]);
+        assert!(matches!(Dynamics::new(motion), Err(DynamicsError::Expression { .. })));
     }
 }

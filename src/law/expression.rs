@@ -4,6 +4,7 @@
 //! other name is an inner parameter. A power of a negative base needs a whole exponent: `abs(qd)^0.5`.
 
 use super::formula::{Binary, FormulaError, Instruction, STACK, Unary, VARIABLES, parse};
+use super::{Own, Term};
 use serde::{Deserialize, Serialize};
 
 /// A named formula with values of its inner parameters.
@@ -33,6 +34,11 @@ impl Expression {
     /// The user's name for it.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// The term that stands for it among a law's expressions, at that place.
+    pub fn term(&self, place: usize) -> Term {
+        Term::Expression(Own::new(place, &self.name, self.uses("F")))
     }
 
     /// The formula as written.
@@ -66,14 +72,28 @@ impl Expression {
 
     /// The value at (q, q̇, F, t); not finite where the formula has none.
     pub fn value(&self, q: f64, qd: f64, excitation: f64, t: f64) -> f64 {
-        let variables = [q, qd, excitation, t];
-        let mut stack = [0.0; STACK + 1];
+        self.run([q, qd, excitation, t].map(Number::of)).value
+    }
+
+    /// (∂/∂q, ∂/∂q̇) at (q, q̇, F); one-sided where the formula has a kink, 0 at the jump of a sign, NaN where it depends on time.
+    pub fn gradient(&self, q: f64, qd: f64, excitation: f64) -> (f64, f64) {
+        let along = |value: f64, slopes: [f64; 2]| Number { value, slopes };
+        let variables =
+            [along(q, [1.0, 0.0]), along(qd, [0.0, 1.0]), Number::of(excitation), along(f64::NAN, [f64::NAN; 2])];
+        self.run(variables).slopes.into()
+    }
+
+    #[inline]
+    fn run(&self, variables: [Number; 4]) -> Number {
+        let mut stack = [Number::of(0.0); STACK + 1];
         let mut top = 0;
         for instruction in &self.program {
             match instruction {
-                Instruction::Number(number) => (stack[top], top) = (*number, top + 1),
+                Instruction::Number(number) => (stack[top], top) = (Number::of(*number), top + 1),
                 Instruction::Variable(index) => (stack[top], top) = (variables[usize::from(*index)], top + 1),
-                Instruction::Parameter(index) => (stack[top], top) = (self.values[usize::from(*index)], top + 1),
+                Instruction::Parameter(index) => {
+                    (stack[top], top) = (Number::of(self.values[usize::from(*index)]), top + 1)
+                }
                 Instruction::Unary(function) => stack[top - 1] = unary(*function, stack[top - 1]),
                 Instruction::Binary(function) => {
                     top -= 1;
@@ -85,33 +105,66 @@ impl Expression {
     }
 }
 
-fn unary(function: Unary, x: f64) -> f64 {
-    match function {
-        Unary::Negative => -x,
-        Unary::Abs => x.abs(),
-        Unary::Sign => super::pointwise::sign(x),
-        Unary::Sqrt => x.sqrt(),
-        Unary::Exp => x.exp(),
-        Unary::Ln => x.ln(),
-        Unary::Sin => x.sin(),
-        Unary::Cos => x.cos(),
-        Unary::Tan => x.tan(),
-        Unary::Atan => x.atan(),
-        Unary::Sinh => x.sinh(),
-        Unary::Cosh => x.cosh(),
-        Unary::Tanh => x.tanh(),
+/// A value and its derivatives by q and q̇: forward differentiation.
+#[derive(Clone, Copy, Debug)]
+struct Number {
+    value: f64,
+    slopes: [f64; 2],
+}
+
+impl Number {
+    const fn of(value: f64) -> Number {
+        Number { value, slopes: [0.0; 2] }
+    }
+
+    /// A function's value here, with its derivative.
+    fn through(self, value: f64, derivative: f64) -> Number {
+        Number { value, slopes: self.slopes.map(|slope| chained(derivative, slope)) }
+    }
+
+    /// The same of two numbers.
+    fn with(self, other: Number, value: f64, [by_self, by_other]: [f64; 2]) -> Number {
+        let slope = |place: usize| chained(by_self, self.slopes[place]) + chained(by_other, other.slopes[place]);
+        Number { value, slopes: [slope(0), slope(1)] }
     }
 }
 
-fn binary(function: Binary, a: f64, b: f64) -> f64 {
+/// A derivative times a slope; what does not move has no slope, however steep the function is there.
+fn chained(derivative: f64, slope: f64) -> f64 {
+    if slope == 0.0 { 0.0 } else { derivative * slope }
+}
+
+fn unary(function: Unary, number: Number) -> Number {
+    let x = number.value;
+    let sign = super::pointwise::sign;
+    let (value, derivative) = match function {
+        Unary::Negative => (-x, -1.0),
+        Unary::Abs => (x.abs(), sign(x)),
+        Unary::Sign => (sign(x), 0.0),
+        Unary::Sqrt => (x.sqrt(), 0.5 / x.sqrt()),
+        Unary::Exp => (x.exp(), x.exp()),
+        Unary::Ln => (x.ln(), x.recip()),
+        Unary::Sin => (x.sin(), x.cos()),
+        Unary::Cos => (x.cos(), -x.sin()),
+        Unary::Tan => (x.tan(), 1.0 + x.tan().powi(2)),
+        Unary::Atan => (x.atan(), (1.0 + x * x).recip()),
+        Unary::Sinh => (x.sinh(), x.cosh()),
+        Unary::Cosh => (x.cosh(), x.sinh()),
+        Unary::Tanh => (x.tanh(), 1.0 - x.tanh().powi(2)),
+    };
+    number.through(value, derivative)
+}
+
+fn binary(function: Binary, first: Number, second: Number) -> Number {
+    let (a, b) = (first.value, second.value);
     match function {
-        Binary::Add => a + b,
-        Binary::Subtract => a - b,
-        Binary::Multiply => a * b,
-        Binary::Divide => a / b,
-        Binary::Power => a.powf(b),
-        Binary::Min => a.min(b),
-        Binary::Max => a.max(b),
+        Binary::Add => first.with(second, a + b, [1.0, 1.0]),
+        Binary::Subtract => first.with(second, a - b, [1.0, -1.0]),
+        Binary::Multiply => first.with(second, a * b, [b, a]),
+        Binary::Divide => first.with(second, a / b, [b.recip(), -a / (b * b)]),
+        Binary::Power => first.with(second, a.powf(b), [b * a.powf(b - 1.0), a.powf(b) * a.ln()]),
+        Binary::Min => first.with(second, a.min(b), if a <= b { [1.0, 0.0] } else { [0.0, 1.0] }),
+        Binary::Max => first.with(second, a.max(b), if a >= b { [1.0, 0.0] } else { [0.0, 1.0] }),
     }
 }
 
@@ -144,6 +197,31 @@ mod tests {
             let found = value(text);
             assert!((found - expected).abs() < 1e-12, "{text}: {found} against {expected}");
         }
+    }
+
+    #[test]
+    fn gradients_are_those_of_the_values() {
+        let eps = 1e-6;
+        for text in [
+            "abs(qd)^1.5*sign(qd)*q",
+            "max(q, qd)^2 - min(q, 0.1)/(1 + qd^2)",
+            "tanh(3*q)*exp(-abs(qd)/0.4) + sqrt(q^2 + 1)",
+            "sin(q)*cos(qd)*F + tan(q/2) + atan(qd) + ln(2 + q) + sinh(q)*cosh(qd)",
+            "2^q - -qd^3 + q^0*pi",
+        ] {
+            let own = Expression::parse("x", text).unwrap();
+            for (q, qd) in [(0.7, -1.2), (-0.4, 0.3), (0.2, 0.9)] {
+                let (by_q, by_qd) = own.gradient(q, qd, 0.4);
+                let at = |q: f64, qd: f64| own.value(q, qd, 0.4, f64::NAN);
+                let differences = [at(q + eps, qd) - at(q - eps, qd), at(q, qd + eps) - at(q, qd - eps)];
+                for (slope, difference) in [by_q, by_qd].into_iter().zip(differences) {
+                    assert!((slope - difference / (2.0 * eps)).abs() < 1e-7, "{text} at {q}, {qd}: {slope}");
+                }
+            }
+        }
+        let drag = Expression::parse("x", "abs(qd)^1.5*sign(qd)").unwrap();
+        assert_eq!(drag.gradient(0.3, 0.0, 0.0), (0.0, 0.0));
+        assert!(Expression::parse("x", "q*t").unwrap().gradient(1.0, 1.0, 1.0).0.is_nan());
     }
 
     #[test]

@@ -67,7 +67,7 @@ pub fn interval_forces(
             (0..count).map(|k| delayed(trajectory, k, delay.value(), offset)).collect()
         }
         Term::Effect(effect) if effect.memory_length() > 0 => remembered(effect, &course, beginning),
-        Term::Expression(index) => match expressions.get(usize::from(index)) {
+        Term::Expression(own) => match expressions.get(own.place()) {
             Some(expression) => (0..count).map(|k| expressed(expression, &course, k)).collect(),
             None => vec![[f64::NAN; 2]; count],
         },
@@ -223,8 +223,8 @@ mod tests {
     /// The motion under a law with the effect, from a memory in mid-motion.
     fn simulated(effect: Effect, beginning: &[f64], dt: f64) -> Record {
         let terms = [Term::Inertia, Term::power(0, 1), Term::power(1, 0), Term::Effect(effect)];
-        let motion = Motion { terms: &terms, coefficients: &[1.0, 0.2, 3.0, 0.3] };
-        let dynamics = Dynamics::new(motion, &[]).unwrap();
+        let motion = Motion::new(&terms, &[1.0, 0.2, 3.0, 0.3]);
+        let dynamics = Dynamics::new(motion).unwrap();
         let t: Vec<f64> = (0..=(8.0 / dt) as usize).map(|k| k as f64 * dt).collect();
         let mut start = dynamics.rest(State { q: 0.2, qd: 0.1 });
         start.memory.iter_mut().zip(beginning).for_each(|(value, offset)| *value += offset);
@@ -333,7 +333,9 @@ mod tests {
         let (t, q, qd, excitation) = ([0.0, 0.1], [1.0, 1.2], [1.0, 3.0], [5.0, 6.0]);
         let trajectory = Trajectory { t: &t, q: &q, qd: &qd, excitation: &excitation, hold: Hold::Zero };
         let expression = Expression::parse("x", "qd + F + t").unwrap();
-        let [line] = interval_forces(Term::Expression(0), &[expression], &trajectory, &[0.0], &[])[..] else {
+        let [line] =
+            interval_forces(expression.term(0), std::slice::from_ref(&expression), &trajectory, &[0.0], &[])[..]
+        else {
             panic!()
         };
         let mean = 2.0 + 5.0 + 0.05;

@@ -69,7 +69,7 @@ impl Compiled {
         amend(&mut table, s3);
         let (a3, inverse_mass) = self.acceleration(&table, middle);
         self.slopes(&table, a3, inverse_mass, slopes);
-        let [by_q, by_qd] = self.gradient(&table, s3).map(|slope| -slope * inverse_mass);
+        let [by_q, by_qd] = self.gradient(&table, s3, middle).map(|slope| -slope * inverse_mass);
         let s4 = State { q: state.q + dt * s3.qd, qd: state.qd + dt * a3 };
         self.fill(&mut table, s4, to);
         amend(&mut table, s4);
@@ -106,7 +106,7 @@ mod tests {
     fn step(coefficients: &[f64], state: State, dt: f64) -> (Linearized, [f64; 4]) {
         let (mut compiled, mut slopes) = (Compiled::default(), [0.0; 4]);
         compiled.seek(&TERMS);
-        compiled.compile(&Motion { terms: &TERMS, coefficients });
+        compiled.compile(&Motion::new(&TERMS, coefficients));
         (compiled.linearized_step(state, dt, drive(dt), &mut slopes), slopes)
     }
 

@@ -140,7 +140,7 @@ impl Model {
     pub fn named(&self, name: &str) -> Result<ModelTerm, ModelError> {
         let own = self.expressions.iter().position(|expression| expression.name() == name);
         let (term, inner) = match own {
-            Some(index) => (Term::Expression(index as u8), self.expressions[index].parameters().len()),
+            Some(index) => (self.expressions[index].term(index), self.expressions[index].parameters().len()),
             None => {
                 let term = Term::parse(name).map_err(|source| ModelError::Term { source })?;
                 (term, term.effect().map_or(0, |effect| effect.inner().len()))
@@ -149,28 +149,10 @@ impl Model {
         Ok(ModelTerm { term, given: Given::Fit, key: name.into(), open: vec![true; inner] })
     }
 
-    /// Whether a term of this model depends on the excitation.
-    pub fn uses_excitation(&self, term: Term) -> bool {
-        match term {
-            Term::Expression(index) => self.expressions.get(usize::from(index)).is_some_and(|own| own.uses("F")),
-            _ => term.uses_excitation(),
-        }
-    }
-
-    /// The canonical name of a term of this model; an expression has the user's.
-    pub fn name_of(&self, term: Term) -> String {
-        match term {
-            Term::Expression(index) => {
-                self.expressions.get(usize::from(index)).map_or_else(|| term.name(), |own| own.name().into())
-            }
-            _ => term.name(),
-        }
-    }
-
     /// The first term that cannot be identified sample by sample.
     ///
     /// # Errors
-    /// [`ModelError::Open`] where it has an inner parameter that is to be fitted, [`ModelError::Memory`] where its force is no function of the
+    /// [`ModelError::Open`] where it has an inner parameter that is to be fitted, [`ModelError::Time`] where it depends on time, [`ModelError::Memory`] where its force is no function of the
     /// present state and excitation, [`ModelError::ExcitationAlone`] where it is the excitation and nothing gives that a scale.
     pub fn check_streaming(&self) -> Result<(), ModelError> {
         self.check_scale()?;
@@ -179,6 +161,10 @@ impl Model {
                 let key = entry.key.clone();
                 return Err(ModelError::Open { key, inner: self.inner_names(entry.term).swap_remove(inner) });
             }
+        }
+        let of_time = |entry: &&ModelTerm| self.formula(entry.term).is_some_and(|own| own.uses("t"));
+        if let Some(entry) = self.terms.iter().find(of_time) {
+            return Err(ModelError::Time { key: entry.key.clone() });
         }
         let terms: Vec<Term> = self.terms.iter().map(|entry| entry.term).collect();
         let refused = Compiled::refused(&terms).and_then(|term| self.position(term));
@@ -194,14 +180,19 @@ impl Model {
         if self.terms.iter().any(is_free) { Ok(()) } else { Err(ModelError::NothingFree { forced }) }
     }
 
+    /// The formula of a term that is a user's own effect.
+    pub fn formula(&self, term: Term) -> Option<&Expression> {
+        match term {
+            Term::Expression(own) => self.expressions.get(own.place()),
+            _ => None,
+        }
+    }
+
     /// Names of a term's inner parameters, in their order.
     pub fn inner_names(&self, term: Term) -> Vec<String> {
         match term {
             Term::Effect(effect) => effect.inner().iter().map(|parameter| parameter.name.into()).collect(),
-            Term::Expression(index) => {
-                self.expressions.get(usize::from(index)).map_or_else(Vec::new, |own| own.parameters().to_vec())
-            }
-            _ => Vec::new(),
+            _ => self.formula(term).map_or_else(Vec::new, |own| own.parameters().to_vec()),
         }
     }
 
@@ -209,10 +200,7 @@ impl Model {
     pub fn inner_values(&self, term: Term) -> Vec<f64> {
         match term {
             Term::Effect(effect) => effect.inner_values(),
-            Term::Expression(index) => {
-                self.expressions.get(usize::from(index)).map_or_else(Vec::new, |own| own.values().to_vec())
-            }
-            _ => Vec::new(),
+            _ => self.formula(term).map_or_else(Vec::new, |own| own.values().to_vec()),
         }
     }
 
@@ -263,7 +251,7 @@ impl Model {
     /// # Errors
     /// [`ModelError::OutputAmongTerms`].
     pub fn check_force_law(&self) -> Result<(), ModelError> {
-        match self.terms.iter().find(|entry| self.uses_excitation(entry.term)) {
+        match self.terms.iter().find(|entry| entry.term.uses_excitation()) {
             Some(entry) => Err(ModelError::OutputAmongTerms { key: entry.key.clone() }),
             None => Ok(()),
         }

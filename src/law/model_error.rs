@@ -137,7 +137,7 @@ pub enum ModelError {
     },
     /// A user's effect has the name of another term, or none that can be one.
     #[error(
-        "[effects.{name}]: choose another name: letters, digits and underscores, a letter first, that is no term or effect already"
+        "[effects.{name}]: choose another name: up to 30 letters, digits and underscores, a letter first, that is no term or effect already"
     )]
     ExpressionName {
         /// The name.
@@ -172,10 +172,19 @@ pub enum ModelError {
         /// Whether there is an excitation.
         forced: bool,
     },
+    /// A user's own effect that depends on time.
+    #[error(
+        "[terms]: \"{key}\" depends on the time t, which a law that is identified sample by sample cannot: give what drives it as F, or \
+         leave it out here (compare, diagnose, add, improve and simulate take it)"
+    )]
+    Time {
+        /// The key of the term.
+        key: String,
+    },
     /// A term that the streaming identifier cannot have.
     #[error(
-        "[terms]: \"{key}\" cannot be identified sample by sample: it is a user's expression, needs the past, or is the fourth effect \
-         with a gap or the fifth with a Stribeck speed; leave it out here (compare, diagnose, add, improve and simulate take it)"
+        "[terms]: \"{key}\" cannot be identified sample by sample: it needs the past, or is the fourth effect with a gap, the fourth with a \
+         Stribeck speed, or none of the first five of your own; leave it out here (compare, diagnose, add, improve and simulate take it)"
     )]
     Memory {
         /// The key of the term.

@@ -14,7 +14,7 @@
 
 use super::model::{Columns, Given, Model, ModelTerm};
 use super::model_error::ModelError;
-use super::{Channel, ColumnUnits, Expression, Hold, InnerError, Term};
+use super::{Channel, ColumnUnits, Expression, Hold, InnerError, Own, Term};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -111,7 +111,7 @@ impl Model {
             text += &format!("{} = \"maybe\"\n", quote(&term.name()));
         }
         for (index, expression) in self.expressions.iter().enumerate() {
-            text += &format!("\n[effects.{}]\n{}", expression.name(), self.write_expression(index as u8, expression));
+            text += &format!("\n[effects.{}]\n{}", expression.name(), self.write_expression(index, expression));
         }
         text
     }
@@ -134,8 +134,8 @@ impl Model {
     }
 
     /// The body of a user's effect: its formula and the values at which inner parameters start that no term holds.
-    fn write_expression(&self, index: u8, expression: &Expression) -> String {
-        let term = self.terms.iter().find(|entry| entry.term == Term::Expression(index));
+    fn write_expression(&self, index: usize, expression: &Expression) -> String {
+        let term = self.terms.iter().find(|entry| entry.term == expression.term(index));
         let is_open = |inner: usize| term.is_none_or(|entry| entry.open[inner]);
         let named = expression.parameters().iter().zip(expression.values()).enumerate();
         let starts = named.filter(|(inner, (_, value))| is_open(*inner) && **value != Expression::START);
@@ -172,7 +172,8 @@ fn read_expressions(table: &toml::Table) -> Result<Vec<Expression>, ModelError> 
 }
 
 fn read_expression(name: &str, value: &toml::Value) -> Result<Expression, ModelError> {
-    let legal = name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+    let legal =
+        name.len() <= Own::LONGEST && name.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
     if !legal || !name.starts_with(|letter: char| letter.is_ascii_alphabetic()) || Term::parse(name).is_ok() {
         return Err(ModelError::ExpressionName { name: name.into() });
     }
@@ -205,7 +206,7 @@ fn read_term(key: &str, value: &toml::Value, expressions: &mut [Expression]) -> 
         Some((index, expression)) => {
             let inner = read(expression.parameters())?;
             expression.set(&values(&inner, expression.values()));
-            (Term::Expression(index as u8), inner)
+            (expression.term(index), inner)
         }
         None => read_effect(Term::parse(key).map_err(|source| ModelError::Term { source })?, read)?,
     };
@@ -312,8 +313,8 @@ mod tests {
         let text = model.to_toml();
         assert_eq!(Model::from_toml(&text).unwrap(), model, "{text}");
         let drag = &model.terms[4];
-        assert_eq!((drag.term, drag.open.as_slice()), (Term::Expression(0), [false, true].as_slice()));
-        assert_eq!((model.name_of(drag.term), model.inner_values(drag.term)), ("tip_drag".into(), vec![0.1, 0.5]));
+        assert_eq!((drag.term, drag.open.as_slice()), (model.expressions[0].term(0), [false, true].as_slice()));
+        assert_eq!((drag.term.name(), model.inner_values(drag.term)), ("tip_drag".into(), vec![0.1, 0.5]));
         assert_eq!(model.expressions[1].values(), [3.0]);
     }
 
@@ -374,6 +375,8 @@ mod tests {
     #[test]
     fn a_stream_takes_pointwise_terms_with_held_inner_parameters() {
         assert_eq!(read("stribeck_friction = { speed = 0.1 }").check_streaming(), Ok(()));
+        let own = "tip = { a = 2 }\n[effects.tip]\nexpression = \"a*abs(qd)^1.5*sign(qd)\"";
+        assert_eq!(read(own).check_streaming(), Ok(()));
         assert_eq!(read("F = \"fit\"\nq = 4.0").check_streaming(), Ok(()), "a known stiffness gives forces a scale");
         for (terms, named) in [
             ("stribeck_friction = \"fit\"", "speed is not given"),
@@ -381,7 +384,8 @@ mod tests {
             ("hysteresis = { yield_displacement = 0.1, share = 1, exponent = 1 }", "\"hysteresis\" cannot"),
             ("presliding_friction = { slip_length = 0.1 }", "\"presliding_friction\" cannot"),
             ("actuator_lag = { time = 0.1 }", "\"actuator_lag\" cannot"),
-            ("tip = 1.0\n[effects.tip]\nexpression = \"q*t\"", "\"tip\" cannot"),
+            ("tip = 1.0\n[effects.tip]\nexpression = \"q*t\"", "\"tip\" depends on the time"),
+            ("tip = 1.0\n[effects.tip]\nexpression = \"a*q\"", "\"tip\": a is not given"),
             ("F = \"fit\"\nq = 0.0", "\"F\" stands on both sides"),
         ] {
             let error = read(terms).check_streaming().unwrap_err().to_string();

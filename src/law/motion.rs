@@ -3,7 +3,7 @@
 //! `Σ θ_j f_j = F` solved for the acceleration, `q̈ = (F − Σ θ_j force_j(q, q̇, F)) ÷ Σ θ_j mass_j(q)`, and one step of the
 //! classical Runge–Kutta method (order 4) under an excitation that is held or runs on a straight line over the step.
 
-use super::Term;
+use super::{Expression, Term};
 use serde::{Deserialize, Serialize};
 
 /// Displacement and velocity of the coordinate.
@@ -33,9 +33,21 @@ pub struct Motion<'a> {
     pub terms: &'a [Term],
     /// What multiplies each term: as many as terms, SI units.
     pub coefficients: &'a [f64],
+    /// The user's own effects that terms name.
+    pub own: &'a [Expression],
 }
 
-impl Motion<'_> {
+impl<'a> Motion<'a> {
+    /// A law of these terms and coefficients, of equal length, none of them a user's own effect.
+    pub const fn new(terms: &'a [Term], coefficients: &'a [f64]) -> Motion<'a> {
+        Motion { terms, coefficients, own: &[] }
+    }
+
+    /// The same law, whose [`Term::Expression`]s count these.
+    pub const fn with(self, own: &'a [Expression]) -> Motion<'a> {
+        Motion { own, ..self }
+    }
+
     /// Σ θ_j mass_j(q), what multiplies q̈, kg.
     pub fn mass(&self, q: f64) -> f64 {
         self.pairs().map(|(term, coefficient)| coefficient * term.mass(q)).sum()
@@ -44,7 +56,7 @@ impl Motion<'_> {
     /// q̈, m/s², at (q, q̇) under excitation F, N; not finite where the mass is 0.
     pub fn acceleration(&self, state: State, excitation: f64) -> f64 {
         let force: f64 =
-            self.pairs().map(|(term, coefficient)| coefficient * term.force(state.q, state.qd, excitation)).sum();
+            self.pairs().map(|(term, coefficient)| coefficient * term.force_of(self.own, state, excitation)).sum();
         (excitation - force) / self.mass(state.q)
     }
 
@@ -53,7 +65,7 @@ impl Motion<'_> {
         let acceleration = self.acceleration(state, excitation);
         let mut sums = [0.0; 2];
         for (term, coefficient) in self.pairs() {
-            let (by_q, by_qd) = term.gradient(state.q, state.qd, excitation);
+            let (by_q, by_qd) = term.gradient_of(self.own, state, excitation);
             sums[0] += coefficient * (by_q + term.mass_gradient(state.q) * acceleration);
             sums[1] += coefficient * by_qd;
         }
@@ -98,7 +110,7 @@ mod tests {
     const COEFFICIENTS: [f64; 5] = [1.3, 0.3, 4.0, 0.7, 2.0];
 
     fn integrate(steps: usize) -> State {
-        let motion = Motion { terms: &TERMS, coefficients: &COEFFICIENTS };
+        let motion = Motion::new(&TERMS, &COEFFICIENTS);
         let dt = 2.0 / steps as f64;
         let excitation = |step: usize| 0.4 + 1.5 * step as f64 * dt;
         (0..steps).fold(State { q: 0.8, qd: -0.3 }, |state, step| {
@@ -121,7 +133,7 @@ mod tests {
 
     #[test]
     fn a_damped_oscillator_under_a_constant_force_follows_its_closed_form() {
-        let motion = Motion { terms: &TERMS[..3], coefficients: &[2.0, 0.4, 8.0] };
+        let motion = Motion::new(&TERMS[..3], &[2.0, 0.4, 8.0]);
         let (decay, frequency) = (0.1_f64, (4.0_f64 - 0.01).sqrt());
         let state = (0..3000).fold(State::default(), |state, _| motion.step_held(state, 1e-3, 4.0));
         let phase = frequency * 3.0;
@@ -133,7 +145,7 @@ mod tests {
     fn the_gradient_of_the_acceleration_is_that_of_its_differences() {
         let terms =
             [Term::Inertia, Term::Effect(Effect::PositionDependentInertia), Term::power(1, 0), Term::power(2, 1)];
-        let motion = Motion { terms: &terms, coefficients: &[1.0, 0.5, 4.0, 0.7] };
+        let motion = Motion::new(&terms, &[1.0, 0.5, 4.0, 0.7]);
         let at = |q: f64, qd: f64| motion.acceleration(State { q: 0.8 + q, qd: -0.3 + qd }, 1.2);
         let eps = 1e-6;
         let differences = [at(eps, 0.0) - at(-eps, 0.0), at(0.0, eps) - at(0.0, -eps)];
@@ -146,7 +158,7 @@ mod tests {
     #[test]
     fn position_dependent_inertia_enters_the_mass() {
         let terms = [Term::Inertia, Term::Effect(Effect::PositionDependentInertia)];
-        let motion = Motion { terms: &terms, coefficients: &[1.0, 0.5] };
+        let motion = Motion::new(&terms, &[1.0, 0.5]);
         let state = State { q: 2.0, qd: 3.0 };
         assert_eq!(motion.mass(2.0), 3.0);
         assert_eq!(motion.acceleration(state, 12.0), (12.0 - 0.5 * 18.0) / 3.0);

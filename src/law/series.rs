@@ -62,7 +62,7 @@ pub fn term_series(term: Term, expressions: &[Expression], trajectory: &Trajecto
             force.iter().zip(acting).map(|(now, acting)| now - acting).collect()
         }
         Term::Effect(effect) if effect.memory_length() > 0 => memory_series(effect, trajectory),
-        Term::Expression(index) => match expressions.get(usize::from(index)) {
+        Term::Expression(own) => match expressions.get(own.place()) {
             Some(expression) => points(trajectory, |k, q, qd, force| expression.value(q, qd, force, trajectory.t[k])),
             None => vec![f64::NAN; n],
         },
@@ -166,8 +166,8 @@ mod tests {
 
     fn simulated(effect: Term, dt: f64) -> Record {
         let terms = [Term::Inertia, Term::power(0, 1), Term::power(1, 0), effect];
-        let motion = Motion { terms: &terms, coefficients: &[1.0, 0.2, 3.0, 0.3] };
-        let dynamics = Dynamics::new(motion, &[]).unwrap();
+        let motion = Motion::new(&terms, &[1.0, 0.2, 3.0, 0.3]);
+        let dynamics = Dynamics::new(motion).unwrap();
         let t: Vec<f64> = (0..(8.0 / dt) as usize).map(|k| k as f64 * dt).collect();
         let mut phases = vec![dynamics.rest(State { q: 0.2, qd: 0.0 })];
         t.windows(2).for_each(|pair| {
@@ -246,8 +246,8 @@ mod tests {
         let trajectory = Trajectory { t: &t, q: &q, qd: &qd, excitation: &excitation, hold: Hold::Zero };
         assert_eq!(term_series(Term::power(2, 1), &[], &trajectory), [-3.0, 16.0]);
         let expression = Expression::parse("x", "q*qd + F - t").unwrap();
-        assert_eq!(term_series(Term::Expression(0), &[expression], &trajectory), [2.0, 13.9]);
-        assert!(term_series(Term::Expression(3), &[], &trajectory)[0].is_nan());
+        assert_eq!(term_series(expression.term(0), std::slice::from_ref(&expression), &trajectory), [2.0, 13.9]);
+        assert!(term_series(expression.term(3), &[], &trajectory)[0].is_nan());
         let empty = Trajectory { t: &[], q: &[], qd: &[], excitation: &[], hold: Hold::Zero };
         assert!(term_series(Term::Effect(effect("hysteresis", &[0.1, 1.0, 1.0])), &[], &empty).is_empty());
     }

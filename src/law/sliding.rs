@@ -192,7 +192,7 @@ mod tests {
         let (terms, mut slopes) = (terms(), [0.0; 5]);
         let mut law = Compiled::default();
         law.seek(&terms);
-        law.compile(&Motion { terms: &terms, coefficients });
+        law.compile(&Motion::new(&terms, coefficients));
         assert!(law.is_dry());
         let excitation = |t: f64| 1.5 - 3.0 * t + 9.0 * t * t;
         let mut end = End { state: start, transition: [[1.0, 0.0], [0.0, 1.0]], input: [[0.0; 2]; 5] };

@@ -1,6 +1,7 @@
 //! One term of a law: the inertia, a product of powers, or a named effect.
 
 use super::effect::Effect;
+use super::{Expression, Own, State};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -29,8 +30,8 @@ pub enum Term {
     Monomial(Monomial),
     /// A named effect that is no monomial.
     Effect(Effect),
-    /// A user's own effect: a place among [`super::Model::expressions`].
-    Expression(u8),
+    /// A user's own effect: one of [`super::Model::expressions`].
+    Expression(Own),
 }
 
 /// Why a text names no term.
@@ -102,12 +103,12 @@ impl Term {
         parse_product(text).map(Term::Monomial)
     }
 
-    /// The canonical name: `qdd`, `q^2*qd`, `1`, or the effect id; [`super::Model::name_of`] knows the names of expressions.
+    /// The canonical name: `qdd`, `q^2*qd`, `1`, or the effect id, or the user's own name.
     pub fn name(self) -> String {
         match self {
             Term::Inertia => "qdd".into(),
             Term::Effect(effect) => effect.id().into(),
-            Term::Expression(index) => format!("expression_{}", u16::from(index) + 1),
+            Term::Expression(own) => own.name().into(),
             Term::Monomial(Monomial { q: 0, qd: 0, excitation: 0 }) => "1".into(),
             Term::Monomial(powers) => {
                 let factor = |base: &str, power: u8| match power {
@@ -156,6 +157,28 @@ impl Term {
             Term::Effect(effect) => effect.force(q, qd, excitation),
             Term::Expression(_) => f64::NAN,
             Term::Monomial(p) => raised(q, p.q) * raised(qd, p.qd) * raised(excitation, p.excitation),
+        }
+    }
+
+    /// The same of a law whose [`Term::Expression`]s count `own`; NaN for one that depends on time.
+    #[inline]
+    pub fn force_of(self, own: &[Expression], State { q, qd }: State, excitation: f64) -> f64 {
+        match self {
+            Term::Expression(named) => {
+                own.get(named.place()).map_or(f64::NAN, |own| own.value(q, qd, excitation, f64::NAN))
+            }
+            _ => self.force(q, qd, excitation),
+        }
+    }
+
+    /// (∂/∂q, ∂/∂q̇) of [`Term::force_of`].
+    #[inline]
+    pub fn gradient_of(self, own: &[Expression], State { q, qd }: State, excitation: f64) -> (f64, f64) {
+        match self {
+            Term::Expression(named) => {
+                own.get(named.place()).map_or((f64::NAN, f64::NAN), |own| own.gradient(q, qd, excitation))
+            }
+            _ => self.gradient(q, qd, excitation),
         }
     }
 
@@ -219,13 +242,13 @@ impl Term {
         }
     }
 
-    /// Whether the term depends on the excitation; false for an expression, see [`super::Model::uses_excitation`].
+    /// Whether the term depends on the excitation.
     pub fn uses_excitation(self) -> bool {
         match self {
             Term::Inertia => false,
             Term::Monomial(powers) => powers.excitation > 0,
             Term::Effect(effect) => effect.uses_excitation(),
-            Term::Expression(_) => false,
+            Term::Expression(own) => own.uses_excitation(),
         }
     }
 

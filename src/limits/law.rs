@@ -73,6 +73,6 @@ impl Law {
     }
 
     pub(super) fn motion(&self) -> Motion<'_> {
-        Motion { terms: &self.terms, coefficients: &self.coefficients }
+        Motion::new(&self.terms, &self.coefficients)
     }
 }

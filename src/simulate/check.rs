@@ -90,7 +90,7 @@ impl Scenario {
             return Err(ScenarioError::StageNumber { stage: 1, name: format!("hidden {term}"), value });
         }
         let terms: Vec<Term> = self.terms.iter().copied().chain(self.hidden.terms()).collect();
-        Dynamics::new(Motion { terms: &terms, coefficients: &[] }, self.hidden.expressions())?;
+        Dynamics::new(Motion::new(&terms, &[]).with(self.hidden.expressions()))?;
         Ok(())
     }
 

@@ -61,7 +61,7 @@ impl ContinuousPlant {
     pub fn acceleration(&self, excitation: f64) -> f64 {
         let from_outside = self.driven && excitation.is_finite();
         let excitation = if from_outside { excitation } else { self.excitation };
-        self.plant.law.motion(self.stage).acceleration(self.state, excitation)
+        self.plant.law.motion(&self.plant.scenario, self.stage).acceleration(self.state, excitation)
     }
 
     /// An event: law, excitation and noise of the present time, and when the next one is, s. `excitation` is the one from outside.

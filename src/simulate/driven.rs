@@ -78,7 +78,7 @@ impl DrivenPlant {
         }
         scenario.check()?;
         let law = Law::of(&scenario);
-        let phase = Dynamics::new(law.motion(0), scenario.hidden.expressions())?.rest(scenario.initial);
+        let phase = Dynamics::new(law.motion(&scenario, 0))?.rest(scenario.initial);
         let past = Past { delay: law.delay(), ..Past::default() };
         Ok(DrivenPlant { scenario, law, t: 0.0, phase, past })
     }

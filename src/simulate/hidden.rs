@@ -26,7 +26,7 @@ impl Hidden {
 
     /// Adds an effect of the user's own with its coefficient.
     pub fn push_expression(&mut self, expression: Expression, coefficient: f64) {
-        self.push(Term::Expression(self.expressions.len() as u8), coefficient);
+        self.push(expression.term(self.expressions.len()), coefficient);
         self.expressions.push(expression);
     }
 
@@ -85,8 +85,8 @@ impl Hidden {
                 });
                 term.name()
             }
-            Term::Expression(index) => {
-                let expression = &self.expressions[usize::from(index)];
+            Term::Expression(own) => {
+                let expression = &self.expressions[own.place()];
                 expression.parameters().iter().zip(expression.values()).for_each(|(name, value)| {
                     put(name, *value);
                 });

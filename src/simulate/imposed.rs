@@ -94,7 +94,8 @@ impl Specimen {
         if !scenario.is_force_law() {
             return Err(ScenarioError::Inertia);
         }
-        let memory = scenario.terms.iter().copied().chain(scenario.hidden.terms()).find(|term| !term.is_pointwise());
+        let needs_the_past = |term: &Term| !term.is_pointwise() && !matches!(term, Term::Expression(_));
+        let memory = scenario.terms.iter().copied().chain(scenario.hidden.terms()).find(needs_the_past);
         match memory {
             Some(term) => Err(ScenarioError::Memory { term }),
             None => Ok(Specimen { scenario }),
@@ -106,7 +107,11 @@ impl Specimen {
         let scenario = &self.scenario;
         let own = scenario.terms.iter().copied().zip(self.coefficients(t).iter().copied());
         let hidden = scenario.hidden.terms().zip(scenario.hidden.coefficients());
-        own.chain(hidden).map(|(term, value)| value * term.force(q, qd, 0.0)).sum()
+        let force = |term: Term| match term {
+            Term::Expression(own) => scenario.hidden.expressions()[own.place()].value(q, qd, 0.0, t),
+            _ => term.force(q, qd, 0.0),
+        };
+        own.chain(hidden).map(|(term, value)| value * force(term)).sum()
     }
 
     /// Error of the force's sensor at sample `index`.

@@ -12,9 +12,12 @@
 //! C = { start = 1.0, description = "Capacitance" }
 //! [terms]
 //! q = "1/C"                      # a product: numbers and parameters, * and /, one leading minus
+//! [effects.tip_drag]             # an effect of the user's own, hidden in the plant
+//! expression = "abs(qd/v)^0.5*qd"
+//! v = 0.1
 //! ```
 
-use crate::law::{Term, TermError};
+use crate::law::{Expression, Model, ModelError, Term, TermError};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -49,6 +52,8 @@ pub struct ParametricLaw {
     pub omega: f64,
     /// Its parameters, in the order of the file.
     pub parameters: Vec<LawParameter>,
+    /// The user's own effects, which act in every stage with a coefficient of the plant's.
+    pub effects: Vec<Expression>,
     terms: Vec<(Term, Product)>,
 }
 
@@ -73,6 +78,9 @@ pub enum ParametricLawError {
         /// The name.
         name: String,
     },
+    /// A user's own effect is refused.
+    #[error(transparent)]
+    Effect(Box<ModelError>),
     /// A factor is neither a number nor a parameter.
     #[error("[terms]: \"{factor}\" in \"{formula}\" is neither a finite number nor one of the parameters {known}")]
     Factor {
@@ -93,6 +101,8 @@ struct File {
     amplitude: f64,
     omega: f64,
     parameters: toml::Table,
+    #[serde(default)]
+    effects: toml::Table,
     terms: toml::Table,
 }
 
@@ -117,8 +127,18 @@ impl ParametricLaw {
             Ok((term, read_product(&formula, &parameters)?))
         };
         let terms = file.terms.iter().map(read_term).collect::<Result<Vec<_>, ParametricLawError>>()?;
+        let read = Model::read_terms(&toml::Table::new(), &file.effects);
+        let (_, effects) = read.map_err(|source| ParametricLawError::Effect(Box::new(source)))?;
         let (name, description) = (file.name, file.description);
-        Ok(ParametricLaw { name, description, amplitude: file.amplitude, omega: file.omega, parameters, terms })
+        Ok(ParametricLaw {
+            name,
+            description,
+            amplitude: file.amplitude,
+            omega: file.omega,
+            parameters,
+            effects,
+            terms,
+        })
     }
 
     /// The terms, in the order of the file.
@@ -206,6 +226,12 @@ mod tests {
     }
 
     #[test]
+    fn a_law_carries_effects_of_the_users_own() {
+        let law = law("qdd = \"a\"\n[effects.drag]\nexpression = \"abs(qd/v)*qd\"\nv = 0.1").unwrap();
+        assert_eq!((law.effects[0].name(), law.effects[0].values()), ("drag", &[0.1][..]));
+    }
+
+    #[test]
     fn what_is_no_product_is_refused_by_name() {
         for (terms, named) in [
             ("qdd = \"a*d\"", "\"d\" in \"a*d\""),
@@ -213,6 +239,7 @@ mod tests {
             ("qdd = \"a*\"", "\"\""),
             ("qdd = \"\"", "\"\""),
             ("qqq = \"a\"", "qqq"),
+            ("qdd = \"a\"\n[effects.drag]\nexpression = \"qd*\"", "[effects.drag]"),
         ] {
             let error = law(terms).unwrap_err().to_string();
             assert!(error.contains(named), "{terms}: {error}");

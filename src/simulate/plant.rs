@@ -144,8 +144,8 @@ impl Law {
         self.terms.iter().copied().find(|term| !is_smooth(*term))
     }
 
-    pub(super) fn motion(&self, stage: usize) -> Motion<'_> {
-        Motion { terms: &self.terms, coefficients: &self.coefficients[stage] }
+    pub(super) fn motion<'a>(&'a self, scenario: &'a Scenario, stage: usize) -> Motion<'a> {
+        Motion::new(&self.terms, &self.coefficients[stage]).with(scenario.hidden.expressions())
     }
 
     /// How far back the excitation acts, s.
@@ -166,7 +166,7 @@ impl Law {
         t: f64,
         history: &impl History,
     ) -> f64 {
-        let dynamics = Dynamics::new(self.motion(stage), scenario.hidden.expressions());
+        let dynamics = Dynamics::new(self.motion(scenario, stage));
         dynamics.map_or(f64::NAN, |dynamics| dynamics.acceleration(phase, t, history))
     }
 
@@ -180,11 +180,11 @@ impl Law {
         excitation: f64,
         history: &impl History,
     ) -> Phase {
-        let motion = self.motion(stage);
+        let motion = self.motion(scenario, stage);
         if self.smooth {
             return Phase { state: motion.step_held(phase.state, to - from, excitation), ..*phase };
         }
-        let dynamics = Dynamics::new(motion, scenario.hidden.expressions());
+        let dynamics = Dynamics::new(motion);
         dynamics.map_or(NOWHERE, |dynamics| dynamics.step(phase, from, to - from, history))
     }
 }
@@ -208,7 +208,7 @@ impl Plant {
         }
         scenario.check()?;
         let law = Law::of(&scenario);
-        let initial = Dynamics::new(law.motion(0), scenario.hidden.expressions())?.rest(scenario.initial);
+        let initial = Dynamics::new(law.motion(&scenario, 0))?.rest(scenario.initial);
         let phases = scenario.excitation.phases(scenario.seed);
         Ok(Plant { scenario, law, phases, node: 0, at_node: initial, t: 0.0, phase: initial })
     }

@@ -6,7 +6,7 @@
 //! stages, trapezoidal in time, and therefore a law that holds at the samples holds between the integrals. (Saha and Rao, *Identification of
 //! Continuous Dynamical Systems: the Poisson Moment Functional Approach*, 1983; Garnier, Mensler and Richard, Int. J. Control 76, 2003.)
 
-use crate::law::{Monomial, Term, raised};
+use crate::law::{Expression, Monomial, State, Term, raised};
 use serde::{Deserialize, Serialize};
 
 /// Stages behind the two that differentiate.
@@ -78,7 +78,8 @@ impl Functional {
 
 /// A term as [u₀, u₁, u₂] with f = u₀ + u̇₁ + ü₂: as many derivatives as can be are φ's. Without a measured displacement (`by_parts` false) q̇
 /// itself is the signal.
-pub fn signal(term: Term, q: f64, qd: f64, excitation: f64, by_parts: bool) -> [f64; 3] {
+pub fn signal(term: Term, own: &[Expression], state: State, excitation: f64, by_parts: bool) -> [f64; 3] {
+    let State { q, qd } = state;
     match term {
         Term::Inertia if by_parts => [0.0, 0.0, q],
         Term::Inertia => [0.0, qd, 0.0],
@@ -90,7 +91,7 @@ pub fn signal(term: Term, q: f64, qd: f64, excitation: f64, by_parts: bool) -> [
         Term::Effect(_) if term.mass(1.0) != 0.0 => {
             [term.force(q, qd, excitation) - 2.0 * q * qd * qd, term.mass(q) * qd, 0.0]
         }
-        _ => [term.force(q, qd, excitation), 0.0, 0.0],
+        _ => [term.force_of(own, state, excitation), 0.0, 0.0],
     }
 }
 

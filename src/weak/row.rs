@@ -1,7 +1,7 @@
 //! One weak equation from one interval of samples.
 
 use super::Variation;
-use crate::law::{GAUSS, Hold, Monomial, Term, raised};
+use crate::law::{Expression, GAUSS, Hold, Monomial, Motion, State, Term, raised};
 use serde::{Deserialize, Serialize};
 
 /// Samples of one interval [T₁, T₂]; all slices are of one length ≥ 3.
@@ -58,12 +58,9 @@ impl Row {
     /// Integrates over the section. Trapezoidal in the terms, which for an integrand that vanishes smoothly at both ends is of
     /// second order where the excitation jumps at samples and far better where it is smooth; exact in a held or linear
     /// excitation, trapezoidal (spectrally accurate) in a band-limited one.
-    pub fn integrate(&mut self, section: &Section, variation: Variation, terms: &[Term]) {
-        self.integrate_about(section, variation, terms, &[]);
-    }
-
-    /// The same with the noise of a law's residual: `law` has a coefficient for each term, or none at all.
-    pub fn integrate_about(&mut self, section: &Section, variation: Variation, terms: &[Term], law: &[f64]) {
+    ///
+    /// Where the law has coefficients, also the noise of its residual.
+    pub fn integrate(&mut self, section: &Section, variation: Variation, law: &Motion) {
         self.clear();
         let (start, end) = (section.t[0], section.t[section.t.len() - 1]);
         let length = end - start;
@@ -72,9 +69,9 @@ impl Row {
             let weight = half_widths(section.t, k);
             let phi = [weight * value, weight * slope / length, weight * curvature / (length * length)];
             self.norm += phi[0] * value;
-            self.add_sample(section, k, phi, terms);
-            if !law.is_empty() {
-                self.add_residual_noise(law);
+            self.add_sample(section, k, phi, law);
+            if !law.coefficients.is_empty() {
+                self.add_residual_noise(law.coefficients);
             }
             if section.hold == Hold::BandLimited {
                 self.excitation += section.excitation[k] * phi[0];
@@ -92,11 +89,11 @@ impl Row {
         (self.excitation, self.norm, self.residual_noise) = (0.0, 0.0, [0.0; 2]);
     }
 
-    fn add_sample(&mut self, section: &Section, k: usize, phi: [f64; 3], terms: &[Term]) {
+    fn add_sample(&mut self, section: &Section, k: usize, phi: [f64; 3], law: &Motion) {
         let sums = self.terms.iter_mut().zip(&mut self.noise).zip(&mut self.gradients);
-        for (((sum, noise), gradient), term) in sums.zip(terms) {
-            *sum += integrand(*term, section, k, phi);
-            *gradient = sensitivity(*term, section, k, phi);
+        for (((sum, noise), gradient), term) in sums.zip(law.terms) {
+            *sum += integrand(*term, law.own, section, k, phi);
+            *gradient = sensitivity(*term, law.own, section, k, phi);
             noise[0] += gradient[0] * gradient[0];
             noise[1] += gradient[1] * gradient[1];
         }
@@ -120,7 +117,7 @@ fn half_widths(t: &[f64], k: usize) -> f64 {
 
 /// The term's integrand at sample k; `phi` is the weighted variation with its derivatives.
 #[inline]
-fn integrand(term: Term, section: &Section, k: usize, phi: [f64; 3]) -> f64 {
+fn integrand(term: Term, own: &[Expression], section: &Section, k: usize, phi: [f64; 3]) -> f64 {
     let (q, qd) = (section.q[k], section.qd[k]);
     match term {
         Term::Inertia if section.qd_measured => -qd * phi[1],
@@ -133,20 +130,20 @@ fn integrand(term: Term, section: &Section, k: usize, phi: [f64; 3]) -> f64 {
         Term::Effect(_) if term.mass(1.0) != 0.0 => {
             -term.mass(q) * qd * phi[1] + (term.force(q, qd, section.excitation[k]) - 2.0 * q * qd * qd) * phi[0]
         }
-        _ => term.force(q, qd, section.excitation[k]) * phi[0],
+        _ => term.force_of(own, State { q, qd }, section.excitation[k]) * phi[0],
     }
 }
 
 /// The integrand's derivatives by the measured (q, q̇) of sample k; an estimated velocity counts as exact.
 #[inline]
-fn sensitivity(term: Term, section: &Section, k: usize, phi: [f64; 3]) -> [f64; 2] {
+fn sensitivity(term: Term, own: &[Expression], section: &Section, k: usize, phi: [f64; 3]) -> [f64; 2] {
     let (q, qd) = (section.q[k], section.qd[k]);
     match term {
         Term::Inertia if section.qd_measured => [0.0, phi[1]],
         Term::Inertia => [phi[2], 0.0],
         Term::Monomial(Monomial { q: power, qd: 1, excitation: 0 }) => [raised(q, power) * phi[1], 0.0],
         _ => {
-            let (by_q, by_qd) = term.gradient(q, qd, section.excitation[k]);
+            let (by_q, by_qd) = term.gradient_of(own, State { q, qd }, section.excitation[k]);
             [by_q * phi[0], if section.qd_measured { by_qd * phi[0] } else { 0.0 }]
         }
     }
@@ -181,7 +178,7 @@ mod tests {
     fn violation(n: usize, hold: Hold) -> f64 {
         let dt = 2.0 / n as f64;
         let force = |k: usize| (1.7 * k as f64 * dt + 0.3).sin() + 0.5 * (k as f64 * dt).powi(2);
-        let motion = Motion { terms: &TERMS, coefficients: &COEFFICIENTS };
+        let motion = Motion::new(&TERMS, &COEFFICIENTS);
         let mut state = State { q: 0.4, qd: 0.9 };
         let (mut t, mut q, mut qd, mut excitation) = (vec![], vec![], vec![], vec![]);
         for k in 0..=n {
@@ -198,7 +195,7 @@ mod tests {
         let section = Section { t: &t, q: &q, qd: &qd, qd_measured: true, excitation: &excitation, hold };
         let mut row = Row::new(4);
         let residual = |variation| {
-            row.integrate(&section, variation, &TERMS);
+            row.integrate(&section, variation, &Motion::new(&TERMS, &[]));
             let left: f64 = row.terms.iter().zip(COEFFICIENTS).map(|(term, coefficient)| term * coefficient).sum();
             (left - row.excitation).abs()
         };
@@ -221,7 +218,7 @@ mod tests {
         let [ones, zeros] = [vec![1.0; 301], vec![0.0; 301]];
         let section = Section { t: &t, q: &zeros, qd: &ones, qd_measured: true, excitation: &zeros, hold: Hold::Zero };
         let mut row = Row::new(1);
-        row.integrate(&section, Variation::Polynomial { power: 4 }, &[Term::Inertia]);
+        row.integrate(&section, Variation::Polynomial { power: 4 }, &Motion::new(&[Term::Inertia], &[]));
         assert!(row.terms[0].abs() < 1e-12, "{}", row.terms[0]);
     }
 }

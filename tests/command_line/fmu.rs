@@ -19,7 +19,7 @@ fn bench(name: &str) -> Bench {
 }
 
 /// Every file of an FMU by its path.
-fn files(bench: &Bench, name: &str) -> BTreeMap<String, String> {
+pub fn files(bench: &Bench, name: &str) -> BTreeMap<String, String> {
     let file = std::fs::File::open(bench.0.join(name)).unwrap();
     let mut archive = zip::ZipArchive::new(file).unwrap();
     let count = archive.len();
@@ -32,7 +32,7 @@ fn files(bench: &Bench, name: &str) -> BTreeMap<String, String> {
     (0..count).map(read).collect()
 }
 
-fn variable<'a>(xml: &'a str, name: &str) -> &'a str {
+pub fn variable<'a>(xml: &'a str, name: &str) -> &'a str {
     let start = xml.find(&format!("<ScalarVariable name=\"{name}\" ")).unwrap_or_else(|| panic!("no {name}"));
     xml[start..].split("</ScalarVariable>").next().unwrap()
 }
@@ -94,8 +94,8 @@ fn what_cannot_be_packed_is_refused() {
     refused(open, &plant, &["gap of \"one_sided_stop\"", "numbers"]);
     refused(open, &here, &["model.toml", "one_sided_stop", "gap"]);
     refused(LAW, &here, &["model.toml", "nothing to identify", "\"fit\" or \"maybe\""]);
-    let own = "[terms]\ninertia = 1.0\ntip = 2.0\n[effects.tip]\nexpression = \"q*t\"\n";
-    refused(own, &plant, &["\"tip\"", "effect of your own"]);
+    let own = "[terms]\ninertia = 1.0\ntip = 2.0\n[effects.tip]\nexpression = \"a*q\"\n";
+    refused(own, &plant, &["a of \"tip\"", "numbers"]);
     refused(
         MODEL,
         &["--binaries", "nowhere"],

@@ -21,7 +21,7 @@ pub fn with_inertia_known(pairs: &[(Term, f64)]) -> Law {
 pub fn course(law: &Law, start: State, dt: f64, count: usize, excitation: impl Fn(f64) -> f64) -> Course {
     let t: Vec<f64> = (0..=count).map(|k| k as f64 * dt).collect();
     let drives = t.windows(2).map(|pair| Drive::Line(excitation(pair[0]), excitation(pair[1]))).collect();
-    let motion = switchid::law::Motion { terms: law.terms(), coefficients: law.coefficients() };
+    let motion = switchid::law::Motion::new(law.terms(), law.coefficients());
     Course::own(&motion, start, t, drives)
 }
 

@@ -1,7 +1,7 @@
 //! Where a plant's variables stand, and the scenario that its parameters describe.
 
 use serde::{Deserialize, Serialize};
-use switchid::law::{Catalogue, Entry, InnerError, InnerParameter, State, Term};
+use switchid::law::{Catalogue, Entry, Expression, InnerError, InnerParameter, State, Term};
 use switchid::simulate::{
     Excitation, ExcitationKind, Hidden, ParametricLaw, Reading, Scenario, SensorNoise, Stage, Truth,
 };
@@ -44,6 +44,8 @@ pub struct Places {
     stages: Vec<StagePlaces>,
     /// Coefficient and inner parameters of each effect of the catalogue.
     hidden: Vec<(usize, Vec<usize>)>,
+    /// The same of each of the user's own.
+    own: Vec<(usize, Vec<usize>)>,
     /// `q`, `qd`, `F`, `true.q`, `true.qd`.
     motion: [usize; 5],
     /// `true.stage`.
@@ -92,6 +94,7 @@ impl Places {
             initial: [find("q0")?, find("qd0")?],
             stages: (1..=count).map(|number| find_stage(description, law, number)).collect::<Result<_, _>>()?,
             hidden: find_hidden_of(description, Catalogue::ENTRIES.iter())?,
+            own: find_own_of(description, law)?,
             motion: [find("q")?, find("qd")?, find("F")?, find("true.q")?, find("true.qd")?],
             stage: find("true.stage")?,
             coefficients: coefficients.collect::<Result<_, _>>()?,
@@ -113,6 +116,7 @@ impl Places {
         scenario.noise = SensorNoise { q: noise_q, qd: noise_qd, ..SensorNoise::default() };
         scenario.excitation = self.excitation(values);
         scenario.hidden = hidden_effects(Catalogue::ENTRIES.iter(), &self.hidden, values)?;
+        push_own(&mut scenario.hidden, law, &self.own, values);
         Ok(scenario)
     }
 
@@ -190,6 +194,18 @@ pub fn hidden_effects(
     Ok(hidden)
 }
 
+/// Adds the user's own effects whose coefficient is not 0, of those at these places.
+pub fn push_own(hidden: &mut Hidden, law: &ParametricLaw, places: &[(usize, Vec<usize>)], values: &Values) {
+    for (effect, (coefficient, inner)) in law.effects.iter().zip(places) {
+        let coefficient = values.real(*coefficient);
+        if coefficient != 0.0 {
+            let mut effect = effect.clone();
+            effect.set(&inner.iter().map(|reference| values.real(*reference)).collect::<Vec<f64>>());
+            hidden.push_expression(effect, coefficient);
+        }
+    }
+}
+
 /// All stages that occur.
 ///
 /// # Errors
@@ -231,6 +247,19 @@ pub fn find_hidden_of(
         Ok((position(description, &name)?, inner.collect::<Result<_, _>>()?))
     };
     entries.map(|entry| places(entry.id, entry.inner())).collect()
+}
+
+/// Coefficient and inner parameters of each of the user's own effects.
+///
+/// # Errors
+/// [`ValueError::NoSuchName`].
+pub fn find_own_of(description: &Description, law: &ParametricLaw) -> Result<Vec<(usize, Vec<usize>)>, ValueError> {
+    let places = |own: &Expression| {
+        let name = format!("hidden.{}", own.name());
+        let inner = own.parameters().iter().map(|inner| position(description, &format!("{name}.{inner}")));
+        Ok((position(description, &name)?, inner.collect::<Result<_, _>>()?))
+    };
+    law.effects.iter().map(places).collect()
 }
 
 fn find_stage(description: &Description, law: &ParametricLaw, number: usize) -> Result<StagePlaces, ValueError> {

@@ -1,7 +1,8 @@
 //! Where a specimen's variables stand, and its force for what the inputs impose.
 
 use crate::places::{
-    PlaceError, StagePlaces, find_hidden_of, find_time_and_parameters, hidden_effects, position, schedule,
+    PlaceError, StagePlaces, find_hidden_of, find_own_of, find_time_and_parameters, hidden_effects, position, push_own,
+    schedule,
 };
 use serde::{Deserialize, Serialize};
 use switchid::law::{Catalogue, Entry, State};
@@ -19,6 +20,7 @@ pub struct SpecimenPlaces {
     seed: usize,
     stages: Vec<StagePlaces>,
     hidden: Vec<(usize, Vec<usize>)>,
+    own: Vec<(usize, Vec<usize>)>,
     /// `F`, `true.F`.
     force: [usize; 2],
     stage: usize,
@@ -41,6 +43,7 @@ impl SpecimenPlaces {
             seed: find("seed")?,
             stages: stages.collect::<Result<_, _>>()?,
             hidden: find_hidden_of(description, entries())?,
+            own: find_own_of(description, law)?,
             force: [find("F")?, find("true.F")?],
             stage: find("true.stage")?,
             coefficients: coefficients.collect::<Result<_, _>>()?,
@@ -57,6 +60,7 @@ impl SpecimenPlaces {
         scenario.seed = values.integer(self.seed).max(0) as u64;
         scenario.noise = SensorNoise { force: values.real(self.noise), ..SensorNoise::default() };
         scenario.hidden = hidden_effects(entries(), &self.hidden, values).map_err(PlaceError::from)?;
+        push_own(&mut scenario.hidden, law, &self.own, values);
         Ok(Specimen::new(scenario)?)
     }
 

@@ -296,9 +296,28 @@ fn missing_resources_are_named() {
     assert!(refusal.contains("plant.toml"), "{refusal}");
 }
 
+#[test]
+fn a_formula_acts_as_the_term_that_it_says() {
+    let text = |own: &str| format!("[terms]\ninertia = 1.5\nqd = 0.3\nq = 4.0\n{own}\n");
+    let own = "tip = { coefficient = 0.7, n = 3 }\n[effects.tip]\nexpression = \"abs(q)^n*sign(q)\"";
+    let ends = ["\"q^3\" = 0.7", own].map(|own| {
+        let model = Model::from_toml(&text(own)).unwrap();
+        let fmu = plant_of_model("Axis", &model).unwrap();
+        let subject = Subject::new(linked_functions!(functions), &fmu);
+        let instance = subject.instance();
+        set(&subject, &instance, &[("stage[1].P", 3.0), ("q0", 0.8)]);
+        assert_eq!(instance.initialize(0.0), OK, "{:?}", instance.messages());
+        (0..2000).for_each(|k| assert_eq!(instance.step(f64::from(k) * 1e-3, 1e-3), OK));
+        (real(&subject, &instance, "true.q"), real(&subject, &instance, "true.qd"))
+    });
+    assert!((ends[0].0 - ends[1].0).abs() < 1e-12 && (ends[0].1 - ends[1].1).abs() < 1e-12, "{ends:?}");
+    assert!(ends[0].0.abs() > 1e-3, "{ends:?}");
+}
+
 /// A damper whose friction has a Stribeck part.
 fn specimen() -> Subject {
-    let text = "[terms]\nqd = 3.0\nq = 20.0\nstribeck_friction = { coefficient = 2.0, speed = 0.1 }\n";
+    let text = "[terms]\nqd = 3.0\nq = 20.0\nstribeck_friction = { coefficient = 2.0, speed = 0.1 }\n\
+                hardening = { coefficient = 5.0, a = 2.0 }\n[effects.hardening]\nexpression = \"sinh(a*q)\"\n";
     let model = Model::from_toml(text).unwrap();
     Subject::new(linked_functions!(functions), &plant_of_model("Damper", &model).unwrap())
 }
@@ -338,7 +357,7 @@ fn a_specimen_answers_what_is_imposed() {
     for k in 0..steps {
         let [q, qd] = impose(&subject, &instance, k);
         let damping = if k < 150 { 3.0 } else { 6.0 };
-        let friction = qd.signum() * (1.0 + 2.0 * (-qd.abs() / 0.1).exp());
+        let friction = qd.signum() * (1.0 + 2.0 * (-qd.abs() / 0.1).exp()) + 5.0 * (2.0 * q).sinh();
         let truth = real(&subject, &instance, "true.F");
         assert!((truth - (damping * qd + 20.0 * q + friction)).abs() < 1e-12, "step {k}: {truth}");
         noise += (real(&subject, &instance, "F") - truth).powi(2);

@@ -62,7 +62,7 @@ impl Rig {
 impl Law {
     /// Its motion; none where a coefficient stands in its way.
     pub fn dynamics(&self) -> Option<Dynamics<'_>> {
-        Dynamics::new(Motion { terms: &self.terms, coefficients: &self.coefficients }, &[]).ok()
+        Dynamics::new(Motion::new(&self.terms, &self.coefficients)).ok()
     }
 
     /// The law with that many times its linear stiffness.

@@ -66,5 +66,5 @@ fn moved(builtin: Builtin, scenario: &Scenario, recorded: &Recorded, stage: usiz
 }
 
 fn motion(law: &Law) -> Motion<'_> {
-    Motion { terms: law.terms(), coefficients: law.coefficients() }
+    Motion::new(law.terms(), law.coefficients())
 }

@@ -54,7 +54,7 @@ pub(in crate::cli) fn answer(diagnosis: &Diagnosis, clock: Option<&Clock>, input
 
 /// Which coefficients least squares would bias.
 fn biased(law: &Law) -> Option<String> {
-    let names: Vec<String> = law.biased.iter().map(|term| law.effect_name(*term)).collect();
+    let names: Vec<String> = law.biased.iter().map(|term| Catalogue::name_of(*term)).collect();
     (!names.is_empty()).then(|| {
         let names = names.join(", ");
         format!("sensors: noise in the readings biases least squares in {names}: the values are those with even and odd readings as instruments")

@@ -141,7 +141,7 @@ fn changes(texts: &[String], model: &Model) -> Result<Vec<(Term, f64)>, CommandE
     for text in texts {
         let (term, value) = change(text, model)?;
         if changes.iter().any(|(other, _)| *other == term) {
-            let reason = format!("{} is given twice: keep one of them", model.name_of(term));
+            let reason = format!("{} is given twice: keep one of them", term.name());
             return Err(named_error("change", text, &reason));
         }
         changes.push((term, value));
@@ -163,10 +163,9 @@ fn change(text: &str, model: &Model) -> Result<(Term, f64), CommandError> {
     let own = model.terms.iter().find(|entry| entry.key == name.trim() || entry.term.name() == term.name());
     match own {
         Some(entry) => Ok((entry.term, value)),
-        None if !term.is_pointwise() => Err(refuse(&format!(
-            "{} depends on more than q, q̇ and F of one instant: it has no limits",
-            quoted(model, term)
-        ))),
+        None if !term.is_pointwise() => {
+            Err(refuse(&format!("{} depends on more than q, q̇ and F of one instant: it has no limits", quoted(term))))
+        }
         None if model.inner_names(term).is_empty() => Ok((term, value)),
         None => {
             let inner = model.inner_names(term).join(", ");
@@ -175,8 +174,8 @@ fn change(text: &str, model: &Model) -> Result<(Term, f64), CommandError> {
     }
 }
 
-fn quoted(model: &Model, term: Term) -> String {
-    format!("\"{}\"", model.name_of(term))
+fn quoted(term: Term) -> String {
+    format!("\"{}\"", term.name())
 }
 
 fn named_error(option: &'static str, text: &str, reason: &str) -> CommandError {

@@ -194,14 +194,14 @@ fn eligible(record: &Record, equation: &Equation) -> Vec<Term> {
         |term: &Term| matches!(term, Term::Effect(Effect::ExcitationDelay { .. } | Effect::ActuatorLag { .. }));
     let all = candidates(&record.expressions).into_iter();
     let scales = |term: &Term| !record.forced && *term == Term::Inertia;
-    let is_barred = |term: &Term| is_delay(term) || scales(term) || is_output && record.uses_excitation(*term);
+    let is_barred = |term: &Term| is_delay(term) || scales(term) || is_output && term.uses_excitation();
     all.filter(|term| !is_barred(term)).collect()
 }
 
 fn column(record: &Record, equation: &Equation, term: Term) -> (Column, bool) {
     let holds_target = match equation.target {
         Target::Inertia => record.accelerates(term),
-        Target::Force => record.uses_excitation(term),
+        Target::Force => term.uses_excitation(),
     };
     (record.term(term, equation.timing), holds_target)
 }

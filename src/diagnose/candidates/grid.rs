@@ -62,7 +62,7 @@ fn quarters() -> Vec<f64> {
 
 /// Every candidate: the catalogue, and the user's own effects.
 pub fn candidates(expressions: &[Expression]) -> Vec<Term> {
-    let own = (0..expressions.len()).map(|index| Term::Expression(index as u8));
+    let own = expressions.iter().enumerate().map(|(place, own)| own.term(place));
     Catalogue::ENTRIES.iter().map(|entry| entry.term).chain(own).collect()
 }
 

@@ -269,7 +269,7 @@ impl Totals {
             ..Totals::default()
         };
         let samples = |length: f64| (length / record.sample_time).round().max(2.0) as usize;
-        let motion = Motion { terms: &law.terms, coefficients: &law.coefficients };
+        let motion = Motion::new(&law.terms, &law.coefficients);
         let moves = law.terms.contains(&Term::Inertia);
         for prepared in &record.pieces {
             if let Some(run) = moves.then(|| FreeRun::new(prepared, motion, expressions)).flatten() {

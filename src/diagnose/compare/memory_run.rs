@@ -32,7 +32,7 @@ impl<'a> MemoryRun<'a> {
         expressions: &'a [Expression],
         largest: [f64; 2],
     ) -> Option<MemoryRun<'a>> {
-        let dynamics = Dynamics::new(motion, expressions).ok()?;
+        let dynamics = Dynamics::new(motion.with(expressions)).ok()?;
         let piece = &prepared.piece;
         let excitation = Samples { t: &piece.t, excitation: &piece.excitation, hold: piece.hold };
         let smoothed = |k: usize| State { q: prepared.motion.q[k], qd: prepared.motion.qd[k] };

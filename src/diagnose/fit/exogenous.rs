@@ -235,7 +235,7 @@ impl Smooth {
 
     /// Change of q̈ over every interval.
     fn bends(&self, piece: &Piece, states: &[State]) -> Vec<f64> {
-        let motion = Motion { terms: &self.terms, coefficients: &self.coefficients };
+        let motion = Motion::new(&self.terms, &self.coefficients);
         let bend = |k: usize| {
             let last = if piece.hold == Hold::Zero { k } else { k + 1 };
             motion.acceleration(states[k + 1], piece.excitation[last])

@@ -58,7 +58,7 @@ pub(super) fn run(law: &Law, piece: &Piece, pass: &mut Pass, series: &[Vec<Line>
     for (k, observation) in piece.observations.iter().enumerate() {
         let tangent = &law.tangents[k];
         coefficients[terms.len() - 1] = own.pull() * tangent.slope;
-        let motion = Motion { terms: &terms, coefficients: &coefficients };
+        let motion = Motion::new(&terms, &coefficients);
         pass.filter.set_state(own.filter.state());
         pass.step(&motion, &free, &law.noise, &own.relieved(observation, &series[k], tangent));
         let inverse_mass = motion.mass(pass.filter.mean[0]).recip();

@@ -39,7 +39,7 @@ pub fn run(law: &Law, piece: &Piece, pass: &mut Pass, series: &[Vec<Line>]) -> O
     let (n, extra) = (free.len(), law.series.len());
     let first = first_state(piece, &law.noise);
     let mut outcome = Outcome::none(first, n + extra, piece.len());
-    let motion = Motion { terms: law.terms, coefficients: law.coefficients };
+    let motion = Motion::new(law.terms, law.coefficients);
     let mut carried = Carried::new(extra);
     let mut unknowns = vec![0.0; n + extra];
     pass.begin(first);

@@ -5,7 +5,7 @@ use super::means::is_series;
 use crate::diagnose::motion::sensor_noise;
 use crate::diagnose::piece::Piece;
 use crate::estimation::Noise;
-use crate::law::Term;
+use crate::law::{Motion, Term};
 use crate::weak::{Fit, Regression, Row, Section, Variation};
 
 /// Lengths of the weak rows that are tried, samples.
@@ -68,7 +68,7 @@ fn guess(form: &Form, pieces: &[Piece], length: usize) -> Option<(f64, Vec<f64>,
                 excitation: &piece.excitation[range],
                 hold: piece.hold,
             };
-            row.integrate(&section, VARIATION, &terms);
+            row.integrate(&section, VARIATION, &Motion::new(&terms, &[]));
             let weight = row.norm.sqrt().recip();
             for (entry, index) in left.iter_mut().zip(&positions) {
                 *entry = row.terms[*index] * weight;

@@ -47,7 +47,7 @@ impl Driven {
         // a delay among the terms is in the timing
         let acts = |(term, value): (&Term, &f64)| if delay_of(*term).is_some() { 0.0 } else { *value };
         let coefficients: Vec<f64> = terms.iter().zip(coefficients).map(acts).collect();
-        let law = law::Motion { terms, coefficients: &coefficients };
+        let law = law::Motion::new(terms, &coefficients);
         let mut motions = record.motions.clone();
         let mut pulls = Vec::new();
         for (driven, motion) in motions.iter_mut().zip(&record.motions) {
@@ -69,7 +69,7 @@ struct Led {
 }
 
 fn led(law: law::Motion, record: &Record, timing: Timing, piece: &Piece, followed: &[State]) -> Option<Led> {
-    let dynamics = Dynamics::new(law, &record.expressions).ok()?;
+    let dynamics = Dynamics::new(law.with(&record.expressions)).ok()?;
     let rate = TAU / record.period;
     let acts: Vec<f64> = piece.t.iter().map(|t| t + timing.delay).collect();
     let acting = acting(piece, &acts, timing);

@@ -172,7 +172,7 @@ impl Record {
             Term::Inertia if self.is_output => self.column(1, |(.., nodes)| nodes.integrals(&nodes.qd), -1.0),
             Term::Inertia => self.measured_inertia(timing.hold),
             // whatever the timing and the inner parameters, it is the same every time
-            _ if !self.uses_excitation(term) && term.effect().is_none_or(|effect| effect.inner().is_empty()) => {
+            _ if !term.uses_excitation() && term.effect().is_none_or(|effect| effect.inner().is_empty()) => {
                 let known =
                     self.columns.borrow().iter().find(|(own, _)| *own == term).map(|(_, column)| column.clone());
                 known.unwrap_or_else(|| {
@@ -237,14 +237,6 @@ impl Record {
         // a Maxwell element is a damper less a filtered acceleration
         matches!(term, Term::Effect(Effect::HiddenResonator { .. } | Effect::Relaxation { .. }))
             || term.mass(1.0) != 0.0
-    }
-
-    /// Whether a term depends on the excitation.
-    pub(in crate::diagnose) fn uses_excitation(&self, term: Term) -> bool {
-        match term {
-            Term::Expression(index) => self.expressions.get(usize::from(index)).is_some_and(|own| own.uses("F")),
-            _ => term.uses_excitation(),
-        }
     }
 
     fn series(&self, term: Term, piece: &(usize, usize, Nodes), timing: Timing) -> Vec<f64> {

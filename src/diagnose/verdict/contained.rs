@@ -18,11 +18,11 @@ pub(super) fn smallest(case: &Case, standing: &Standing, entries: &[Entry], best
     let mut links = vec![best];
     loop {
         let found = links[links.len() - 1];
-        let name = entries[found].name(case);
+        let name = entries[found].name();
         let may_be = |index: &usize| {
             let smaller = &entries[*index];
             let borne = matches!(smaller.doubt, None | Some(Doubt::Chance)) && smaller.contender.score < 0.0;
-            borne && Catalogue::is_contained(&smaller.name(case), &name)
+            borne && Catalogue::is_contained(&smaller.name(), &name)
         };
         let smaller =
             (0..entries.len()).filter(may_be).find(|index| links.iter().all(|larger| stands(*index, *larger)));

@@ -159,8 +159,8 @@ fn ties(case: &Case, entries: &[Entry], winner: usize) -> Vec<Vec<String>> {
     let best = entries[winner].contender.score;
     let near = |entry: &&Entry| entry.may_be(case) && entry.contender.score <= best + TIE * COUNT as f64;
     let others = entries.iter().enumerate().filter(|(index, entry)| *index != winner && near(entry));
-    let first = entries[winner].name(case);
-    let names = others.map(|(_, entry)| entry.name(case));
+    let first = entries[winner].name();
+    let names = others.map(|(_, entry)| entry.name());
     let (larger, apart): (Vec<String>, Vec<String>) = names.partition(|name| Catalogue::is_contained(&first, name));
     let group: Vec<String> = [vec![first], apart, larger].concat();
     if group.len() > 1 { vec![group.into_iter().take(TIED).collect()] } else { Vec::new() }

@@ -3,11 +3,10 @@
 use super::case::{Case, Standing};
 use super::doubt::{Doubt, SURE, WORTH, doubt_of_gain, may_be};
 use super::errors::{WindowError, errors};
-use super::law::effect_name;
 use super::untold::drives;
 use crate::diagnose::candidates::{Contender, TRAP};
 use crate::diagnose::judge::{COUNT, PRINCIPAL, delay_of};
-use crate::law::Term;
+use crate::law::{Catalogue, Term};
 
 /// A candidate beside the law.
 #[derive(Clone, Debug, PartialEq)]
@@ -89,8 +88,8 @@ impl Entry {
     }
 
     /// Its effect id, or the name of a user's expression.
-    pub(super) fn name(&self, case: &Case) -> String {
-        effect_name(self.contender.term, &case.record.expressions)
+    pub(super) fn name(&self) -> String {
+        Catalogue::name_of(self.contender.term)
     }
 
     /// What its gain leaves to doubt.
@@ -116,7 +115,7 @@ impl Entry {
             names.zip(effect.inner_values()).collect()
         });
         Candidate {
-            effect: self.name(case),
+            effect: self.name(),
             term,
             inner,
             coefficient,

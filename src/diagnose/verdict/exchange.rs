@@ -8,7 +8,6 @@ use super::case::{Case, Standing};
 use super::diagnosis::{Diagnosis, Finding, diagnose};
 use super::doubt::{SURE, doubt_of_gain, may_be};
 use super::errors::TIE;
-use super::law::effect_name;
 use crate::diagnose::candidates::same_effect;
 use crate::diagnose::judge::{COUNT, delay_of};
 use crate::law::{Catalogue, Term};
@@ -43,7 +42,7 @@ pub(super) fn seen(case: &Case, original: &[Term], terms: &[Term], standing: &St
         if same_effect(new, old) {
             ties.push((old, exchange.ties.clone()));
         }
-        if exchange.standing.held.score(&standing.held) < worth(case, old, new) {
+        if exchange.standing.held.score(&standing.held) < worth(old, new) {
             exchanges.push(exchange);
         }
     }
@@ -52,8 +51,8 @@ pub(super) fn seen(case: &Case, original: &[Term], terms: &[Term], standing: &St
 
 /// Score below which one effect takes another's place: a smaller one need not be better than one that contains it, new inner parameters alone
 /// are worth the word or none.
-fn worth(case: &Case, old: Term, new: Term) -> f64 {
-    let [contained, containing] = [new, old].map(|term| effect_name(term, &case.record.expressions));
+fn worth(old: Term, new: Term) -> f64 {
+    let [contained, containing] = [new, old].map(Catalogue::name_of);
     match (same_effect(old, new), Catalogue::is_contained(&contained, &containing)) {
         (true, _) => -TIE,
         (_, true) => TIE * COUNT as f64,

@@ -4,10 +4,10 @@ use super::case::{Case, Standing};
 use super::diagnosis::{Diagnosis, Finding, diagnose};
 use super::errors::{TIE, WindowError};
 use super::exchange::{Exchange, Seen, added, joined, paired, seen};
-use super::law::{Law, effect_name};
+use super::law::Law;
 use crate::diagnose::candidates::{contender, same_effect};
 use crate::diagnose::judge::{COUNT, PRINCIPAL, delay_of};
-use crate::law::Term;
+use crate::law::{Catalogue, Term};
 
 /// Most effects that are added.
 const STEPS: usize = 6;
@@ -144,7 +144,7 @@ impl Search<'_> {
         let same = |term: Term| effect.is_some_and(|effect| same_effect(effect, term));
         let ties = self.ties.iter().rev().find(|(term, _)| same(*term)).map(|(_, ties)| ties.clone());
         Step {
-            effect: effect.map(|effect| effect_name(effect, &self.case.record.expressions)),
+            effect: effect.map(Catalogue::name_of),
             ties: ties.unwrap_or_default(),
             errors: self.case.errors_of(&self.case.settled(standing.clone())),
             law: self.case.law(standing),

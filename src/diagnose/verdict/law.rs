@@ -1,7 +1,7 @@
 //! A law with numbers, as it is printed and written.
 
 use crate::diagnose::judge::{Equation, Estimate, Record, Target, Timing};
-use crate::law::{Catalogue, Expression, Term};
+use crate::law::{Expression, Term};
 
 /// A law's coefficients with their std.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,28 +38,5 @@ impl Law {
             delay: estimate.delay.map(delayed),
             target: equation.target,
         }
-    }
-
-    /// The effect id of a term; the user's name of an expression.
-    pub fn effect_name(&self, term: Term) -> String {
-        effect_name(term, &self.expressions)
-    }
-
-    /// The canonical name of a term; the user's name of an expression.
-    pub fn term_name(&self, term: Term) -> String {
-        own_name(term, &self.expressions).unwrap_or_else(|| term.name())
-    }
-}
-
-/// The effect id of a term; of an expression the name that the user gave it.
-pub(super) fn effect_name(term: Term, expressions: &[Expression]) -> String {
-    let id = || Catalogue::of(term).map_or_else(|| term.name(), |entry| entry.id.into());
-    own_name(term, expressions).unwrap_or_else(id)
-}
-
-fn own_name(term: Term, expressions: &[Expression]) -> Option<String> {
-    match term {
-        Term::Expression(index) => expressions.get(usize::from(index)).map(|own| own.name().into()),
-        _ => None,
     }
 }

@@ -1,14 +1,14 @@
 //! A law written as a model.
 
 use super::law::Law;
-use crate::law::{Given, Model, ModelTerm, Term};
+use crate::law::{Catalogue, Given, Model, ModelTerm, Term};
 
 /// The model with a law's numbers: its own terms under the names that the user wrote, then what was added; with the hold under which the law
 /// stands, where there is an excitation.
 pub fn improved_model(model: &Model, law: &Law) -> Model {
     let key = |index: usize, term: Term| {
         let own = model.terms.iter().find(|entry| same(entry.term, term)).map(|entry| entry.key.clone());
-        own.unwrap_or_else(|| law.effect_name(law.terms[index]))
+        own.unwrap_or_else(|| Catalogue::name_of(law.terms[index]))
     };
     let pairs = law.terms.iter().zip(&law.coefficients).enumerate();
     let terms = pairs.map(|(index, (term, value))| {

@@ -7,7 +7,6 @@ use crate::identify::library::{KnownLaw, Trials};
 use crate::identify::problem::Problem;
 use crate::identify::segment::{MotionScales, Segment};
 use crate::identify::window::Window;
-use crate::law::Motion;
 use serde::{Deserialize, Serialize};
 
 /// The law's own covariance counts this many times where it leaves the state open, as long as it is that of a
@@ -81,7 +80,7 @@ impl LawInUse {
 
     /// Takes a sample; returns what it says of a switch, readings that do not count included.
     pub fn step(&mut self, problem: &Problem, observation: &Observation) -> [Option<Innovation>; 2] {
-        let motion = Motion { terms: &problem.terms, coefficients: &self.all };
+        let motion = problem.motion(&self.all);
         let noise = self.noise_now();
         let innovations = self.run.step(&motion, &problem.free_terms, &noise, observation);
         self.adaptive.add(&innovations, &observation.measured);

@@ -6,7 +6,7 @@ use crate::identify::deviation::Deviation;
 use crate::identify::problem::Problem;
 use crate::identify::sample::Sample;
 use crate::identify::settings::Settings;
-use crate::law::{Motion, State};
+use crate::law::State;
 use serde::{Deserialize, Serialize};
 
 /// A deviation this many times the usual one is out of the ordinary: it decides nothing unless the user gives a
@@ -75,7 +75,7 @@ impl Prediction {
         sample: &Sample,
         observation: &Observation,
     ) {
-        let motion = Motion { terms: &problem.terms, coefficients: &law.all };
+        let motion = problem.motion(&law.all);
         let [from, _, to] = observation.drive.part(0, 1);
         self.state = motion.step_linear(self.state, observation.dt, from, to);
         if !self.state.is_finite() {

@@ -339,6 +339,7 @@ impl AugmentedDrift {
 fn unknowns(problem: &Problem) -> Unknowns<'_> {
     Unknowns {
         terms: &problem.terms,
+        own: &problem.own,
         free: &problem.free,
         free_terms: &problem.free_terms,
         inertia: problem.inertia,

@@ -114,7 +114,7 @@ impl WeakRowDrift {
         }
         self.section.load(problem, window, first, last);
         let section = self.section.view(problem, length.samples + 1);
-        self.row.integrate_about(&section, VARIATION, &problem.terms, &length.all);
+        self.row.integrate(&section, VARIATION, &problem.motion(&length.all));
         let memory = MEMORY * longest as f64 / length.samples as f64;
         length.take(problem, &self.row, sensor, (overlap as f64).recip(), memory);
         true

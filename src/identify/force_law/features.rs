@@ -7,8 +7,9 @@
 //! ch. 4). Expectations are sums over
 //! Gauss–Hermite points, exact for powers up to the fifth of q and the ninth of q̇.
 
+use super::super::problem::Problem;
 use super::smoother::Instant;
-use crate::law::{Model, Term};
+use crate::law::{Model, State};
 
 /// Points of the displacement in std, and their weights.
 const OF_Q: [(f64, f64); 3] =
@@ -34,14 +35,14 @@ pub struct Known<'a> {
 
 /// Writes E f_j of every term into `expected`; returns Var Σ θ_j f_j by the motion's belief, the coefficients known as
 /// they are.
-pub fn expect(terms: &[Term], known: Known, instant: &Instant, expected: &mut [f64]) -> f64 {
+pub fn expect(problem: &Problem, known: Known, instant: &Instant, expected: &mut [f64]) -> f64 {
     expected.fill(0.0);
     let mut squares = [0.0; Model::MAX_TERMS];
     let (mut mean, mut square) = (0.0, 0.0);
     for (q, qd, weight) in points(instant) {
         let mut force = 0.0;
-        for (index, term) in terms.iter().enumerate() {
-            let feature = term.force(q, qd, 0.0);
+        for (index, term) in problem.terms.iter().enumerate() {
+            let feature = term.force_of(&problem.own, State { q, qd }, 0.0);
             expected[index] += weight * feature;
             squares[index] += weight * feature * feature;
             force += known.values[index] * feature;

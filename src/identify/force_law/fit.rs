@@ -43,7 +43,7 @@ pub fn fit_force_law(model: &Model, recording: &Recording) -> Result<Option<Forc
     for _ in 0..ROUNDS {
         segment.restart();
         for instant in &instants {
-            let of_motion = expect(&problem.terms, segment.known(), instant, &mut features);
+            let of_motion = expect(&problem, segment.known(), instant, &mut features);
             segment.add(&problem, &mut features, instant, of_motion);
         }
         segment.solve(&problem, true);

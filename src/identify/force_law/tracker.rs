@@ -193,14 +193,14 @@ impl ForceTracker {
         if stage.white.is_none() || !stage.established {
             return false;
         }
-        let of_motion = expect(&problem.terms, stage.known(), instant, &mut self.features);
+        let of_motion = expect(problem, stage.known(), instant, &mut self.features);
         let residual = instant.force - dot(&self.features, &stage.all);
         residual * residual > OUTLYING * OUTLYING * (stage.variance() + of_motion)
     }
 
     fn use_instant(&mut self, problem: &Problem, settings: &Settings, instant: Instant, now: f64, output: &mut Output) {
         let stage = &mut self.stage;
-        let of_motion = expect(&problem.terms, stage.known(), &instant, &mut self.features);
+        let of_motion = expect(problem, stage.known(), &instant, &mut self.features);
         if !(is_weighable(of_motion) && self.features.iter().copied().all(is_weighable)) {
             return;
         }
@@ -276,7 +276,7 @@ impl ForceTracker {
     /// The force that the law gives for the last sample, and how far it is off on the mean.
     fn predict(&mut self, problem: &Problem, settings: &Settings, sample: Sample, output: &mut Output) {
         let Some(instant) = self.smoother.at(0).filter(|_| self.stage.white.is_some()) else { return };
-        let of_motion = expect(&problem.terms, self.stage.known(), &instant, &mut self.features);
+        let of_motion = expect(problem, self.stage.known(), &instant, &mut self.features);
         let prediction = dot(&self.features, &self.stage.all);
         if !(is_weighable(prediction) && is_weighable(of_motion)) {
             return;

@@ -4,7 +4,7 @@ use super::blocks::Blocks;
 use super::regression::{Errors, Estimate, FEWEST, Regression};
 use crate::identify::problem::Problem;
 use crate::identify::sample::{GAP, Sample};
-use crate::law::Term;
+use crate::law::{State, Term};
 use crate::weak::{Functional, Pole, signal};
 use serde::{Deserialize, Serialize};
 
@@ -118,7 +118,8 @@ impl Octave {
         let pole = Pole::new(self.rate(), dt);
         let by_parts = problem.channels.q;
         let n = problem.n();
-        let of = |term: Term| signal(term, at.q, at.qd, at.excitation, by_parts);
+        let state = State { q: at.q, qd: at.qd };
+        let of = |term: Term| signal(term, &problem.own, state, at.excitation, by_parts);
         for ((entry, functional), term) in self.row.iter_mut().zip(&mut self.functionals).zip(&problem.free_terms) {
             *entry = functional.step(&pole, of(*term));
         }

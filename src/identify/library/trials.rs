@@ -8,7 +8,6 @@ use super::known_laws::{KnownLaws, ROOM};
 use crate::estimation::{Noise, Pass};
 use crate::identify::problem::Problem;
 use crate::identify::window::Window;
-use crate::law::Motion;
 use serde::{Deserialize, Serialize};
 
 /// The laws are weighed anew when the record has grown by this factor: 14 times in every doubling.
@@ -228,7 +227,7 @@ impl Trial {
     fn advance(&mut self, problem: &Problem, all: &[f64], window: &Window, budget: usize) -> usize {
         let from = self.next;
         let stop = window.ready().min(from + budget as u64);
-        let motion = Motion { terms: &problem.terms, coefficients: all };
+        let motion = problem.motion(all);
         while self.next < stop && !self.out {
             self.pass.step(&motion, &problem.free_terms, &self.noise, &window.observation(self.next));
             self.out = !self.pass.filter.state().is_finite();

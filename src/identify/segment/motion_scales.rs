@@ -2,7 +2,6 @@
 
 use crate::estimation::{Observation, Pass};
 use crate::identify::problem::Problem;
-use crate::law::Motion;
 use serde::{Deserialize, Serialize};
 
 /// Smallest mean square of the law's own acceleration, in terms of the excitation's: one per cent of its RMS.
@@ -54,7 +53,7 @@ impl MotionScales {
 
     /// Takes the interval that the pass has just run over, under the coefficients `all`.
     pub fn add(&mut self, problem: &Problem, all: &[f64], pass: &Pass, observation: &Observation) {
-        let motion = Motion { terms: &problem.terms, coefficients: all };
+        let motion = problem.motion(all);
         let state = pass.filter.state();
         for (sum, input) in self.slopes.iter_mut().zip(&pass.map.input) {
             *sum += (input[1] / observation.dt).powi(2);

@@ -15,7 +15,6 @@ use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
-use crate::law::Motion;
 
 /// A run that has caught up is closed only when the record has grown by this fraction since the last one: what it adds
 /// to the information is then about as small …
@@ -120,7 +119,7 @@ impl Segment {
     /// The run takes a sample, and so does all that is summed up beside it.
     fn take(&mut self, problem: &Problem, observation: &Observation) {
         let Segment { run, score_test, convergence, all, noise, .. } = self;
-        let motion = Motion { terms: &problem.terms, coefficients: all };
+        let motion = problem.motion(all);
         let innovations = run.filter_run.step(&motion, &problem.free_terms, noise, observation);
         if score_test.looking {
             score_test.candidates.step(&motion, &run.filter_run, observation, &innovations);

@@ -109,7 +109,7 @@ impl WeakStart {
         }
         self.section.load(problem, window, first, last);
         let section = self.section.view(problem, scale.length + 1);
-        self.row.integrate(&section, VARIATION, &problem.terms);
+        self.row.integrate(&section, VARIATION, &problem.motion(&[]));
         let right = problem.weak_equation(&self.row, &mut self.equation);
         let weight = self.row.norm.sqrt().recip();
         self.equation.iter_mut().for_each(|entry| *entry *= weight);

@@ -9,7 +9,6 @@ use crate::identify::faults::{Expected, NAMED, Returned};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::segment::MotionScales;
-use crate::law::Motion;
 
 /// A switch may take a part of F ÷ m: the inertia becomes 0.6 to 1.6 times what it was, as a std.
 const GAIN: f64 = 0.5;
@@ -34,7 +33,7 @@ pub(super) fn expected<'a>(
     size: [f64; 2],
 ) -> Expected<'a> {
     Expected {
-        motion: Motion { terms: &problem.terms, coefficients: &law.all },
+        motion: problem.motion(&law.all),
         noise: law.noise_now(),
         switch: [scales.restoring_acceleration(), GAIN],
         size,

@@ -7,7 +7,7 @@ use crate::identify::reading::Reading;
 use crate::identify::report::{SensorState, Status};
 use crate::identify::sample::Sample;
 use crate::identify::settings::Settings;
-use crate::law::{Hold, Motion};
+use crate::law::Hold;
 
 /// Readings that enter the record in a step: what was held is made up for at this pace.
 const CATCH_UP: usize = 4;
@@ -39,7 +39,7 @@ impl Tracker {
         if glitch == 0.0 || !law.running {
             return;
         }
-        let motion = Motion { terms: &problem.terms, coefficients: &law.all };
+        let motion = problem.motion(&law.all);
         let dt = reading.sample.t - self.now();
         let push = glitch * dt / motion.mass(law.run.filter.mean[0]).powi(2);
         if push < TOLD * TOLD * law.noise.sensor[1] {

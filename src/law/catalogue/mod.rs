@@ -28,6 +28,11 @@ impl Catalogue {
         }
     }
 
+    /// The effect id of a term; its name where it is none of the catalogue.
+    pub fn name_of(term: Term) -> String {
+        Catalogue::of(term).map_or_else(|| term.name(), |entry| entry.id.into())
+    }
+
     /// Whether the first effect is a limiting case of the second.
     pub fn is_contained(smaller: &str, larger: &str) -> bool {
         Catalogue::find(larger).is_some_and(|entry| entry.contains.contains(&smaller))
