@@ -5,12 +5,11 @@ use super::error::CommandError;
 use super::input::{Input, ModelArguments};
 use super::output::{self, Pairs, Targets};
 use super::progress::Waiting;
-use super::words::{digits, percent, quantity};
+use super::words::{numbers, percent};
 use crate::diagnose::{Addition, Law, Posed, improved_model, refitted_model, same_effect};
-use crate::law::{Catalogue, Expression, Model, Term, unit_of};
+use crate::law::{Catalogue, Expression, Model, Term};
 use clap::Args;
 use serde::Serialize;
-use std::fmt::Write;
 use std::path::PathBuf;
 
 const EXAMPLE: &str = r#"Examples:
@@ -135,10 +134,7 @@ fn report(arguments: &Arguments, found: &Addition) -> Report {
 
 /// The inner parameters of the term that was added.
 fn inner(law: &Law) -> Vec<(String, f64)> {
-    let effect = law.terms.last().and_then(|term| term.effect());
-    effect.map_or_else(Vec::new, |effect| {
-        effect.inner().iter().map(|parameter| parameter.name.to_string()).zip(effect.inner_values()).collect()
-    })
+    law.terms.last().map_or_else(Vec::new, |term| term.inner_named(&law.expressions))
 }
 
 fn text(arguments: &Arguments, found: &Addition, input: &Input) -> String {
@@ -157,12 +153,6 @@ fn text(arguments: &Arguments, found: &Addition, input: &Input) -> String {
     if law.coefficients.last().zip(law.std.last()).is_some_and(|(value, std)| value.abs() < *std) {
         text += "its coefficient is within its uncertainty: this record does not show it\n";
     }
-    for ((term, value), std) in law.terms.iter().zip(&law.coefficients).zip(&law.std) {
-        let name = Catalogue::name_of(*term);
-        let _ = writeln!(text, "  {name:<28} {:>30}", quantity(*value, *std, unit_of(*term, &input.units)));
-    }
-    for (name, value) in inner(law) {
-        let _ = writeln!(text, "    {name:<26} {:>30}", digits(value, 4));
-    }
+    text += &numbers(law, &input.units);
     text + &format!("written: {}\n", arguments.output.display())
 }

@@ -6,7 +6,7 @@ use super::figures;
 use super::input::{Input, InputArguments};
 use super::output::{self, Targets};
 use super::pictures::PictureArguments;
-use super::words::{digits, number, percent, quantity, quoted};
+use super::words::{digits, number, percent, quantity, quoted, with_inner};
 use crate::diagnose::{Comparison, Estimate, NOISE_RATIO, Options, Side, Target, Verdict, WindowError};
 use crate::identify::Recording;
 use crate::law::{Model, equation, unit_of};
@@ -54,7 +54,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
     let found = input.compared(&options);
     picture.map_or(Ok(()), |picture| picture.draw(&figures::comparison(&found)))?;
     if arguments.json {
-        output::print_json(&Report::of(&found))
+        output::print_json(&Report::of(&found, &input.model))
     } else {
         output::print(&text(&found, &input.model, &input.file, options.window))
     }
@@ -236,6 +236,7 @@ fn numbers(found: &Comparison, model: &Model) -> String {
             None => format!("{} (held)", quantity(law.coefficients[index], 0.0, unit())),
         };
         let _ = writeln!(text, "  {:<28} {:>26} {:>26}", entry.key, known(given), known(best));
+        text += &with_inner(best.terms[index], &model.expressions, &found.units);
     }
     text
 }

@@ -3,6 +3,7 @@
 use super::diagnose::WindowReport;
 use super::output::Pairs;
 use crate::diagnose::{Bounds, Comparison, Error, Fail, Over, Side, Verdict};
+use crate::law::{Model, Term};
 use serde::Serialize;
 
 /// The document.
@@ -13,6 +14,8 @@ pub(super) struct Report {
     errors: Option<Vec<WindowReport>>,
     coefficients: Pairs,
     std: Pairs,
+    /// Inner parameters, those that the model leaves open as the judge found them: `gap of dead_zone_stiffness`.
+    inner: Pairs,
     fails: Vec<FailReport>,
     best: SideReport,
     recordings: Vec<RecordingReport>,
@@ -71,7 +74,7 @@ struct ErrorReport {
 
 impl Report {
     /// Of a comparison.
-    pub(super) fn of(found: &Comparison) -> Report {
+    pub(super) fn of(found: &Comparison, model: &Model) -> Report {
         let error = |error: &Error| ErrorReport::of(error, found);
         let recordings = found.sources.iter().enumerate().map(|(index, source)| RecordingReport {
             data: source.clone(),
@@ -86,6 +89,7 @@ impl Report {
             errors: errors(&found.given),
             coefficients: coefficients(&found.given),
             std: std(&found.given),
+            inner: inner(found, model),
             fails: found.given.fails.iter().map(|fail| FailReport::of(fail, found)).collect(),
             best: SideReport {
                 error: error(&found.best.error),
@@ -172,6 +176,14 @@ fn coefficients(side: &Side) -> Pairs {
     let law = &side.law;
     let known = law.terms.iter().zip(&law.coefficients).filter(|(term, _)| !law.undetermined.contains(term));
     Pairs(known.map(|(term, value)| (term.name(), *value)).collect())
+}
+
+fn inner(found: &Comparison, model: &Model) -> Pairs {
+    let of = |term: &Term| {
+        let named = term.inner_named(&model.expressions).into_iter();
+        named.map(|(name, value)| (format!("{name} of {}", term.name()), value)).collect::<Vec<_>>()
+    };
+    Pairs(found.best.law.terms.iter().flat_map(of).collect())
 }
 
 fn std(side: &Side) -> Pairs {

@@ -8,9 +8,8 @@ use super::input::{Input, InputArguments};
 use super::output::{self, Pairs, Targets};
 use super::pictures::PictureArguments;
 use super::progress::Waiting;
-use super::words::{percent, quantity};
+use super::words::{numbers, percent};
 use crate::diagnose::{Clock, Improvement, Law, Posed, Step, WindowError, improved_model};
-use crate::law::{Catalogue, unit_of};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write;
@@ -194,10 +193,7 @@ fn text(arguments: &Arguments, found: &Found, input: &Input) -> String {
     let _ = writeln!(text, "     {:<40} {:>10}", "noise floor", percent(floor));
     text += "\nthe law now:\n";
     let law = &found.law;
-    for ((term, value), std) in law.terms.iter().zip(&law.coefficients).zip(&law.std) {
-        let name = Catalogue::name_of(*term);
-        let _ = writeln!(text, "  {name:<28} {:>30}", quantity(*value, *std, unit_of(*term, &input.units)));
-    }
+    text += &numbers(law, &input.units);
     text += "\n";
     text += &diagnose::candidates(diagnosis, input);
     text + &format!("\nwritten: {}\n", arguments.output.display())

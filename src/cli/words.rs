@@ -2,7 +2,8 @@
 
 use crate::diagnose::Law;
 pub(super) use crate::law::numerals::{digits, number, seconds};
-use crate::law::{Catalogue, Term, Units};
+use crate::law::{Catalogue, Expression, SiUnit, Term, Units, unit_of};
+use std::fmt::Write;
 
 /// `19 %`, `4.5 %`, `0.32 %`, `0.0021 %`.
 pub(super) fn percent(share: f64) -> String {
@@ -68,6 +69,36 @@ pub(super) fn effect_of(term: Term, law: &Law) -> String {
         (_, Some(entry)) => entry.equation.into(),
         _ => term.symbol(),
     }
+}
+
+/// `gap 0.21 m`: a term's inner parameters with their units, those of a formula without.
+pub(super) fn inner(term: Term, own: &[Expression], units: &Units) -> Vec<String> {
+    let described = term.effect().map_or(&[][..], |effect| effect.inner());
+    let unit = |index: usize| described.get(index).and_then(|parameter| units.inner(parameter.unit));
+    let named = term.inner_named(own).into_iter().enumerate();
+    named.map(|(index, (name, value))| format!("{name} {}{}", digits(value, 4), spaced(unit(index)))).collect()
+}
+
+/// A unit with a space before it; nothing where there is none.
+fn spaced(unit: Option<SiUnit>) -> String {
+    unit.filter(|unit| unit.symbol != "1").map_or_else(String::new, |unit| format!(" {}", unit.symbol))
+}
+
+/// A law's terms with their coefficients, a line each, and what stands behind those with inner parameters.
+pub(super) fn numbers(law: &Law, units: &Units) -> String {
+    let mut text = String::new();
+    for ((term, value), std) in law.terms.iter().zip(&law.coefficients).zip(&law.std) {
+        let name = Catalogue::name_of(*term);
+        let _ = writeln!(text, "  {name:<28} {:>30}", quantity(*value, *std, unit_of(*term, units)));
+        text += &with_inner(*term, &law.expressions, units);
+    }
+    text
+}
+
+/// `    with gap 0.21 m` on a line of its own; empty where a term has no inner parameters.
+pub(super) fn with_inner(term: Term, own: &[Expression], units: &Units) -> String {
+    let inner = inner(term, own, units);
+    if inner.is_empty() { String::new() } else { format!("    with {}\n", inner.join(", ")) }
 }
 
 #[cfg(test)]

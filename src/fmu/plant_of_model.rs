@@ -36,7 +36,7 @@ pub fn plant_of_model(name: &str, model: &Model) -> Result<Fmu, FmuError> {
     for (entry, value) in numbers.iter().filter(|(entry, _)| is_hidden(entry)) {
         let effect = format!("hidden.{}", entry.term.name());
         start(&mut description, &effect, *value);
-        for (inner, value) in model.inner_names(entry.term).iter().zip(model.inner_values(entry.term)) {
+        for (inner, value) in model.inner_names(entry.term).iter().zip(entry.term.inner_values()) {
             start(&mut description, &format!("{effect}.{inner}"), value);
         }
     }

@@ -219,8 +219,8 @@ impl Compiled {
 
     /// Takes the motion.
     pub fn compile(&mut self, motion: &Motion) {
-        if self.own != motion.own {
-            self.own = motion.own.to_vec();
+        if !motion.own.is_empty() {
+            self.take(motion);
         }
         self.count = 0;
         self.mass = [0.0; 2];
@@ -242,6 +242,20 @@ impl Compiled {
             }
         }
         self.inverse_mass = self.mass[0].recip();
+    }
+
+    /// Takes the formulas, each with the inner parameters of the term that stands for it.
+    fn take(&mut self, motion: &Motion) {
+        if self.own.len() != motion.own.len() {
+            self.own = motion.own.to_vec();
+        }
+        for term in motion.terms {
+            if let Term::Expression(named) = term
+                && let Some(own) = self.own.get_mut(named.place())
+            {
+                own.set(&named.inner());
+            }
+        }
     }
 
     /// Whether the law has dry friction, so that a step is to be cut where the velocity reverses.

@@ -245,7 +245,7 @@ impl<'a> Dynamics<'a> {
             Term::Effect(Effect::ExcitationDelay { delay }) => instant.excitation - instant.delayed(delay.value()),
             Term::Effect(effect) if effect.memory_length() > 0 => effect.feature(state, instant.excitation, memory),
             Term::Expression(own) => {
-                self.motion.own[own.place()].value(state.q, state.qd, instant.excitation, instant.t())
+                self.motion.own[own.place()].value_of(&own, state.q, state.qd, instant.excitation, instant.t())
             }
             _ => term.force(state.q, state.qd, instant.excitation),
         }
@@ -301,7 +301,7 @@ mod tests {
     #[test]
     fn converges_with_order_four() {
         let resonator = effect("hidden_resonator", &[3.0, 0.05]);
-        let smooth = [resonator, effect("excitation_delay", &[0.23]), Term::Expression(Own::new(0, "x", false))];
+        let smooth = [resonator, effect("excitation_delay", &[0.23]), Term::Expression(Own::new(0, "x", false, &[]))];
         let terms = terms(&smooth);
         let coefficients = [1.3, 0.3, 4.0, 0.7, 0.4, 0.6, 0.3];
         let exact = end(&terms, &coefficients, 8192);
@@ -401,7 +401,7 @@ mod tests {
         let many: Vec<Term> = (1..6).map(|n| effect("hidden_resonator", &[f64::from(n), 0.0])).collect();
         let motion = Motion::new(&many, &[1.0; 5]);
         assert_eq!(Dynamics::new(motion).unwrap_err(), DynamicsError::Memory { count: 10 });
-        let absent = [Term::Expression(Own::new(1, "x", false))];
+        let absent = [Term::Expression(Own::new(1, "x", false, &[]))];
         let motion = Motion::new(&absent, &[1.0]);
         assert!(matches!(Dynamics::new(motion), Err(DynamicsError::Expression { .. })));
     }

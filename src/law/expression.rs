@@ -38,7 +38,7 @@ impl Expression {
 
     /// The term that stands for it among a law's expressions, at that place.
     pub fn term(&self, place: usize) -> Term {
-        Term::Expression(Own::new(place, &self.name, self.uses("F")))
+        Term::Expression(Own::new(place, &self.name, self.uses("F"), &self.values))
     }
 
     /// The formula as written.
@@ -72,19 +72,33 @@ impl Expression {
 
     /// The value at (q, q̇, F, t); not finite where the formula has none.
     pub fn value(&self, q: f64, qd: f64, excitation: f64, t: f64) -> f64 {
-        self.run([q, qd, excitation, t].map(Number::of)).value
+        self.run([q, qd, excitation, t].map(Number::of), &self.values).value
+    }
+
+    /// The same with the inner parameters of a term that stands for it.
+    pub fn value_of(&self, own: &Own, q: f64, qd: f64, excitation: f64, t: f64) -> f64 {
+        self.run([q, qd, excitation, t].map(Number::of), &own.inner()).value
     }
 
     /// (∂/∂q, ∂/∂q̇) at (q, q̇, F); one-sided where the formula has a kink, 0 at the jump of a sign, NaN where it depends on time.
     pub fn gradient(&self, q: f64, qd: f64, excitation: f64) -> (f64, f64) {
+        self.slopes(q, qd, excitation, &self.values)
+    }
+
+    /// The same with the inner parameters of a term that stands for it.
+    pub fn gradient_of(&self, own: &Own, q: f64, qd: f64, excitation: f64) -> (f64, f64) {
+        self.slopes(q, qd, excitation, &own.inner())
+    }
+
+    fn slopes(&self, q: f64, qd: f64, excitation: f64, inner: &[f64]) -> (f64, f64) {
         let along = |value: f64, slopes: [f64; 2]| Number { value, slopes };
         let variables =
             [along(q, [1.0, 0.0]), along(qd, [0.0, 1.0]), Number::of(excitation), along(f64::NAN, [f64::NAN; 2])];
-        self.run(variables).slopes.into()
+        self.run(variables, inner).slopes.into()
     }
 
     #[inline]
-    fn run(&self, variables: [Number; 4]) -> Number {
+    fn run(&self, variables: [Number; 4], inner: &[f64]) -> Number {
         let mut stack = [Number::of(0.0); STACK + 1];
         let mut top = 0;
         for instruction in &self.program {
@@ -92,7 +106,8 @@ impl Expression {
                 Instruction::Number(number) => (stack[top], top) = (Number::of(*number), top + 1),
                 Instruction::Variable(index) => (stack[top], top) = (variables[usize::from(*index)], top + 1),
                 Instruction::Parameter(index) => {
-                    (stack[top], top) = (Number::of(self.values[usize::from(*index)]), top + 1)
+                    (stack[top], top) =
+                        (Number::of(inner.get(usize::from(*index)).copied().unwrap_or(f64::NAN)), top + 1)
                 }
                 Instruction::Unary(function) => stack[top - 1] = unary(*function, stack[top - 1]),
                 Instruction::Binary(function) => {

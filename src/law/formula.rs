@@ -10,7 +10,7 @@ use thiserror::Error;
 pub(super) const STACK: usize = 24;
 
 /// The most inner parameters of an expression: more than any record determines beside the coefficients.
-const MAX_PARAMETERS: usize = 16;
+const MAX_PARAMETERS: usize = super::Own::MAX_INNER;
 
 /// How deep parentheses, signs and powers may nest, so that no text overflows the parser's recursion.
 const NESTING: usize = 60;
@@ -100,7 +100,7 @@ pub enum FormulaError {
     },
     /// Parentheses, powers or operands nested too deep, or too many parameters.
     #[error(
-        "at position {position}: the formula is too large: at most 16 parameters, 24 open operands, 60 levels of nesting"
+        "at position {position}: the formula is too large: at most 8 parameters, 24 open operands, 60 levels of nesting"
     )]
     TooLarge {
         /// Where.

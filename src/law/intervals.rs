@@ -8,7 +8,7 @@
 
 use super::hysteresis_loop::Loop;
 use super::quadrature::GAUSS;
-use super::{Effect, Expression, Hold, State, Term, Trajectory};
+use super::{Effect, Expression, Hold, Own, State, Term, Trajectory};
 
 /// A force over an interval as a straight line: its values at the start and at the end.
 pub type Line = [f64; 2];
@@ -68,7 +68,7 @@ pub fn interval_forces(
         }
         Term::Effect(effect) if effect.memory_length() > 0 => remembered(effect, &course, beginning),
         Term::Expression(own) => match expressions.get(own.place()) {
-            Some(expression) => (0..count).map(|k| expressed(expression, &course, k)).collect(),
+            Some(expression) => (0..count).map(|k| expressed(expression, &own, &course, k)).collect(),
             None => vec![[f64::NAN; 2]; count],
         },
         _ => vec![[f64::NAN; 2]; count],
@@ -128,7 +128,7 @@ impl Course<'_> {
     }
 }
 
-fn expressed(expression: &Expression, course: &Course, k: usize) -> Line {
+fn expressed(expression: &Expression, own: &Own, course: &Course, k: usize) -> Line {
     let trajectory = course.trajectory;
     let (from, to) = (trajectory.t[k], trajectory.t[k + 1]);
     let samples = trajectory.samples();
@@ -137,7 +137,7 @@ fn expressed(expression: &Expression, course: &Course, k: usize) -> Line {
         let share = node as f64 / PANELS as f64;
         let (t, State { q, qd }) = (from + share * (to - from), course.between(k, share));
         let excitation = if trajectory.hold == Hold::Zero { trajectory.excitation[k] } else { samples.at(t) };
-        sums.add(node, PANELS, expression.value(q, qd, excitation, t));
+        sums.add(node, PANELS, expression.value_of(own, q, qd, excitation, t));
     }
     sums.line()
 }

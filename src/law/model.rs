@@ -190,18 +190,7 @@ impl Model {
 
     /// Names of a term's inner parameters, in their order.
     pub fn inner_names(&self, term: Term) -> Vec<String> {
-        match term {
-            Term::Effect(effect) => effect.inner().iter().map(|parameter| parameter.name.into()).collect(),
-            _ => self.formula(term).map_or_else(Vec::new, |own| own.parameters().to_vec()),
-        }
-    }
-
-    /// Values of a term's inner parameters, in their order.
-    pub fn inner_values(&self, term: Term) -> Vec<f64> {
-        match term {
-            Term::Effect(effect) => effect.inner_values(),
-            _ => self.formula(term).map_or_else(Vec::new, |own| own.values().to_vec()),
-        }
+        term.inner_named(&self.expressions).into_iter().map(|(name, _)| name).collect()
     }
 
     /// Where the term stands among [`Model::terms`].

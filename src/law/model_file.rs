@@ -110,8 +110,8 @@ impl Model {
         for term in &self.potential {
             text += &format!("{} = \"maybe\"\n", quote(&term.name()));
         }
-        for (index, expression) in self.expressions.iter().enumerate() {
-            text += &format!("\n[effects.{}]\n{}", expression.name(), self.write_expression(index, expression));
+        for expression in &self.expressions {
+            text += &format!("\n[effects.{}]\n{}", expression.name(), self.write_expression(expression));
         }
         text
     }
@@ -123,7 +123,7 @@ impl Model {
             Given::Maybe => "\"maybe\"".to_string(),
             Given::Known(value) => toml::Value::from(value).to_string(),
         };
-        let inner = self.inner_names(entry.term).into_iter().zip(self.inner_values(entry.term)).zip(&entry.open);
+        let inner = self.inner_names(entry.term).into_iter().zip(entry.term.inner_values()).zip(&entry.open);
         let held = inner.filter(|(_, open)| !**open);
         let held: Vec<String> =
             held.map(|((name, value), _)| format!(", {name} = {}", toml::Value::from(value))).collect();
@@ -134,8 +134,8 @@ impl Model {
     }
 
     /// The body of a user's effect: its formula and the values at which inner parameters start that no term holds.
-    fn write_expression(&self, index: usize, expression: &Expression) -> String {
-        let term = self.terms.iter().find(|entry| entry.term == expression.term(index));
+    fn write_expression(&self, expression: &Expression) -> String {
+        let term = self.terms.iter().find(|entry| entry.key == expression.name());
         let is_open = |inner: usize| term.is_none_or(|entry| entry.open[inner]);
         let named = expression.parameters().iter().zip(expression.values()).enumerate();
         let starts = named.filter(|(inner, (_, value))| is_open(*inner) && **value != Expression::START);
@@ -299,8 +299,8 @@ mod tests {
         assert_eq!((dead_zone.given, dead_zone.open.as_slice()), (Given::Maybe, [false].as_slice()));
         assert_eq!(stribeck.open, [true]);
         assert_eq!((hysteresis.given, hysteresis.open.as_slice()), (Given::Known(3.0), [true, false, true].as_slice()));
-        assert_eq!(model.inner_values(hysteresis.term)[1], 0.7);
-        assert_eq!((stop.given, model.inner_values(stop.term)), (Given::Fit, vec![2.0]));
+        assert_eq!(hysteresis.term.inner_values()[1], 0.7);
+        assert_eq!((stop.given, stop.term.inner_values()), (Given::Fit, vec![2.0]));
     }
 
     #[test]
@@ -314,7 +314,7 @@ mod tests {
         assert_eq!(Model::from_toml(&text).unwrap(), model, "{text}");
         let drag = &model.terms[4];
         assert_eq!((drag.term, drag.open.as_slice()), (model.expressions[0].term(0), [false, true].as_slice()));
-        assert_eq!((drag.term.name(), model.inner_values(drag.term)), ("tip_drag".into(), vec![0.1, 0.5]));
+        assert_eq!((drag.term.name(), drag.term.inner_values()), ("tip_drag".into(), vec![0.1, 0.5]));
         assert_eq!(model.expressions[1].values(), [3.0]);
     }
 

@@ -1,25 +1,40 @@
-//! A user's own effect as a term of a law: its name, and where its formula stands.
+//! A user's own effect as a term of a law: its name, where its formula stands, and numbers for its inner parameters.
 
-use arrayvec::ArrayString;
+use super::Inner;
+use arrayvec::{ArrayString, ArrayVec};
 use serde::{Deserialize, Serialize};
 
-/// Which of a law's expressions a term is.
+/// Which of a law's expressions a term is, and with which inner parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Own {
     place: u8,
     uses_excitation: bool,
-    name: ArrayString<{ Own::LONGEST }>,
+    name: Name,
+    inner: [Option<Inner>; Own::MAX_INNER],
 }
+
+/// A short text that a term can hold.
+type Name = ArrayString<{ Own::LONGEST }>;
 
 impl Own {
     /// How many letters a name may have.
     pub const LONGEST: usize = 30;
 
-    /// The expression at that place, from 0; of a longer name the first [`Own::LONGEST`] letters.
-    pub fn new(place: usize, name: &str, uses_excitation: bool) -> Own {
-        let mut own = Own { place: place.min(usize::from(u8::MAX)) as u8, uses_excitation, name: ArrayString::new() };
+    /// The most inner parameters: more than a record determines beside the coefficients.
+    pub const MAX_INNER: usize = 8;
+
+    /// The expression at that place, from 0, with these inner parameters; of a longer name the first [`Own::LONGEST`] letters.
+    pub fn new(place: usize, name: &str, uses_excitation: bool, inner: &[f64]) -> Own {
+        let place = place.min(usize::from(u8::MAX)) as u8;
+        let mut own = Own { place, uses_excitation, name: ArrayString::new(), inner: [None; Own::MAX_INNER] };
         name.chars().take_while(|letter| own.name.try_push(*letter).is_ok()).for_each(drop);
-        own
+        own.with_inner(inner)
+    }
+
+    /// The same with these inner parameters.
+    pub fn with_inner(mut self, inner: &[f64]) -> Own {
+        self.inner = std::array::from_fn(|index| inner.get(index).copied().map(Inner::new));
+        self
     }
 
     /// Its place among the law's expressions.
@@ -35,5 +50,10 @@ impl Own {
     /// The user's name for it.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Values of its inner parameters, in the order in which the formula has them.
+    pub fn inner(&self) -> ArrayVec<f64, { Own::MAX_INNER }> {
+        self.inner.iter().map_while(|inner| inner.map(Inner::value)).collect()
     }
 }

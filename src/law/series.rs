@@ -63,7 +63,9 @@ pub fn term_series(term: Term, expressions: &[Expression], trajectory: &Trajecto
         }
         Term::Effect(effect) if effect.memory_length() > 0 => memory_series(effect, trajectory),
         Term::Expression(own) => match expressions.get(own.place()) {
-            Some(expression) => points(trajectory, |k, q, qd, force| expression.value(q, qd, force, trajectory.t[k])),
+            Some(expression) => {
+                points(trajectory, |k, q, qd, force| expression.value_of(&own, q, qd, force, trajectory.t[k]))
+            }
             None => vec![f64::NAN; n],
         },
         _ => points(trajectory, |_, q, qd, excitation| term.force(q, qd, excitation)),

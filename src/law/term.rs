@@ -165,7 +165,7 @@ impl Term {
     pub fn force_of(self, own: &[Expression], State { q, qd }: State, excitation: f64) -> f64 {
         match self {
             Term::Expression(named) => {
-                own.get(named.place()).map_or(f64::NAN, |own| own.value(q, qd, excitation, f64::NAN))
+                own.get(named.place()).map_or(f64::NAN, |own| own.value_of(&named, q, qd, excitation, f64::NAN))
             }
             _ => self.force(q, qd, excitation),
         }
@@ -176,7 +176,7 @@ impl Term {
     pub fn gradient_of(self, own: &[Expression], State { q, qd }: State, excitation: f64) -> (f64, f64) {
         match self {
             Term::Expression(named) => {
-                own.get(named.place()).map_or((f64::NAN, f64::NAN), |own| own.gradient(q, qd, excitation))
+                own.get(named.place()).map_or((f64::NAN, f64::NAN), |own| own.gradient_of(&named, q, qd, excitation))
             }
             _ => self.gradient(q, qd, excitation),
         }
@@ -230,6 +230,36 @@ impl Term {
         match self {
             Term::Effect(Effect::PositionDependentInertia) => 2.0 * q,
             _ => 0.0,
+        }
+    }
+
+    /// Values of the term's inner parameters, in their order.
+    pub fn inner_values(self) -> Vec<f64> {
+        match self {
+            Term::Effect(effect) => effect.inner_values(),
+            Term::Expression(own) => own.inner().to_vec(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// The same with their names, of a law whose [`Term::Expression`]s count `own`.
+    pub fn inner_named(self, own: &[Expression]) -> Vec<(String, f64)> {
+        let names: Vec<String> = match self {
+            Term::Effect(effect) => effect.inner().iter().map(|parameter| parameter.name.into()).collect(),
+            Term::Expression(named) => own.get(named.place()).map_or_else(Vec::new, |own| own.parameters().to_vec()),
+            _ => Vec::new(),
+        };
+        names.into_iter().zip(self.inner_values()).collect()
+    }
+
+    /// The same term with these inner parameters; none where they are not allowed.
+    pub fn with_inner(self, values: &[f64]) -> Option<Term> {
+        match self {
+            Term::Effect(effect) => effect.with_inner(values).ok().map(Term::Effect),
+            Term::Expression(own) => {
+                values.iter().all(|value| value.is_finite()).then(|| Term::Expression(own.with_inner(values)))
+            }
+            _ => values.is_empty().then_some(self),
         }
     }
 

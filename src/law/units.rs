@@ -327,7 +327,7 @@ mod tests {
         let half = Units::forced(Some(Quantity::Length), None, None);
         assert_eq!(unit_of(Term::power(1, 0), &half), None);
         assert_eq!(unit_of(Term::parse("F*q").unwrap(), &half).unwrap(), "1/m");
-        assert_eq!(unit_of(Term::Expression(crate::law::Own::new(0, "x", false)), &half), None);
+        assert_eq!(unit_of(Term::Expression(crate::law::Own::new(0, "x", false, &[])), &half), None);
         let whole = Units::forced(Some(Quantity::Length), None, Some(Quantity::Force));
         assert_eq!(whole.common(half), half);
         assert_eq!(whole.common(Units::free(Some(Quantity::Length), None)), Units::default());

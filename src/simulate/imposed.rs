@@ -108,7 +108,7 @@ impl Specimen {
         let own = scenario.terms.iter().copied().zip(self.coefficients(t).iter().copied());
         let hidden = scenario.hidden.terms().zip(scenario.hidden.coefficients());
         let force = |term: Term| match term {
-            Term::Expression(own) => scenario.hidden.expressions()[own.place()].value(q, qd, 0.0, t),
+            Term::Expression(own) => scenario.hidden.expressions()[own.place()].value_of(&own, q, qd, 0.0, t),
             _ => term.force(q, qd, 0.0),
         };
         own.chain(hidden).map(|(term, value)| value * force(term)).sum()

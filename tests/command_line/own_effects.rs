@@ -75,3 +75,29 @@ fn fmus_carry_a_formula() {
         assert!(variable.contains(&format!("start=\"{start}\"")), "{variable}");
     }
 }
+
+#[test]
+fn what_a_models_own_terms_leave_open_is_fitted_from_a_free_start() {
+    let bench = Bench::new("own_open");
+    let model = |own: &str, effects: &str| {
+        format!("[terms]\ninertia = \"fit\"\nqd = \"fit\"\nq = \"fit\"\n{own} = \"fit\"\n{effects}")
+    };
+    let formula = "tanh(q/w)";
+    for (name, hidden, effects, inner, truth) in [
+        ("soft", "{ coefficient = 4.0, w = 0.07, expression = \"tanh(q/w)\" }", formula, "w", 0.07),
+        ("dead_zone_stiffness", "{ coefficient = 30.0, gap = 0.21 }", "", "gap", 0.21),
+    ] {
+        let own =
+            if effects.is_empty() { String::new() } else { format!("[effects.{name}]\nexpression = \"{effects}\"\n") };
+        bench.write("plant.toml", &scenario(&format!("[hidden]\n{name} = {hidden}\n"), ""));
+        bench.write("model.toml", &model(name, &own));
+        bench.json(&["simulate", "plant.toml", "-o", "record.csv", "--force", "--json"]);
+        let found = bench.json(&["compare", "record.csv", "--model", "model.toml", "--json"]);
+        let value = found["inner"][format!("{inner} of {name}")].as_f64().unwrap();
+        assert!((value / truth - 1.0).abs() < 0.02, "{name}: {value}");
+        let stiffness = found["best"]["coefficients"]["q"].as_f64().unwrap();
+        assert!((stiffness / 20.0 - 1.0).abs() < 0.01, "{name}: {stiffness}");
+        let lacking = bench.json(&["diagnose", "record.csv", "--model", "model.toml", "--json"]);
+        assert_eq!(lacking["verdict"], "adequate", "{name}: {}", lacking["effect"]);
+    }
+}

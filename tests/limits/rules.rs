@@ -9,7 +9,8 @@ fn effects_with_memory_and_numbers_that_are_none_are_refused() {
     let hysteresis = Term::Effect(Effect::prototype("hysteresis").unwrap());
     let error = Law::new(&[(Term::Inertia, 1.0), (hysteresis, 2.0)], &[]).unwrap_err();
     assert!(error.to_string().contains("\"hysteresis\" depends on more than"), "{error}");
-    let error = law(&DUFFING).changed(&[(Term::Expression(switchid::law::Own::new(0, "x", false)), 1.0)]).unwrap_err();
+    let error =
+        law(&DUFFING).changed(&[(Term::Expression(switchid::law::Own::new(0, "x", false, &[])), 1.0)]).unwrap_err();
     assert!(matches!(error, LimitsError::NotPointwise { .. }));
     let error = law(&DUFFING).changed(&[(Term::power(1, 0), f64::NAN)]).unwrap_err();
     assert!(error.to_string().contains("\"q\" is NaN"), "{error}");

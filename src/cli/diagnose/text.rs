@@ -2,9 +2,9 @@
 
 use super::super::input::Input;
 use super::found::Found;
-use crate::cli::words::{chance, digits, effect_of, percent, quantity, quoted};
+use crate::cli::words::{chance, effect_of, inner, percent, quantity, quoted};
 use crate::diagnose::{Candidate, Clock, Diagnosis, Doubt, Finding, Law, StageDiagnosis, WORTH};
-use crate::law::{Catalogue, SiUnit, Units, equation, unit_of};
+use crate::law::{Catalogue, equation, unit_of};
 use std::fmt::Write;
 
 /// Candidates that are listed, at most.
@@ -102,7 +102,9 @@ fn with_unit(candidate: &Candidate, input: &Input) -> String {
 fn force(candidate: &Candidate, law: &Law, input: &Input) -> String {
     let symbol = effect_of(candidate.term, law);
     let force = format!("{} · {symbol}", with_unit(candidate, input));
-    let inner = inner(candidate, &input.units).into_iter().map(|one| format!(", {}", one.replace('_', " ")));
+    let inner = inner(candidate.term, &law.expressions, &input.units)
+        .into_iter()
+        .map(|one| format!(", {}", one.replace('_', " ")));
     std::iter::once(force).chain(inner).collect()
 }
 
@@ -223,7 +225,7 @@ pub(in crate::cli) fn candidates(diagnosis: &Diagnosis, input: &Input) -> String
             candidate.effect,
             with_unit(candidate, input)
         );
-        let inner = inner(candidate, &input.units);
+        let inner = inner(candidate.term, &input.model.expressions, &input.units);
         if !inner.is_empty() {
             let _ = writeln!(text, "  with {}", inner.join(", "));
         }
@@ -239,22 +241,6 @@ fn why(doubt: Doubt) -> &'static str {
         Doubt::Worse => "it makes the error worse, or leaves all",
         Doubt::Chance => "its gain may be chance, or is too small",
     }
-}
-
-/// Inner parameters with their units.
-fn inner(candidate: &Candidate, units: &Units) -> Vec<String> {
-    let described = candidate.term.effect().map_or(&[][..], |effect| effect.inner());
-    let pairs = candidate.inner.iter().zip(described);
-    pairs
-        .map(|((name, value), described)| {
-            format!("{name} {}{}", digits(*value, 4), spaced(units.inner(described.unit)))
-        })
-        .collect()
-}
-
-/// A unit with a space before it; nothing where there is none.
-fn spaced(unit: Option<SiUnit>) -> String {
-    unit.filter(|unit| unit.symbol != "1").map_or_else(String::new, |unit| format!(" {}", unit.symbol))
 }
 
 /// Why the effect may be there, and what it looks like.

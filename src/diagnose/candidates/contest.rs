@@ -6,7 +6,7 @@ use crate::diagnose::scale::Scale;
 use crate::law::{Catalogue, Effect, Term};
 
 /// Rounds in which the grid of inner parameters is narrowed, a third of the spacing at a time.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 5;
 
 /// Effects whose grid is narrowed and whose errors are taken robustly: those that come nearest to being the best.
 const CONTENDERS: usize = 8;

@@ -73,20 +73,37 @@ pub fn variants(candidates: &[Term], present: &[Term], scale: &Scale) -> Vec<Var
 }
 
 fn with_grid(term: Term, scale: &Scale) -> Vec<Variant> {
-    let Term::Effect(effect) = term else { return vec![Variant { term, spacing: 1.0 }] };
-    let (grids, spacing) = scale.grids(effect);
+    let (grids, spacing) = match term {
+        Term::Effect(effect) => scale.grids(effect),
+        _ => (around(&term.inner_values()), DECADE_ROOT),
+    };
     let mut points = vec![Vec::new()];
     for grid in &grids {
         points = points.iter().flat_map(|point| grid.iter().map(move |value| extended(point, *value))).collect();
     }
-    let with = |point: &Vec<f64>| effect.with_inner(point).ok().filter(|effect| scale.resolves(*effect));
-    points.iter().filter_map(with).map(|effect| Variant { term: Term::Effect(effect), spacing }).collect()
+    let resolved = |term: &Term| term.effect().is_none_or(|effect| scale.resolves(effect));
+    let with = |point: &Vec<f64>| term.with_inner(point).filter(resolved);
+    points.iter().filter_map(with).map(|term| Variant { term, spacing }).collect()
+}
+
+/// Ratio between neighbouring values of what a user's formula leaves open.
+const DECADE_ROOT: f64 = 3.162_277_660_168_379_5;
+
+/// Most points of a grid of what a user's formula leaves open.
+const POINTS: f64 = 170.0;
+
+/// Values up to three decades around each start, fewer where there are several: nobody told their scale but the user.
+fn around(starts: &[f64]) -> Vec<Vec<f64>> {
+    let each = POINTS.powf(1.0 / starts.len() as f64);
+    let reach = (0.5 * (each - 1.0)).clamp(1.0, 6.0) as i32;
+    starts.iter().map(|start| (-reach..=reach).map(|power| start * DECADE_ROOT.powi(power)).collect()).collect()
 }
 
 /// Whether both are the same effect, whatever its inner parameters.
 pub fn same_effect(one: Term, other: Term) -> bool {
     match (one, other) {
         (Term::Effect(one), Term::Effect(other)) => one.id() == other.id(),
+        (Term::Expression(one), Term::Expression(other)) => one.place() == other.place(),
         _ => one == other,
     }
 }
@@ -96,14 +113,15 @@ impl Variant {
     pub fn neighbours(&self) -> Vec<Variant> {
         let spacing = self.spacing.cbrt();
         let mut all = vec![Variant { term: self.term, spacing }];
-        let Term::Effect(effect) = self.term else { return all };
-        let values = effect.inner_values();
-        for (index, parameter) in effect.inner().iter().enumerate() {
+        let values = self.term.inner_values();
+        let ranges =
+            |index: usize| self.term.effect().map_or(InnerRange::Positive, |effect| effect.inner()[index].range);
+        for index in 0..values.len() {
             // the first says where the effect sets in, the others what it is like beyond
             let powers: &[i32] = if index == 0 { &[-2, -1, 1, 2] } else { &[-1, 1] };
             for power in powers {
                 let mut moved = values.clone();
-                match parameter.range {
+                match ranges(index) {
                     // powers are whole numbers
                     InnerRange::Either(..) => continue,
                     // an angle
@@ -112,8 +130,7 @@ impl Variant {
                     }
                     _ => moved[index] *= spacing.powi(*power),
                 }
-                let term = effect.with_inner(&moved).map(Term::Effect);
-                all.extend(term.ok().map(|term| Variant { term, spacing }));
+                all.extend(self.term.with_inner(&moved).map(|term| Variant { term, spacing }));
             }
         }
         all

@@ -187,6 +187,7 @@ pub fn compare_posed(
     posed: Option<&Posed>,
     options: &Options,
 ) -> Comparison {
+    let model = &posed.map_or_else(|| model.clone(), |posed| posed.with_inner(model));
     let terms: Vec<_> = model.terms.iter().map(|entry| entry.term).collect();
     let records: Vec<Record> =
         recordings.iter().map(|(recording, hold)| Record::new(recording, *hold, &terms, &model.expressions)).collect();

@@ -172,7 +172,7 @@ impl Record {
             Term::Inertia if self.is_output => self.column(1, |(.., nodes)| nodes.integrals(&nodes.qd), -1.0),
             Term::Inertia => self.measured_inertia(timing.hold),
             // whatever the timing and the inner parameters, it is the same every time
-            _ if !term.uses_excitation() && term.effect().is_none_or(|effect| effect.inner().is_empty()) => {
+            _ if !term.uses_excitation() && term.inner_values().is_empty() => {
                 let known =
                     self.columns.borrow().iter().find(|(own, _)| *own == term).map(|(_, column)| column.clone());
                 known.unwrap_or_else(|| {

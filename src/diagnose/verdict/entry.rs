@@ -110,10 +110,7 @@ impl Entry {
     pub(super) fn describe(&self, case: &Case, standing: &Standing) -> Candidate {
         let [coefficient, std] = self.coefficient(case, standing);
         let term = self.contender.term;
-        let inner = term.effect().map_or_else(Vec::new, |effect| {
-            let names = effect.inner().iter().map(|parameter| parameter.name.to_string());
-            names.zip(effect.inner_values()).collect()
-        });
+        let inner = term.inner_named(&case.record.expressions);
         Candidate {
             effect: self.name(),
             term,

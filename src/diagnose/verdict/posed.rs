@@ -8,7 +8,7 @@ use super::improve::{Addition, Improvement, add, improve};
 use super::law::Law;
 use super::sharpen::sharpened;
 use super::timing::Clock;
-use crate::diagnose::candidates::contender;
+use crate::diagnose::candidates::{contender, same_effect};
 use crate::diagnose::judge::{COUNT, changes, delay_of};
 use crate::identify::Recording;
 use crate::law::{Effect, Given, Hold, Inner, Model, ModelTerm, Term};
@@ -38,7 +38,8 @@ impl Posed {
         let is_open = |entry: &&ModelTerm| entry.open.contains(&true);
         let (open, settled): (Vec<&ModelTerm>, Vec<&ModelTerm>) = model.terms.iter().partition(is_open);
         let settled = settled.into_iter().map(|entry| entry.term).collect();
-        let terms = open.into_iter().try_fold(settled, |terms, entry| with_open(&case, terms, entry.term))?;
+        let terms = open.iter().try_fold(settled, |terms, entry| with_open(&case, terms, entry.term))?;
+        let terms = if open.len() > 1 { beside_each_other(&case, terms, open.len())? } else { terms };
         let maybe: Vec<Term> =
             model.terms.iter().filter(|entry| entry.given == Given::Maybe).map(|entry| entry.term).collect();
         let terms = without_idle(&case, terms, &maybe)?;
@@ -101,6 +102,16 @@ impl Posed {
         Clock::of(&self.case, law, &self.wandering)
     }
 
+    /// The model with the inner parameters that the judge found for those it left open; "maybe" terms that explain nothing stay in it.
+    pub fn with_inner(&self, model: &Model) -> Model {
+        let found = |entry: &ModelTerm| self.terms.iter().find(|term| same_effect(**term, entry.term)).copied();
+        let with = |entry: &ModelTerm| match found(entry).filter(|_| entry.open.contains(&true)) {
+            Some(term) => ModelTerm { term, open: vec![false; entry.open.len()], ..entry.clone() },
+            None => entry.clone(),
+        };
+        Model { terms: model.terms.iter().map(with).collect(), ..model.clone() }
+    }
+
     /// The law's terms: the model's, its open inner parameters fitted, without "maybe" terms that explain nothing.
     pub fn terms(&self) -> &[Term] {
         &self.terms
@@ -123,6 +134,16 @@ fn with_open(case: &Case, terms: Vec<Term>, term: Term) -> Option<Vec<Term>> {
         contender(&case.record, &case.folds, &before.equation, &before.held, term).map_or(term, |found| found.term)
     };
     Some(terms.into_iter().chain([fitted]).collect())
+}
+
+/// The law whose last terms, `count` of them, have the inner parameters that suit them beside the others: each was fitted before those that
+/// came after it.
+fn beside_each_other(case: &Case, mut terms: Vec<Term>, count: usize) -> Option<Vec<Term>> {
+    for _ in 0..count {
+        let first = terms.remove(terms.len() - count);
+        terms = with_open(case, terms, first)?;
+    }
+    Some(terms)
 }
 
 /// The law without "maybe" terms that lower no error.
