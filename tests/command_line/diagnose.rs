@@ -175,6 +175,24 @@ fn what_all_stages_lack_is_named_beside_a_switch() {
 }
 
 #[test]
+fn recordings_made_in_different_stages_are_diagnosed_together() {
+    let bench = Bench::new("stages_apart");
+    let softer = |stiffness: f64| format!("[[stage]]\nstart = 10.0\ncoefficients = [1.0, 0.6, {stiffness}, 0.0]\n");
+    simulate(&bench, "a", 72, 2e-3, "coulomb_friction = 0.8", &softer(28.0));
+    simulate(&bench, "b", 73, 2e-3, "coulomb_friction = 0.8", &softer(28.0));
+    let stages = |data: &[&str]| diagnose(&bench, data)["stages"].as_array().unwrap().len();
+    let apart = diagnose(&bench, &["a.csv@0:9.9", "b.csv@12:30"]);
+    assert_eq!(apart["stages"].as_array().unwrap().len(), 2, "{apart:#}");
+    for stage in apart["stages"].as_array().unwrap() {
+        assert_eq!(stage["effect"], "coulomb_friction", "{stage}");
+    }
+    assert_eq!(stages(&["a.csv@0:9.9", "b.csv@0:9.9"]), 0, "one stage in two recordings is one law");
+    let found = diagnose(&bench, &["a.csv"]);
+    let border = found["stages"][1]["start"].as_f64().unwrap();
+    assert!((border - 10.0).abs() < 0.1, "{border}");
+}
+
+#[test]
 fn add_and_improve_write_models_that_are_at_the_noise() {
     let bench = Bench::new("add");
     simulate(&bench, "a", 71, 2e-3, "coulomb_friction = 0.8", "");

@@ -41,6 +41,16 @@ pub(in crate::diagnose) fn changes(record: &Record, equation: &Equation) -> Vec<
     cuts.into_iter().map(|cut| 0.5 * (centres[cut - 1] + centres[cut])).collect()
 }
 
+/// The instant, on the same axis, at which two laws in place of one leave least, however little that takes. None where the record is too
+/// short for two.
+pub(in crate::diagnose) fn best_change(record: &Record, equation: &Equation) -> Option<f64> {
+    let windows = &record.windows[PRINCIPAL];
+    let centres = &windows.centres;
+    let sums = Sums::of(&equation.columns(PRINCIPAL), &equation.right[PRINCIPAL], centres);
+    let (at, _) = sums.best(0, centres.len(), &|from, to| centres[to - 1] - centres[from] >= LEAST * record.period)?;
+    Some(0.5 * (centres[at - 1] + centres[at]))
+}
+
 impl Sums {
     fn of(columns: &[&[f64]], right: &[f64], centres: &[f64]) -> Sums {
         let p = columns.len();
@@ -85,10 +95,14 @@ impl Sums {
     /// The first window behind the best cut between `from` and `to`; none where no cut that may be takes enough.
     fn cut(&self, from: usize, to: usize, is_long: &impl Fn(usize, usize) -> bool) -> Option<usize> {
         let whole = self.left(from, to)?;
+        self.best(from, to, is_long).filter(|(_, least)| *least < LEFT * whole).map(|(at, _)| at)
+    }
+
+    /// The first window behind the best cut of all that may be, and what two laws leave there.
+    fn best(&self, from: usize, to: usize, is_long: &impl Fn(usize, usize) -> bool) -> Option<(usize, f64)> {
         let parts = (from + 1..to).filter(|at| is_long(from, *at) && is_long(*at, to));
         let left = parts.filter_map(|at| Some((at, self.left(from, at)? + self.left(at, to)?)));
-        let (at, least) = left.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        (least < LEFT * whole).then_some(at)
+        left.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// The windows from `from` to `to` under one law, several or a drifting one.

@@ -18,7 +18,7 @@ mod regression;
 mod significance;
 mod windows;
 
-pub(super) use change::changes;
+pub(super) use change::{best_change, changes};
 pub(super) use drift::{Drift, drift};
 pub use equation::Target;
 pub(super) use equation::{Equation, delay_of};

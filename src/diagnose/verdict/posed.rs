@@ -9,7 +9,7 @@ use super::law::Law;
 use super::sharpen::sharpened;
 use super::timing::Clock;
 use crate::diagnose::candidates::{contender, same_effect};
-use crate::diagnose::judge::{COUNT, changes, delay_of};
+use crate::diagnose::judge::{COUNT, best_change, changes, delay_of};
 use crate::identify::Recording;
 use crate::law::{Effect, Given, Hold, Inner, Model, ModelTerm, Term};
 use std::cell::OnceCell;
@@ -90,6 +90,11 @@ impl Posed {
     /// Instants at which the recordings may have changed their law, in seconds of recorded time, gaps left out.
     pub(super) fn changes(&self) -> Vec<f64> {
         self.case.stand(&self.terms).map_or_else(Vec::new, |standing| changes(&self.case.record, &standing.equation))
+    }
+
+    /// The instant, on the same axis, at which these terms under two laws in place of one leave least.
+    pub(super) fn change_of(&self, terms: &[Term]) -> Option<f64> {
+        best_change(&self.case.record, &self.case.stand(terms)?.equation)
     }
 
     /// A law with the numbers of largest likelihood, where they leave no more than the judge's own.

@@ -8,9 +8,10 @@ use super::diagnosis::{Diagnosis, Finding};
 use super::errors::WindowError;
 use super::posed::Posed;
 use super::timing::Clock;
+use crate::diagnose::candidates::same_effect;
 use crate::diagnose::judge::COUNT;
 use crate::identify::Recording;
-use crate::law::{Hold, Model};
+use crate::law::{Hold, Model, Term};
 use std::ops::Range;
 
 /// Part of the energy beyond the sensors' that two laws leave at most, in every window, where two stages have laws of their own.
@@ -56,11 +57,14 @@ pub fn diagnose_stages(model: &Model, recordings: &[&Recording], hold: Option<Ho
     let courses =
         recordings.iter().enumerate().map(|(index, recording)| Course { model, recording, index, hold, known });
     let courses: Vec<(Course, Vec<usize>)> = courses.map(|course| (course, course.cuts())).collect();
-    if courses.iter().all(|(_, cuts)| cuts.is_empty()) {
+    if recordings.len() == 1 && courses.iter().all(|(_, cuts)| cuts.is_empty()) {
         return one(whole);
     }
     let stages: Vec<StageDiagnosis> = courses.iter().flat_map(|(course, cuts)| course.stages(cuts)).collect();
-    if stages.len() == recordings.len() { one(whole) } else { Switched { whole, stages, clock } }
+    // recordings of one system may each have been made in another stage
+    let alike = stages.len() == recordings.len()
+        && whole.as_ref().is_some_and(|whole| left(&stages.iter().collect::<Vec<_>>(), whole) >= APART);
+    if alike || stages.len() < 2 { one(whole) } else { Switched { whole, stages, clock } }
 }
 
 impl Switched {
@@ -117,17 +121,44 @@ impl Course<'_> {
         let mut joined: Vec<Option<StageDiagnosis>> = edges.windows(3).map(join).collect();
         loop {
             let borders = joined.iter().enumerate();
+            let whole = |one: &Option<StageDiagnosis>| one.as_ref()?.diagnosis.clone();
             let weights =
-                borders.filter_map(|(at, one)| Some((at, left(&stages[at], &stages[at + 1], one.as_ref()?)?)));
+                borders.filter_map(|(at, one)| Some((at, left(&[&stages[at], &stages[at + 1]], &whole(one)?))));
             let weakest = weights.max_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((at, _)) = weakest.filter(|(_, left)| *left >= APART) else { return stages };
-            let Some(one) = joined.remove(at) else { return stages };
+            let Some((at, _)) = weakest.filter(|(_, left)| *left >= APART) else { break };
+            let Some(one) = joined.remove(at) else { break };
             stages.splice(at..at + 2, [one]);
             edges.remove(at + 1);
             for border in at.saturating_sub(1)..(at + 1).min(joined.len()) {
                 joined[border] = join(&edges[border..]);
             }
         }
+        self.sharpened(edges, stages)
+    }
+
+    /// The stages with borders where the laws with the effects that they lack tell them: without those an effect's share blurs the instant.
+    fn sharpened(&self, mut edges: Vec<usize>, mut stages: Vec<StageDiagnosis>) -> Vec<StageDiagnosis> {
+        for at in 1..stages.len() {
+            let Some(edge) = self.border(edges[at - 1]..edges[at + 1], &stages[at - 1..=at]) else { continue };
+            let parts = [edges[at - 1]..edge, edge..edges[at + 1]].map(|range| self.alone(range));
+            if let (true, [Some(before), Some(after)]) = (edge != edges[at], parts) {
+                edges[at] = edge;
+                stages.splice(at - 1..=at, [before, after]);
+            }
+        }
+        stages
+    }
+
+    /// The first sample of the second of two stages, by a law with what either lacks.
+    fn border(&self, range: Range<usize>, stages: &[StageDiagnosis]) -> Option<usize> {
+        let laws = stages.iter().filter_map(|stage| stage.diagnosis.as_ref()?.improved.as_ref());
+        let lacking: Vec<Term> = laws.filter_map(|law| law.terms.last().copied()).collect();
+        let samples = self.recording.section(range.clone()).ok()?;
+        let posed = Posed::new(self.model, &[&samples], self.hold)?;
+        let terms = lacking.into_iter().fold(posed.terms().to_vec(), |terms, term| {
+            if terms.iter().any(|own| same_effect(*own, term)) { terms } else { [terms, vec![term]].concat() }
+        });
+        Some(range.start + position(&samples, posed.change_of(&terms)?))
     }
 
     /// A part of it, diagnosed.
@@ -155,19 +186,20 @@ fn position(recording: &Recording, elapsed: f64) -> usize {
     recording.count()
 }
 
-/// Energy that the laws of two stages leave beyond the sensors', as a part of what one law leaves of both, in the window in which it is
-/// most. A stage too short for a law of its own leaves what the one law does. None where no one law is determined; all where it is adequate.
-fn left(first: &StageDiagnosis, second: &StageDiagnosis, both: &StageDiagnosis) -> Option<f64> {
-    let one = both.diagnosis.as_ref()?.errors;
+/// Energy that the laws of stages leave beyond the sensors', as a part of what one law leaves of all, in the window in which it is
+/// most. A stage too short for a law of its own leaves what the one law does. All where that is adequate.
+fn left(stages: &[&StageDiagnosis], one: &Diagnosis) -> f64 {
+    let one = one.errors;
+    let length = |stage: &StageDiagnosis| stage.end - stage.start;
     let ratio = |which: usize| {
-        let energy = |stage: &StageDiagnosis| {
+        let energy = |stage: &&StageDiagnosis| {
             let own = stage.diagnosis.as_ref().map(|own| own.errors[which]);
             let own = own.filter(|error: &WindowError| error.after.is_finite()).unwrap_or(one[which]);
-            (stage.end - stage.start) * own.beyond()
+            length(stage) * own.beyond()
         };
-        let duration = first.end - first.start + second.end - second.start;
-        (energy(first) + energy(second)) / duration / one[which].beyond()
+        let duration: f64 = stages.iter().map(|stage| length(stage)).sum();
+        stages.iter().map(energy).sum::<f64>() / duration / one[which].beyond()
     };
     let telling = (0..COUNT).filter(|which| one[*which].after > one[*which].limit);
-    Some(telling.map(ratio).max_by(f64::total_cmp).unwrap_or(1.0))
+    telling.map(ratio).max_by(f64::total_cmp).unwrap_or(1.0)
 }
