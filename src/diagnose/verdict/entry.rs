@@ -1,7 +1,7 @@
 //! A candidate beside a law, with what decides about it.
 
 use super::case::{Case, Standing};
-use super::doubt::{Doubt, SURE, WORTH, doubt_of_gain, may_be};
+use super::doubt::{Doubt, SURE, WORTH, doubt_of_gain, is_down, may_be};
 use super::errors::{WindowError, errors};
 use super::untold::drives;
 use crate::diagnose::candidates::{Contender, TRAP};
@@ -75,7 +75,8 @@ impl Entry {
         if !self.contender.allows(coefficient) || drives(case, standing, self.contender.term, [coefficient, std]) {
             return Some(Doubt::Sign);
         }
-        if self.contender.resemblance >= TRAP {
+        // what leaves no more than the sensors is told from the law's terms by that
+        if self.contender.resemblance >= TRAP && !is_down(&self.contender.held, &standing.floor) {
             return Some(Doubt::Trap);
         }
         let is_sure = coefficient.abs() > SURE * std;
