@@ -18,10 +18,10 @@ const NOISELESS: f64 = 1e-6;
 
 /// Samples of a recording that are judged, from twice as many on: its windows are then thousands, and what a law lacks by less than
 /// they see is below any sensor's calibration.
-const ENOUGH: usize = 200_000;
+pub(super) const ENOUGH: usize = 200_000;
 
 /// Parts that are taken of a longer recording.
-const PARTS: usize = 8;
+pub(super) const PARTS: usize = 8;
 
 /// The model, and the hold if the user names one.
 #[derive(Args)]

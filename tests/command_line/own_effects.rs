@@ -47,7 +47,7 @@ fn what_a_stream_cannot_know_of_a_formula_is_refused_by_name() {
     let bench = Bench::new("own_refused");
     bench.write("record.csv", &super::bench::plain("t,q,qd,F", 400));
     for (inner, formula, words) in [
-        ("", "abs(qd/v)*qd", ["\"tip_drag\": v is not given", "tip_drag = { coefficient"]),
+        ("", "q*sin(v*t)", ["\"tip_drag\": v is not given", "tip_drag = { coefficient"]),
         (", v = 1", "q*sin(v*t)", ["\"tip_drag\" depends on the time t", "simulate take it"]),
     ] {
         let terms = format!("[terms]\ninertia = \"fit\"\nq = \"fit\"\ntip_drag = {{ coefficient = \"fit\"{inner} }}\n");
@@ -98,6 +98,13 @@ fn what_a_models_own_terms_leave_open_is_fitted_from_a_free_start() {
         let stiffness = found["best"]["coefficients"]["q"].as_f64().unwrap();
         assert!((stiffness / 20.0 - 1.0).abs() < 0.01, "{name}: {stiffness}");
         let lacking = bench.json(&["diagnose", "record.csv", "--model", "model.toml", "--json"]);
+        let found = bench.json(&["identify", "record.csv", "--model", "model.toml", "--json"]);
+        let value = found["inner"][format!("{inner} of {name}")].as_f64().unwrap();
+        let [stiffness, std] = ["coefficients", "std"].map(|key| found["stages"][0][key]["q"].as_f64().unwrap());
+        assert!(
+            (value / truth - 1.0).abs() < 0.02 && (stiffness - 20.0).abs() < 0.5 + 4.0 * std,
+            "{name}: {value}, {stiffness}"
+        );
         assert_eq!(lacking["verdict"], "adequate", "{name}: {}", lacking["effect"]);
     }
 }

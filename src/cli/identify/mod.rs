@@ -8,7 +8,7 @@ use super::columns::ColumnArguments;
 use super::course::Course;
 use super::error::CommandError;
 use super::figures;
-use super::input::is_noiseless;
+use super::input::{ENOUGH, PARTS, is_noiseless};
 use super::looked;
 use super::output::{self, Target, Targets};
 use super::pictures::PictureArguments;
@@ -17,10 +17,11 @@ use super::stage_limit::{force_limits, stage_limits};
 use super::trace::Trace;
 use super::words::seconds;
 use crate::data::{self, DataError};
+use crate::diagnose::Posed;
 #[cfg(feature = "pictures")]
 use crate::identify::Coefficient;
 use crate::identify::{self, BuildError, Gap, Identification, Method, Recording, Settings};
-use crate::law::{Hold, Model};
+use crate::law::{Hold, Model, ModelTerm};
 #[cfg(feature = "pictures")]
 use crate::law::{Term, unit_of};
 use clap::Args;
@@ -156,6 +157,7 @@ fn run_over(arguments: &Arguments, trace: Option<Target>) -> Result<(Run, Course
     let mut model = data::open_model(&arguments.model)?;
     arguments.columns.apply(&mut model)?;
     let opened = data::open_recording(&arguments.data, &model)?;
+    let (model, inner) = Waiting::on("fitting inner parameters", || with_inner(arguments, model, &opened.recording));
     let (settings, hold_from) = settings(arguments, &model, &opened.recording)?;
     let mut course = Course::new(opened.recording.count());
     let found = identify(arguments, &model, settings, &opened.recording, trace.as_ref(), &mut course)?;
@@ -165,7 +167,31 @@ fn run_over(arguments: &Arguments, trace: Option<Target>) -> Result<(Run, Course
     });
     let gives_force = model.is_force_law();
     let file = arguments.model.display().to_string();
-    Ok((Run { opened, file, settings, hold_from, gives_force, found, limits }, course))
+    Ok((Run { opened, file, settings, hold_from, gives_force, inner, found, limits }, course))
+}
+
+/// The model with numbers for the inner parameters that it leaves open, which a stream cannot estimate: those that suit the recording as a
+/// whole best, and their names and values.
+fn with_inner(arguments: &Arguments, model: Model, recording: &Recording) -> (Model, Vec<(String, f64)>) {
+    let is_open = |entry: &ModelTerm| entry.open.contains(&true);
+    let closed = |entry: &ModelTerm| ModelTerm { open: vec![false; entry.open.len()], ..entry.clone() };
+    let given = Model { terms: model.terms.iter().map(closed).collect(), ..model.clone() };
+    if !model.terms.iter().any(is_open) || given.check_streaming().is_err() {
+        return (model, Vec::new());
+    }
+    let hold = arguments.hold.as_deref().and_then(Hold::from_id);
+    let parts = recording.spread(ENOUGH, PARTS);
+    let Some(posed) = Posed::new(&model.freed(), &[parts.as_ref().unwrap_or(recording)], hold) else {
+        return (model, Vec::new());
+    };
+    let fitted = posed.with_inner(&model);
+    let open = fitted.terms.iter().zip(&model.terms).filter(|(_, before)| is_open(before));
+    let named = open.flat_map(|(entry, _)| {
+        let inner = entry.term.inner_named(&model.expressions).into_iter();
+        inner.map(|(name, value)| (format!("{name} of {}", entry.key), value))
+    });
+    let named = named.collect();
+    (fitted, named)
 }
 
 fn identify(

@@ -19,6 +19,8 @@ pub(super) struct Report {
     noise: Pairs,
     sensors: Vec<SensorReport>,
     hold: &'static str,
+    /// Inner parameters that the model left open, fitted to the recording as a whole.
+    inner: Pairs,
     gaps: Vec<[f64; 2]>,
     skipped: usize,
 }
@@ -109,6 +111,7 @@ impl Report {
             noise: Pairs(noise(found)),
             sensors: found.sensors.iter().map(SensorReport::of).collect(),
             hold: settings.hold.id(),
+            inner: Pairs(run.inner.clone()),
             gaps: opened.recording.gaps().into_iter().map(|gap| [gap.start, gap.end]).collect(),
             skipped: found.skipped.len(),
         }

@@ -2,7 +2,7 @@
 
 use super::found::{Run, noise, stages};
 use crate::cli::stage_limit::StageLimit;
-use crate::cli::words::{self, percent, quantity, quoted, seconds};
+use crate::cli::words::{self, digits, percent, quantity, quoted, seconds};
 use crate::data::Section;
 use crate::identify::{Coefficient, Missing, Stage};
 use crate::law::{Term, Units, unit_of};
@@ -89,6 +89,9 @@ fn head(run: &Run) -> String {
     let mut text = format!("{source}: {count} samples from {first} s to {last} s\n");
     for column in &run.opened.columns {
         let _ = writeln!(text, "  {column}");
+    }
+    for (name, value) in &run.inner {
+        let _ = writeln!(text, "{name}: {}, fitted to the recording as a whole", digits(*value, 4));
     }
     text += &match run.gives_force {
         true => "F is the output: F = law(q, q̇)\n".into(),

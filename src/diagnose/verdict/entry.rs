@@ -7,6 +7,7 @@ use super::untold::drives;
 use crate::diagnose::candidates::{Contender, TRAP};
 use crate::diagnose::judge::{COUNT, PRINCIPAL, delay_of};
 use crate::law::{Catalogue, Term};
+use std::f64::consts::FRAC_1_SQRT_2;
 
 /// A candidate beside the law.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,8 +76,7 @@ impl Entry {
         if !self.contender.allows(coefficient) || drives(case, standing, self.contender.term, [coefficient, std]) {
             return Some(Doubt::Sign);
         }
-        // what leaves no more than the sensors is told from the law's terms by that
-        if self.contender.resemblance >= TRAP && !is_down(&self.contender.held, &standing.floor) {
+        if self.contender.resemblance >= TRAP {
             return Some(Doubt::Trap);
         }
         let is_sure = coefficient.abs() > SURE * std;
@@ -86,6 +86,14 @@ impl Entry {
     /// Whether it may be what is there though the law's own terms nearly are it: not where it holds the target, for then it is that.
     pub(super) fn may_be(&self, case: &Case) -> bool {
         may_be(case, self.contender.term, self.doubt)
+    }
+
+    /// Whether it takes half of the error's energy and leaves what the sensors would: so much tells it from the law's own terms, however near
+    /// they are.
+    pub(super) fn explains_all(&self, floor: &[f64; COUNT]) -> bool {
+        let (before, after) = (&self.contender.before, &self.contender.held);
+        let told = after.ratios(before).len() as f64;
+        after.score(before) <= told * FRAC_1_SQRT_2.ln() && is_down(after, floor)
     }
 
     /// Its effect id, or the name of a user's expression.
