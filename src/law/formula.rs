@@ -100,7 +100,7 @@ pub enum FormulaError {
     },
     /// Parentheses, powers or operands nested too deep, or too many parameters.
     #[error(
-        "at position {position}: the formula is too large: at most 8 parameters, 24 open operands, 60 levels of nesting"
+        "at position {position}: the formula is too large: at most 6 parameters, 24 open operands, 60 levels of nesting"
     )]
     TooLarge {
         /// Where.

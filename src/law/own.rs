@@ -10,7 +10,9 @@ pub struct Own {
     place: u8,
     uses_excitation: bool,
     name: Name,
-    inner: [Option<Inner>; Own::MAX_INNER],
+    /// How many of `inner` it has.
+    count: u8,
+    inner: [Inner; Own::MAX_INNER],
 }
 
 /// A short text that a term can hold.
@@ -21,19 +23,21 @@ impl Own {
     pub const LONGEST: usize = 30;
 
     /// The most inner parameters: more than a record determines beside the coefficients.
-    pub const MAX_INNER: usize = 8;
+    pub const MAX_INNER: usize = 6;
 
     /// The expression at that place, from 0, with these inner parameters; of a longer name the first [`Own::LONGEST`] letters.
     pub fn new(place: usize, name: &str, uses_excitation: bool, inner: &[f64]) -> Own {
         let place = place.min(usize::from(u8::MAX)) as u8;
-        let mut own = Own { place, uses_excitation, name: ArrayString::new(), inner: [None; Own::MAX_INNER] };
+        let none = [Inner::new(0.0); Own::MAX_INNER];
+        let mut own = Own { place, uses_excitation, name: ArrayString::new(), count: 0, inner: none };
         name.chars().take_while(|letter| own.name.try_push(*letter).is_ok()).for_each(drop);
         own.with_inner(inner)
     }
 
     /// The same with these inner parameters.
     pub fn with_inner(mut self, inner: &[f64]) -> Own {
-        self.inner = std::array::from_fn(|index| inner.get(index).copied().map(Inner::new));
+        self.count = inner.len().min(Own::MAX_INNER) as u8;
+        self.inner = std::array::from_fn(|index| Inner::new(inner.get(index).copied().unwrap_or_default()));
         self
     }
 
@@ -54,6 +58,6 @@ impl Own {
 
     /// Values of its inner parameters, in the order in which the formula has them.
     pub fn inner(&self) -> ArrayVec<f64, { Own::MAX_INNER }> {
-        self.inner.iter().map_while(|inner| inner.map(Inner::value)).collect()
+        self.inner[..usize::from(self.count)].iter().map(|inner| inner.value()).collect()
     }
 }

@@ -30,7 +30,7 @@ pub fn sanitize(arguments: &[String]) -> Result<(), Error> {
     }
     let program = ["rustc", "--quiet", "--profile", "tried", "--package", "switchid-measure", "--bin", "fuzz", "--"];
     // the libraries find the sanitizer's functions in the program that loads them
-    run(&mut sanitized(&program).args(["-C", "link-arg=-Wl,--export-dynamic"]), CARGO)?;
+    run(sanitized(&program).args(["-C", "link-arg=-Wl,--export-dynamic"]), CARGO)?;
     let built = directory().join(TARGET).join("tried");
     let mut fuzz = Command::new(built.join("fuzz"));
     fuzz.arg("--libraries").arg(&built).args(arguments).current_dir(root());
