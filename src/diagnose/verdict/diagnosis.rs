@@ -92,11 +92,6 @@ fn entries(case: &Case, standing: &Standing, terms: &[Term]) -> (Vec<Entry>, usi
         entries.sort_by(|a, b| a.contender.score.total_cmp(&b.contender.score));
         weigh(case, standing, &mut entries);
     }
-    // where nothing else can be named
-    if entries.iter().all(|entry| entry.doubt.is_some()) {
-        let trapped = entries.iter_mut().find(|entry| entry.doubt == Some(Doubt::Trap));
-        trapped.filter(|entry| entry.explains_all(&standing.floor)).into_iter().for_each(|entry| entry.doubt = None);
-    }
     (entries, tried)
 }
 

@@ -62,11 +62,6 @@ pub(super) fn is_large(before: &HeldOut, after: &HeldOut, floor: &[f64; COUNT]) 
     ratios.len() >= told.min(2) && !ratios.is_empty() && ratios.iter().all(|ratio| *ratio <= LARGE)
 }
 
-/// Whether a law leaves what its sensors would, in every window.
-pub(super) fn is_down(held: &HeldOut, floor: &[f64; COUNT]) -> bool {
-    held.errors.iter().zip(floor).all(|(error, floor)| error.is_nan() || *error <= ADEQUATE * floor)
-}
-
 /// Whether a candidate may be what is there, as far as only chance or the law's own terms speak against it. One that holds the target and that
 /// the law nearly is, is the target.
 pub(super) fn may_be(case: &Case, term: Term, doubt: Option<Doubt>) -> bool {

@@ -1,13 +1,12 @@
 //! A candidate beside a law, with what decides about it.
 
 use super::case::{Case, Standing};
-use super::doubt::{Doubt, SURE, WORTH, doubt_of_gain, is_down, may_be};
+use super::doubt::{Doubt, SURE, WORTH, doubt_of_gain, may_be};
 use super::errors::{WindowError, errors};
 use super::untold::drives;
 use crate::diagnose::candidates::{Contender, TRAP};
 use crate::diagnose::judge::{COUNT, PRINCIPAL, delay_of};
 use crate::law::{Catalogue, Term};
-use std::f64::consts::FRAC_1_SQRT_2;
 
 /// A candidate beside the law.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,14 +85,6 @@ impl Entry {
     /// Whether it may be what is there though the law's own terms nearly are it: not where it holds the target, for then it is that.
     pub(super) fn may_be(&self, case: &Case) -> bool {
         may_be(case, self.contender.term, self.doubt)
-    }
-
-    /// Whether it takes half of the error's energy and leaves what the sensors would: so much tells it from the law's own terms, however near
-    /// they are.
-    pub(super) fn explains_all(&self, floor: &[f64; COUNT]) -> bool {
-        let (before, after) = (&self.contender.before, &self.contender.held);
-        let told = after.ratios(before).len() as f64;
-        after.score(before) <= told * FRAC_1_SQRT_2.ln() && is_down(after, floor)
     }
 
     /// Its effect id, or the name of a user's expression.
