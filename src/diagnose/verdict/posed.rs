@@ -87,9 +87,9 @@ impl Posed {
         self.case.errors_as_given(law)
     }
 
-    /// Instants at which the recordings may have changed their law, in seconds of recorded time, gaps left out.
-    pub(super) fn changes(&self) -> Vec<f64> {
-        self.case.stand(&self.terms).map_or_else(Vec::new, |standing| changes(&self.case.record, &standing.equation))
+    /// Instants at which the recordings may have changed a law of these terms, in seconds of recorded time, gaps left out.
+    pub(super) fn changes(&self, terms: &[Term]) -> Vec<f64> {
+        self.case.stand(terms).map_or_else(Vec::new, |standing| changes(&self.case.record, &standing.equation))
     }
 
     /// The instant, on the same axis, at which these terms under two laws in place of one leave least.

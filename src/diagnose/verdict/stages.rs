@@ -102,10 +102,14 @@ struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// The first samples after its law may have changed.
+    /// The first samples after its law may have changed: by the model, or where that shows none by the law with what one law lacks, for
+    /// what is lacking may be larger than the change.
     fn cuts(&self) -> Vec<usize> {
-        let changes = Posed::new(self.model, &[self.recording], self.hold).map(|posed| posed.changes());
-        changes.unwrap_or_default().into_iter().map(|elapsed| position(self.recording, elapsed)).collect()
+        let Some(posed) = Posed::new(self.model, &[self.recording], self.hold) else { return Vec::new() };
+        let with_effect = || self.known.and_then(|known| known.improved.as_ref()).map(|law| posed.changes(&law.terms));
+        let own = posed.changes(posed.terms());
+        let changes = if own.is_empty() { with_effect().unwrap_or_default() } else { own };
+        changes.into_iter().map(|elapsed| position(self.recording, elapsed)).collect()
     }
 
     /// Its stages between those cuts that two laws explain much better than one; the weakest cut goes first.
