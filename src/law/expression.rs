@@ -3,8 +3,8 @@
 //! Functions: abs, sign (signum), sqrt, exp, ln (log), sin, cos, tan, atan, sinh, cosh, tanh, min(a, b), max(a, b); the constant pi; every
 //! other name is an inner parameter. A power of a negative base needs a whole exponent: `abs(qd)^0.5`.
 
+use super::Own;
 use super::formula::{Binary, FormulaError, Instruction, STACK, Unary, VARIABLES, parse};
-use super::{Own, Term};
 use serde::{Deserialize, Serialize};
 
 /// A named formula with values of its inner parameters.
@@ -34,11 +34,6 @@ impl Expression {
     /// The user's name for it.
     pub fn name(&self) -> &str {
         &self.name
-    }
-
-    /// The term that stands for it among a law's expressions, at that place.
-    pub fn term(&self, place: usize) -> Term {
-        Term::Expression(Own::new(place, &self.name, self.uses("F"), &self.values))
     }
 
     /// The formula as written.

@@ -12,6 +12,7 @@ mod dynamics;
 mod effect;
 mod expression;
 mod formula;
+mod formulated;
 mod history;
 mod hold;
 mod hysteresis_loop;

@@ -1,7 +1,7 @@
 //! One term of a law: the inertia, a product of powers, or a named effect.
 
+use super::Own;
 use super::effect::Effect;
-use super::{Expression, Own, State};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -160,28 +160,6 @@ impl Term {
         }
     }
 
-    /// The same of a law whose [`Term::Expression`]s count `own`; NaN for one that depends on time.
-    #[inline]
-    pub fn force_of(self, own: &[Expression], State { q, qd }: State, excitation: f64) -> f64 {
-        match self {
-            Term::Expression(named) => {
-                own.get(named.place()).map_or(f64::NAN, |own| own.value_of(&named, q, qd, excitation, f64::NAN))
-            }
-            _ => self.force(q, qd, excitation),
-        }
-    }
-
-    /// (∂/∂q, ∂/∂q̇) of [`Term::force_of`].
-    #[inline]
-    pub fn gradient_of(self, own: &[Expression], State { q, qd }: State, excitation: f64) -> (f64, f64) {
-        match self {
-            Term::Expression(named) => {
-                own.get(named.place()).map_or((f64::NAN, f64::NAN), |own| own.gradient_of(&named, q, qd, excitation))
-            }
-            _ => self.gradient(q, qd, excitation),
-        }
-    }
-
     /// (∂/∂q, ∂/∂q̇) of [`Term::force`].
     #[inline]
     pub fn gradient(self, q: f64, qd: f64, excitation: f64) -> (f64, f64) {
@@ -240,16 +218,6 @@ impl Term {
             Term::Expression(own) => own.inner().to_vec(),
             _ => Vec::new(),
         }
-    }
-
-    /// The same with their names, of a law whose [`Term::Expression`]s count `own`.
-    pub fn inner_named(self, own: &[Expression]) -> Vec<(String, f64)> {
-        let names: Vec<String> = match self {
-            Term::Effect(effect) => effect.inner().iter().map(|parameter| parameter.name.into()).collect(),
-            Term::Expression(named) => own.get(named.place()).map_or_else(Vec::new, |own| own.parameters().to_vec()),
-            _ => Vec::new(),
-        };
-        names.into_iter().zip(self.inner_values()).collect()
     }
 
     /// The same term with these inner parameters; none where they are not allowed.
