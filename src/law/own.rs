@@ -58,6 +58,6 @@ impl Own {
 
     /// Values of its inner parameters, in the order in which the formula has them.
     pub fn inner(&self) -> ArrayVec<f64, { Own::MAX_INNER }> {
-        self.inner[..usize::from(self.count)].iter().map(|inner| inner.value()).collect()
+        self.inner.iter().take(usize::from(self.count)).map(|inner| inner.value()).collect()
     }
 }

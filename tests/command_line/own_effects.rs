@@ -43,6 +43,27 @@ fn a_formula_is_identified_and_a_switch_beside_it_seen() {
 }
 
 #[test]
+fn a_law_that_gives_f_may_have_a_formula() {
+    let bench = Bench::new("own_force_law");
+    bench.write(
+        "plant.toml",
+        "terms = [\"qd\", \"q\"]\nduration = 20.0\nnoise = { q = 1e-5, qd = 1e-4, F = 0.5 }\n\
+         excitation = { kind = \"multisine\", from = 1.0, to = 20.0, count = 10, rms = 0.01, sample_time = 1e-3 }\n\
+         [hidden]\nstop = { coefficient = 8.0, w = 0.01, expression = \"sinh(q/w)\" }\n\
+         [[stage]]\nstart = 0.0\ncoefficients = [300.0, 2000.0]\n",
+    );
+    bench.json(&["simulate", "plant.toml", "-o", "record.csv", "--json"]);
+    let terms = "[terms]\nqd = \"fit\"\nq = \"fit\"\nstop = { coefficient = \"fit\", w = 0.01 }\n";
+    bench.write("model.toml", &format!("{terms}[effects.stop]\nexpression = \"sinh(q/w)\"\n"));
+    let found = bench.json(&["identify", "record.csv", "--model", "model.toml", "--json"]);
+    let stage = &found["stages"][0];
+    for (term, truth) in [("qd", 300.0), ("q", 2000.0), ("stop", 8.0)] {
+        let [value, std] = ["coefficients", "std"].map(|key| stage[key][term].as_f64().unwrap());
+        assert!((value - truth).abs() < 4.0 * std && std < 0.05 * truth, "{term}: {value} ± {std}");
+    }
+}
+
+#[test]
 fn what_a_stream_cannot_know_of_a_formula_is_refused_by_name() {
     let bench = Bench::new("own_refused");
     bench.write("record.csv", &super::bench::plain("t,q,qd,F", 400));

@@ -13,10 +13,15 @@ use switchid_fmu_slave::linked_functions;
 
 /// Duffing with four terms at 1 kHz, noise of 1 %.
 fn after(seconds: f64) -> (Subject, Instance, Vec<Reading>) {
-    let fmu = identifier("SwitchedIdentifier", &Model::cubic_library()).unwrap();
+    after_with(&Model::cubic_library(), "qdd qd q q^3", seconds)
+}
+
+/// The same of another model's terms.
+fn after_with(model: &Model, terms: &str, seconds: f64) -> (Subject, Instance, Vec<Reading>) {
+    let fmu = identifier("SwitchedIdentifier", model).unwrap();
     let subject = Subject::new(linked_functions!(functions), &fmu);
     let instance = subject.instance();
-    assert_eq!(instance.set_text(subject.reference("terms"), "qdd qd q q^3"), OK);
+    assert_eq!(instance.set_text(subject.reference("terms"), terms), OK);
     assert_eq!(instance.initialize(0.0), OK);
     let mut scenario = Builtin::DuffingSine.scenario().with_noise(0.01);
     scenario.duration = seconds + 1.0;
@@ -55,6 +60,30 @@ fn no_flipped_bit_and_no_truncation_is_accepted() {
     for part in 0..200 {
         assert!(instance.unpack(&bytes[..bytes.len() * part / 200]).is_err(), "{part} of 200");
     }
+}
+
+#[test]
+fn a_formula_of_the_users_own_is_a_term_like_any_other_and_goes_into_the_state() {
+    let text = "[terms]\nqdd = \"fit\"\nqd = \"fit\"\nq = \"fit\"\nhard = { coefficient = \"fit\", n = 3 }\n\
+                [effects.hard]\nexpression = \"abs(q)^n*sign(q)\"\n";
+    let (subject, instance, rest) = after_with(&Model::from_toml(text).unwrap(), "qdd qd q hard", 5.0);
+    let (builtin, reference, _) = after(5.0);
+    let read =
+        |subject: &Subject, instance: &Instance, name: &str| instance.reals(&[subject.reference(name)]).unwrap()[0];
+    for (own, theirs) in [("hard", "q_3"), ("q", "q")] {
+        for kind in ["coef", "std"] {
+            let value = read(&subject, &instance, &format!("{kind}.{own}"));
+            let expected = read(&builtin, &reference, &format!("{kind}.{theirs}"));
+            assert!((value / expected - 1.0).abs() < 1e-6, "{kind}.{own}: {value}, {expected}");
+        }
+    }
+    let other = subject.instance();
+    let state = other.unpack(&instance.pack(instance.save().unwrap()).unwrap()).unwrap();
+    assert_eq!(other.restore(state), OK);
+    for instance in [&instance, &other] {
+        rest.iter().for_each(|reading| step(&subject, instance, reading));
+    }
+    assert!(other.pack(other.save().unwrap()).unwrap() == instance.pack(instance.save().unwrap()).unwrap());
 }
 
 /// The other process runs this test alone, with the state's file in its environment.

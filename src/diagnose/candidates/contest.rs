@@ -5,7 +5,8 @@ use crate::diagnose::judge::{Column, Equation, Folds, HeldOut, PRINCIPAL, Record
 use crate::diagnose::scale::Scale;
 use crate::law::{Catalogue, Effect, Term};
 
-/// Rounds in which the grid of inner parameters is narrowed, a third of the spacing at a time.
+/// Rounds in which the grid of inner parameters is narrowed, a third of the spacing at a time: from a half of a value to a thousandth or two.
+/// After three a dead zone in the law was 1 % off, and what that left had a name.
 const ROUNDS: usize = 5;
 
 /// Effects whose grid is narrowed and whose errors are taken robustly: those that come nearest to being the best.

@@ -137,15 +137,17 @@ impl Course<'_> {
                 joined[border] = join(&edges[border..]);
             }
         }
-        self.sharpened(edges, stages)
+        self.rebordered(edges, stages)
     }
 
     /// The stages with borders where the laws with the effects that they lack tell them: without those an effect's share blurs the instant.
-    fn sharpened(&self, mut edges: Vec<usize>, mut stages: Vec<StageDiagnosis>) -> Vec<StageDiagnosis> {
+    fn rebordered(&self, mut edges: Vec<usize>, mut stages: Vec<StageDiagnosis>) -> Vec<StageDiagnosis> {
         for at in 1..stages.len() {
-            let Some(edge) = self.border(edges[at - 1]..edges[at + 1], &stages[at - 1..=at]) else { continue };
-            let parts = [edges[at - 1]..edge, edge..edges[at + 1]].map(|range| self.alone(range));
-            if let (true, [Some(before), Some(after)]) = (edge != edges[at], parts) {
+            let found = self.border(edges[at - 1]..edges[at + 1], &stages[at - 1..=at]);
+            let Some(edge) = found.filter(|edge| *edge != edges[at]) else { continue };
+            if let [Some(before), Some(after)] =
+                [edges[at - 1]..edge, edge..edges[at + 1]].map(|range| self.alone(range))
+            {
                 edges[at] = edge;
                 stages.splice(at - 1..=at, [before, after]);
             }

@@ -240,7 +240,6 @@ impl SavedLaw {
 
 /// The term's name, with the inner parameters that it is held at.
 fn key(term: Term) -> String {
-    let values = term.effect().map(|effect| effect.inner_values()).unwrap_or_default();
-    let values: Vec<String> = values.iter().map(f64::to_string).collect();
+    let values: Vec<String> = term.inner_values().iter().map(f64::to_string).collect();
     if values.is_empty() { term.name() } else { format!("{}({})", term.name(), values.join(", ")) }
 }
