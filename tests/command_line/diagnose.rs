@@ -175,6 +175,20 @@ fn what_all_stages_lack_is_named_beside_a_switch() {
 }
 
 #[test]
+fn a_switch_is_seen_behind_an_effect_that_is_larger() {
+    let bench = Bench::new("behind");
+    let second = "[[stage]]\nstart = 15.0\ncoefficients = [1.0, 0.6, 44.0, 0.0]\n";
+    for (effect, value) in [("constant_force", 8.0), ("cubic_stiffness", 60.0), ("quadratic_damping", 3.0)] {
+        simulate(&bench, effect, 77, 2e-3, &format!("{effect} = {value:.1}"), second);
+        let found = diagnose(&bench, &[&format!("{effect}.csv")]);
+        let stages = found["stages"].as_array().unwrap();
+        assert_eq!(stages.len(), 2, "{effect}: {found:#}");
+        assert!((stages[1]["start"].as_f64().unwrap() - 15.0).abs() < 0.5, "{effect}: {found:#}");
+        assert!(stages.iter().all(|stage| stage["effect"] == effect), "{effect}: {found:#}");
+    }
+}
+
+#[test]
 fn recordings_made_in_different_stages_are_diagnosed_together() {
     let bench = Bench::new("stages_apart");
     let softer = |stiffness: f64| format!("[[stage]]\nstart = 10.0\ncoefficients = [1.0, 0.6, {stiffness}, 0.0]\n");
