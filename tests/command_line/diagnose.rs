@@ -189,6 +189,18 @@ fn a_switch_is_seen_behind_an_effect_that_is_larger() {
 }
 
 #[test]
+fn the_border_of_two_stages_is_where_the_law_with_the_effect_has_it() {
+    let bench = Bench::new("border");
+    let second = "[[stage]]\nstart = 15.0\ncoefficients = [1.0, 0.6, 48.0, 0.0]\n";
+    for (effect, value) in [("coulomb_friction", 1.5), ("cubic_stiffness", 30.0)] {
+        simulate(&bench, effect, 77, 2e-3, &format!("{effect} = {value:.1}"), second);
+        let found = diagnose(&bench, &[&format!("{effect}.csv")]);
+        let border = found["stages"][1]["start"].as_f64().unwrap();
+        assert!((border - 15.0).abs() < 0.2, "{effect}: {border}");
+    }
+}
+
+#[test]
 fn recordings_made_in_different_stages_are_diagnosed_together() {
     let bench = Bench::new("stages_apart");
     let softer = |stiffness: f64| format!("[[stage]]\nstart = 10.0\ncoefficients = [1.0, 0.6, {stiffness}, 0.0]\n");
