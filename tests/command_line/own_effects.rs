@@ -2,7 +2,7 @@
 
 use super::bench::Bench;
 
-/// A plant with drag on its tip that grows to 4 times what it was.
+/// A linear plant under a multisine with something hidden in it, and further stages.
 fn scenario(hidden: &str, stages: &str) -> String {
     format!(
         "terms = [\"qdd\", \"qd\", \"q\"]\nduration = 24.0\nseed = 5\nnoise = {{ q = 2e-3, qd = 5e-3 }}\n\
