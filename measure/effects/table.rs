@@ -13,7 +13,7 @@ struct Row {
     invisible: usize,
     ratios: Vec<f64>,
     seconds: Vec<f64>,
-    /// Records that switch, and those whose switch alone was found.
+    /// Records that show a switch, and those whose switch alone was found.
     switches: [usize; 2],
 }
 
@@ -109,7 +109,7 @@ impl fmt::Display for Row {
         write!(f, "| {} | {} | {} ", self.invisible, middle(&self.ratios, 3), middle(&self.seconds, 2))?;
         match self.switches {
             [0, _] => write!(f, "| – |"),
-            [all, found] => write!(f, "| {:.1} % |", 100.0 * found as f64 / all as f64),
+            [all, found] => write!(f, "| {:.1} % of {all} |", 100.0 * found as f64 / all as f64),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::sensors::Sensors;
 use rustix::time::{ClockId, clock_gettime};
 use std::ops::Range;
 use switchid::diagnose::{
-    Candidate, Diagnosis, Finding, Improvement, Posed, Switched, WindowError, diagnose_stages, same_effect,
+    Candidate, Diagnosis, Finding, Improvement, Posed, Switched, Target, WindowError, diagnose_stages, same_effect,
 };
 use switchid::law::{Given, Hold, Model, Term};
 
@@ -45,7 +45,8 @@ pub struct Outcome {
     pub visible: bool,
     /// Whether the answer was a tie with the truth in it.
     pub tie: bool,
-    /// Whether the law's switch, and no other, was found; none where it has none.
+    /// Whether the law's switch, and no other, was found; none where it has none, or where this record cannot show it: the true laws of the
+    /// stages cut the held-out error of the true form by a tenth.
     pub switch: Option<bool>,
     /// Held-out error with the right effect ÷ that of the true form.
     pub ratio: Option<f64>,
@@ -165,17 +166,42 @@ fn judge_stages(
     let places: Vec<f64> = found.stages.iter().skip(1).map(|stage| stage.start).collect();
     let period = found.principal().map_or(0.0, |found| found.period);
     let seen = places.len() == 1 && (places[0] - switch).abs() <= NEAR * period;
-    let parts = [0..index(problem, switch), index(problem, switch)..problem.recording.count()];
-    let shows = |part: Range<usize>| {
-        let section = problem.recording.section(part).ok()?;
-        let posed = Posed::new(model, &[&section], hold)?;
-        let error = |terms: &[Term]| Some(principal(&posed.errors(terms)?));
-        Some(error(&complete(problem, &|_| true))? <= VISIBLE * error(&problem.model)?)
-    };
-    let visible = truth.is_empty() || parts.into_iter().all(|part| shows(part) == Some(true));
+    let at = index(problem, switch);
+    let [whole, before, after] = [0..problem.recording.count(), 0..at, at..problem.recording.count()]
+        .map(|part| Part::of(model, hold, problem, part));
+    let shows = |part: &Option<Part>| part.as_ref().is_some_and(|part| part.complete <= VISIBLE * part.model);
+    let visible = truth.is_empty() || (shows(&before) && shows(&after));
+    let switches = whole.zip(before.zip(after)).is_none_or(|(whole, (before, after))| whole.switches(&before, &after));
     let words = diagnoses.iter().map(|found| words(found)).collect::<Vec<_>>().join("\n    ");
     let words = format!("switch {switch:.3}, found {places:.3?}, T₀ {period:.3}\n    {words}");
-    Outcome { answer, visible, tie, switch: Some(seen), ratio: None, seconds, words }
+    Outcome { answer, visible, tie, switch: switches.then_some(seen), ratio: None, seconds, words }
+}
+
+/// What the model and the true form leave of a part of a record.
+struct Part {
+    model: f64,
+    complete: f64,
+    target: Target,
+    samples: f64,
+}
+
+impl Part {
+    fn of(model: &Model, hold: Option<Hold>, problem: &Problem, range: Range<usize>) -> Option<Part> {
+        let samples = range.len() as f64;
+        let section = problem.recording.section(range).ok()?;
+        let posed = Posed::new(model, &[&section], hold)?;
+        let error = |terms: &[Term]| Some(principal(&posed.errors(terms)?));
+        let complete = error(&complete(problem, &|_| true))?;
+        Some(Part { model: error(&problem.model)?, complete, target: posed.law()?.0.target, samples })
+    }
+
+    /// Whether two laws of the true form leave a tenth less than one of it. Errors of other targets are not compared: the switch counts as
+    /// shown.
+    fn switches(&self, before: &Part, after: &Part) -> bool {
+        let energy = |part: &Part| part.samples * part.complete.powi(2);
+        let comparable = before.target == self.target && after.target == self.target;
+        !comparable || energy(before) + energy(after) <= VISIBLE * VISIBLE * energy(self)
+    }
 }
 
 /// The first sample of the record from a time on.
