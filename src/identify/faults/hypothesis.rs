@@ -1,7 +1,8 @@
 //! One hypothesis of what happened: a filter of (q, q̇) and two unknowns under the law in use.
 //!
 //! x = (q, q̇, u₀, u₁). Under "the law changed" q̈ is the law's + u₀ + u₁ F ÷ m: over the few readings that decide, a
-//! change of any coefficient is one of these two. Under "a channel has an offset" u₀ is the offset.
+//! change of any coefficient is one of these two; u₀ then moves as the motion does, as a random walk that is as large as
+//! it is after a radian of the motion. Under "a channel has an offset" u₀ is the offset.
 
 use super::price::{Burst, faulty, working};
 use crate::estimation::{Channel, Filter, Noise};
@@ -66,6 +67,11 @@ pub struct Expected<'a> {
 }
 
 impl Expected<'_> {
+    /// Radians of the motion in a second.
+    fn rate(&self) -> f64 {
+        self.size[1] / self.size[0]
+    }
+
     /// Intensity of the white force, N² s, that moves q̇ by its own RMS within an interval of `dt` s.
     pub fn kick(&self, q: f64, dt: f64) -> f64 {
         (self.size[1] * self.motion.mass(q)).powi(2) / dt
@@ -88,6 +94,9 @@ pub struct Value {
     /// Probability that a burst begins.
     pub start: f64,
 }
+
+/// Probability that what befalls one channel befalls both: a loose plug, a logger that fails.
+const SHARED: f64 = 0.5;
 
 /// A stuck sensor that varies is none, nats.
 const VARIES: f64 = -40.0;
@@ -141,9 +150,8 @@ impl Hypothesis {
                 (self.covariance[1][2], self.covariance[2][1]) = (square * since, square * since);
                 (self.covariance[2][2], self.covariance[3][3]) = (square, gain * gain);
             }
-            Kind::Kick => self.covariance[1][1] += law.size[1] * law.size[1],
             Kind::Offset(channel) => self.covariance[2][2] = law.size[channel as usize].powi(2),
-            Kind::Readings | Kind::Stuck(_) | Kind::BothStuck => {}
+            Kind::Readings | Kind::Kick | Kind::Stuck(_) | Kind::BothStuck => {}
         }
     }
 
@@ -236,7 +244,24 @@ impl Hypothesis {
             let extra = inputs[0] * self.mean[2] + inputs[1] * self.mean[3];
             self.mean[0] = moved.q + 0.5 * part_dt * part_dt * extra;
             self.mean[1] = moved.qd + part_dt * extra;
-            self.carry(part_dt, gradient, inputs, law.noise.process);
+            let [process, wander] = self.unknown(law, inputs, dt);
+            self.carry(part_dt, gradient, inputs, law.noise.process + process);
+            self.covariance[2][2] += wander * part_dt;
+        }
+    }
+
+    /// Intensity of the white acceleration that an event adds in its own interval, for when in it that was nobody knows,
+    /// and what u₀ moves by in a second, as a variance.
+    fn unknown(&self, law: &Expected, inputs: [f64; 2], dt: f64) -> [f64; 2] {
+        let [acceleration, gain] = law.switch;
+        let first = self.age == 0;
+        match self.kind {
+            Kind::Law(_) => {
+                let event = (acceleration * acceleration + (gain * inputs[1]).powi(2)) * dt;
+                [if first { event } else { 0.0 }, acceleration * acceleration * law.rate()]
+            }
+            Kind::Kick if first => [law.size[1] * law.size[1] / dt, 0.0],
+            _ => [0.0; 2],
         }
     }
 
@@ -284,7 +309,9 @@ impl Hypothesis {
             return false;
         }
         let repeats = value.repeats.unwrap_or(0.0);
-        self.log += self.bursts[index].take(working(residual, variance), faulty, value.start) - repeats;
+        let other = self.bursts[1 - index].probability;
+        let start = value.start.max(SHARED * other);
+        self.log += self.bursts[index].take(working(residual, variance), faulty, start) - repeats;
         if self.bursts[index].is_on() {
             return false;
         }
