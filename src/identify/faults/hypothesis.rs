@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 pub enum Kind {
     /// Nothing but readings that are wide draws, if any.
     Readings,
-    /// The law changed so many samples before the first reading that is held.
-    Law(u8),
+    /// The law changed so many samples before the first reading that is held, and q̈ by so many times what a switch usually adds.
+    Law { before: u8, times: u8 },
     /// Something moved q̇, and q follows.
     Kick,
     /// A channel has an offset.
@@ -28,10 +28,11 @@ pub enum Kind {
 
 impl Kind {
     /// Every one of them, the least first.
-    pub const ALL: [Kind; 9] = [
+    pub const ALL: [Kind; 10] = [
         Kind::Readings,
-        Kind::Law(0),
-        Kind::Law(3),
+        Kind::Law { before: 0, times: 1 },
+        Kind::Law { before: 0, times: 10 },
+        Kind::Law { before: 3, times: 1 },
         Kind::Kick,
         Kind::Offset(Channel::Q),
         Kind::Offset(Channel::Qd),
@@ -47,7 +48,7 @@ impl Kind {
 
     /// Whether the law is another one.
     pub fn is_law(self) -> bool {
-        matches!(self, Kind::Law(_))
+        matches!(self, Kind::Law { .. })
     }
 }
 
@@ -143,7 +144,8 @@ impl Hypothesis {
         self.forget_held();
         let [acceleration, gain] = law.switch;
         match self.kind {
-            Kind::Law(before) => {
+            Kind::Law { before, times } => {
+                let acceleration = f64::from(times) * acceleration;
                 let since = f64::from(before) * dt;
                 let square = acceleration * acceleration;
                 self.covariance[1][1] += square * since * since;
@@ -237,7 +239,7 @@ impl Hypothesis {
             let state = self.state();
             let gradient = law.motion.acceleration_gradient(state, middle);
             let inputs = match self.kind {
-                Kind::Law(_) => [1.0, middle / law.motion.mass(state.q)],
+                Kind::Law { .. } => [1.0, middle / law.motion.mass(state.q)],
                 _ => [0.0; 2],
             };
             let moved = law.motion.step_linear(state, part_dt, from, to);
@@ -256,7 +258,8 @@ impl Hypothesis {
         let [acceleration, gain] = law.switch;
         let first = self.age == 0;
         match self.kind {
-            Kind::Law(_) => {
+            Kind::Law { times, .. } => {
+                let acceleration = f64::from(times) * acceleration;
                 let event = (acceleration * acceleration + (gain * inputs[1]).powi(2)) * dt;
                 [if first { event } else { 0.0 }, acceleration * acceleration * law.rate()]
             }

@@ -316,7 +316,7 @@ impl Quarantine {
         self.weighing.forget_held();
         self.stance = Stance::Named(place);
         match kind {
-            Kind::Law(_) => (self.stance, self.decided) = (Stance::Calm, DECIDED),
+            Kind::Law { .. } => (self.stance, self.decided) = (Stance::Calm, DECIDED),
             Kind::Offset(channel) => self.know_offset(channel, offset, law),
             _ => {}
         }

@@ -42,7 +42,7 @@ impl Weighing {
         for hypothesis in &mut self.hypotheses {
             let log = match hypothesis.kind {
                 Kind::Readings => 0.0,
-                Kind::Law(_) => (event / changes).ln(),
+                Kind::Law { .. } => (event / changes).ln(),
                 _ => event.ln(),
             };
             let varies = |channel: &Channel| !hypothesis.kind.sticks(*channel);
