@@ -1,23 +1,43 @@
-//! Whether a sensor came back from an outage with an offset: the law with one unknown beside the state, against the law
-//! as it is, both from an unknown state.
+//! Whether a sensor came back from an outage with an offset: one unknown beside the law, in closed form.
+//!
+//! With an offset u of a channel the filter of the law in use expects z u more of it, z being carried from sample to
+//! sample as any sensitivity is. Its innovations ε of variance s then have the score g = Σ r ε ÷ s and the information
+//! I = Σ r² ÷ s, r being what is expected more of the reading itself; against a prior of variance V the offset has
+//! ½ g² V ÷ (1 + I V) − ½ ln(1 + I V) nats.
 
-use super::hypothesis::{Expected, Hypothesis, Kind, Value};
-use crate::estimation::{Channel, Filter};
-use crate::law::Drive;
+use crate::estimation::{Channel, Filter, Innovation, IntervalMap, gains, times};
 use serde::{Deserialize, Serialize};
 
 /// An offset not found within this time after the outage is none that it brought, s.
 const WITHIN: f64 = 5.0;
 
-/// Probability that a burst begins with a reading: one in a false-alarm interval.
-const SELDOM: f64 = 1e-9;
+/// Log-probability that a sensor comes back with an offset: one outage in a hundred.
+const COMES_BACK_OFF: f64 = -4.6;
 
-/// The hypotheses since the last outage.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// Time after the outage at which an offset is first looked for without an alarm, s; it doubles from then on.
+const FIRST_LOOK: f64 = 0.25;
+
+/// The offset of one channel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Offset {
+    /// z.
+    sensitivity: [f64; 2],
+    information: f64,
+    score: f64,
+    /// V.
+    variance: f64,
+}
+
+/// The offsets that the last outage may have brought.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct AfterOutage {
-    hypotheses: Vec<Hypothesis>,
+    offsets: [Offset; 2],
     /// Time since the outage, s; `None` where there was none of late.
     since: Option<f64>,
+    /// Time since the outage from which an offset, or what is left of it, is taken off, s.
+    due: f64,
+    /// What has been taken off since the outage, and of which channel.
+    taken: Option<(Channel, f64)>,
 }
 
 /// A channel that came back with an offset.
@@ -25,36 +45,64 @@ pub struct AfterOutage {
 pub struct Returned {
     /// The channel.
     pub channel: Channel,
-    /// The offset.
+    /// The offset, or what is left of it.
     pub offset: f64,
-    /// State and covariance without it.
-    pub filter: Filter,
-    /// Log-likelihood against no offset, nats.
+    /// What it does to the state that the filter has, and its variance.
+    sensitivity: [f64; 2],
+    variance: f64,
+    /// Log-odds against no offset, and the log-likelihood against one of the other channel, nats.
     pub evidence: f64,
+    pub against_other: f64,
     /// Time since the outage, s.
     pub since: f64,
 }
 
-impl AfterOutage {
-    /// No outage yet.
-    pub fn new() -> AfterOutage {
-        let kinds = [Kind::Readings, Kind::Offset(Channel::Q), Kind::Offset(Channel::Qd)];
-        AfterOutage { hypotheses: kinds.map(|kind| Hypothesis::new(kind, 1)).into(), since: None }
+impl Offset {
+    fn take(&mut self, channel: Channel, map: &IntervalMap, innovations: &[Option<Innovation>; 2]) {
+        self.sensitivity = times(&map.transition, self.sensitivity);
+        for (read, gain) in Channel::ALL.into_iter().zip(gains(innovations)) {
+            let Some(innovation) = &innovations[read as usize] else { continue };
+            let row = self.sensitivity[read as usize] + if read == channel { 1.0 } else { 0.0 };
+            self.information += row * row * innovation.precision;
+            self.score += row * innovation.residual * innovation.precision;
+            self.sensitivity.iter_mut().zip(gain).for_each(|(entry, gain)| *entry -= gain * row);
+        }
     }
 
-    /// An outage ends with these readings: the state is what they say, but for an offset.
-    pub fn begin(&mut self, law: &Expected, measured: [Option<f64>; 2]) {
-        let [q, qd] = measured;
-        let spread = |channel: usize| match measured[channel] {
-            Some(_) => law.noise.sensor[channel],
-            None => law.size[channel].powi(2),
-        };
-        let filter = Filter::begin([q.unwrap_or(0.0), qd.unwrap_or(0.0)], [spread(0), spread(1)]);
-        for hypothesis in &mut self.hypotheses {
-            hypothesis.begin(&filter, law, 0.0, 0.0);
-            hypothesis.return_with_offset();
+    /// Log-likelihood of the offset against none, nats.
+    fn evidence(&self) -> f64 {
+        let told = 1.0 + self.information * self.variance;
+        0.5 * (self.score * self.score * self.variance / told - told.ln())
+    }
+}
+
+impl Returned {
+    /// The filter without the offset.
+    pub fn without(&self, mut filter: Filter) -> Filter {
+        let z = self.sensitivity;
+        for row in 0..2 {
+            filter.mean[row] += z[row] * self.offset;
+            for column in 0..2 {
+                filter.covariance[row][column] += z[row] * z[column] * self.variance;
+            }
         }
-        self.since = Some(0.0);
+        filter
+    }
+}
+
+impl AfterOutage {
+    /// An outage ends with this sample; `size` is what an offset may be by channel, std.
+    pub fn begin(&mut self, size: [f64; 2], map: &IntervalMap, innovations: &[Option<Innovation>; 2]) {
+        self.offsets = size.map(|size| Offset { variance: size * size, ..Offset::default() });
+        (self.since, self.due, self.taken) = (Some(0.0), FIRST_LOOK, None);
+        if innovations.iter().all(|innovation| innovation.is_none()) {
+            // the motion was not followed over the outage: its state is what was read
+            for (channel, offset) in self.offsets.iter_mut().enumerate() {
+                offset.sensitivity[channel] = -1.0;
+            }
+            return;
+        }
+        self.read(map, innovations);
     }
 
     /// Nothing is asked any more.
@@ -67,21 +115,96 @@ impl AfterOutage {
         self.since.is_some()
     }
 
-    /// Takes a sample.
-    pub fn take(&mut self, law: &Expected, dt: f64, drive: &Drive, measured: [Option<f64>; 2]) {
-        let Some(since) = self.since else { return };
-        let value = |value: f64| Value { value, repeats: None, start: SELDOM };
-        let values = measured.map(|measured| measured.map(value));
-        self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.take(law, dt, drive, values, 0));
-        self.since = Some(since + dt).filter(|since| *since < WITHIN);
+    /// Takes what the law in use makes of a sample, `dt` s after the last one.
+    pub fn take(&mut self, dt: f64, map: &IntervalMap, innovations: &[Option<Innovation>; 2]) {
+        self.read(map, innovations);
+        self.since = self.since.map(|since| since + dt).filter(|since| *since < WITHIN);
     }
 
-    /// The likelier of the offsets.
+    fn read(&mut self, map: &IntervalMap, innovations: &[Option<Innovation>; 2]) {
+        for (channel, offset) in Channel::ALL.into_iter().zip(&mut self.offsets) {
+            offset.take(channel, map, innovations);
+        }
+    }
+
+    /// Whether it is time to look for an offset, or for what is left of one.
+    pub fn is_due(&self) -> bool {
+        self.since.is_some_and(|since| since >= self.due)
+    }
+
+    /// Looks again when twice the time has passed.
+    pub fn look_later(&mut self) {
+        self.due *= 2.0;
+    }
+
+    /// Whether an offset has been taken off since the outage.
+    pub fn is_found(&self) -> bool {
+        self.taken.is_some()
+    }
+
+    /// The offset has been taken off the readings since the outage, and the filter goes on without it.
+    pub fn correct(&mut self, returned: &Returned) {
+        let Returned { channel, offset, .. } = *returned;
+        let before = self.taken.map_or(0.0, |(_, taken)| taken);
+        (self.taken, self.due) = (Some((channel, before + offset)), 2.0 * returned.since);
+        let corrected = &mut self.offsets[channel as usize];
+        corrected.score -= corrected.information * offset;
+    }
+
+    /// The likelier of the offsets; what is left of one that has been taken off.
     pub fn likeliest(&self) -> Option<Returned> {
-        let (since, none) = (self.since?, self.hypotheses[0].log);
-        let offsets = Channel::ALL.into_iter().zip(&self.hypotheses[1..]);
-        let (channel, best) = offsets.max_by(|a, b| a.1.log.total_cmp(&b.1.log))?;
-        let offset = best.offset().0;
-        Some(Returned { channel, offset, filter: best.filter(), evidence: best.log - none, since })
+        let since = self.since?;
+        let [q, qd] = self.offsets.map(|offset| offset.evidence());
+        let likelier = if q > qd { Channel::Q } else { Channel::Qd };
+        let (channel, taken) = self.taken.unwrap_or((likelier, 0.0));
+        let Offset { sensitivity, information, score, variance } = self.offsets[channel as usize];
+        let left = variance / (1.0 + information * variance);
+        let offset = left * (score - taken / variance);
+        let evidence = match self.taken {
+            Some(_) => 0.5 * offset * offset / left,
+            None => q.max(qd) + COMES_BACK_OFF,
+        };
+        let against_other = (q - qd).abs();
+        Some(Returned { channel, offset, sensitivity, variance: left, evidence, against_other, since })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A particle at rest, read with std 1 in both channels, whose q comes back off by `off`.
+    fn returned(off: f64) -> AfterOutage {
+        let map = IntervalMap { transition: [[1.0, 0.01], [0.0, 1.0]], input: Vec::new(), push: [0.0; 2] };
+        let mut filter: Filter = Filter::begin([0.0; 2], [1e-4, 1e-6]);
+        let mut after = AfterOutage::default();
+        for index in 0..300 {
+            filter.predict(|change| times(&map.transition, change), &[[0.0; 2]; 2]);
+            let noise = if index % 2 == 0 { 1.0 } else { -1.0 };
+            let innovations = [(Channel::Q, off + noise), (Channel::Qd, -noise)];
+            let innovations = innovations.map(|(channel, read)| Some(filter.update(channel, read, 1.0)));
+            match index {
+                0 => after.begin([10.0; 2], &map, &innovations),
+                _ => after.take(0.01, &map, &innovations),
+            }
+        }
+        after
+    }
+
+    #[test]
+    fn an_offset_of_one_channel_is_found_and_none_is_not() {
+        let found = returned(2.0).likeliest().unwrap();
+        assert_eq!(found.channel, Channel::Q);
+        assert!((found.offset - 2.0).abs() < 0.2 && found.evidence > 100.0, "{found:?}");
+        assert!(returned(0.0).likeliest().unwrap().evidence < 0.0);
+    }
+
+    #[test]
+    fn what_has_been_taken_off_is_not_found_again() {
+        let mut after = returned(2.0);
+        let found = after.likeliest().unwrap();
+        after.correct(&found);
+        let left = after.likeliest().unwrap();
+        assert!(left.offset.abs() < 1e-9 && left.evidence < 1e-9, "{left:?}");
     }
 }

@@ -157,16 +157,6 @@ impl Hypothesis {
         }
     }
 
-    /// The state that it begins at was read from a sensor which may have an offset already: what the offset is, the reading
-    /// is too large by.
-    pub fn return_with_offset(&mut self) {
-        if let Kind::Offset(channel) = self.kind {
-            let (index, variance) = (channel as usize, self.covariance[2][2]);
-            self.covariance[index][index] += variance;
-            (self.covariance[index][2], self.covariance[2][index]) = (-variance, -variance);
-        }
-    }
-
     /// These channels are in a burst.
     pub fn begin_bursts(&mut self, bursts: [Burst; 2]) {
         self.bursts = bursts;

@@ -1,7 +1,7 @@
 //! An alarm that is a sensor's fault: evidence against the law that a fault explains as well or better.
 
 use super::regime::Event;
-use super::state::{Intake, Setup, Tracker};
+use super::state::Tracker;
 use crate::estimation::{Channel, Filter, Innovation};
 use crate::evidence::Suspect;
 use crate::identify::change::LawInUse;
@@ -18,9 +18,6 @@ const UNDECIDED: f64 = 3.0;
 
 /// … and is made before with these log-odds: the law and the offset are near each other for some tenths of a second.
 const DECISIVE: f64 = 6.0;
-
-/// Log-probability that a sensor comes back from an outage with an offset: one outage in a hundred.
-const COMES_BACK_OFF: f64 = -4.6;
 
 /// Probability of a fault, as a logarithm, before anything speaks for one: as of any event in a sample.
 const SELDOM: f64 = -20.0;
@@ -44,21 +41,34 @@ pub(super) fn expected<'a>(
 impl Tracker {
     /// Takes what the law in use makes of a sample, number `number`, for the hypotheses of faults that no single
     /// reading shows.
-    pub(super) fn weigh_faults(&mut self, setup: Setup, number: u64, innovations: &[Option<Innovation>; 2]) {
+    pub(super) fn weigh_faults(&mut self, number: u64, innovations: &[Option<Innovation>; 2]) {
         self.intake.scatter.take(innovations);
-        let law = &self.monitor.law;
-        let outage = self.window.ends_outage(number);
-        if !(outage || self.intake.after_outage.is_open()) || !law.explains {
+        let Tracker { intake, window, monitor, .. } = self;
+        let law = &monitor.law;
+        let outage = window.ends_outage(number);
+        if !(outage || intake.after_outage.is_open()) || !law.explains {
             return;
         }
-        let observation = self.window.observation(number);
-        let Tracker { intake, segment, monitor, .. } = self;
-        let law = &monitor.law;
-        let Intake { after_outage, quarantine, .. } = intake;
-        let expected = expected(setup.problem, law, &segment.scales, quarantine.size());
+        let map = &law.run.map;
         match outage {
-            true => after_outage.begin(&expected, observation.measured),
-            false => after_outage.take(&expected, observation.dt, &observation.drive, observation.measured),
+            true => intake.after_outage.begin(intake.quarantine.size(), map, innovations),
+            false => {
+                let dt = window.sample(number).t - window.sample(number - 1).t;
+                intake.after_outage.take(dt, map, innovations);
+            }
+        }
+        if intake.after_outage.is_due() {
+            self.look_for_offset();
+        }
+    }
+
+    /// An offset that stands out is taken off before anything alarms, and what is left of one that was found.
+    fn look_for_offset(&mut self) {
+        let Some(returned) = self.intake.after_outage.likeliest() else { return };
+        let stands_out = returned.evidence > DECISIVE && returned.against_other > DECISIVE;
+        match stands_out || self.intake.after_outage.is_found() {
+            true => self.correct_offset(&returned),
+            false => self.intake.after_outage.look_later(),
         }
     }
 
@@ -99,8 +109,10 @@ impl Tracker {
     /// `threshold` being what the improbability of a switch asks; until that is decided there is no alarm.
     fn is_offset(&mut self, suspect: &Suspect, threshold: f64) -> bool {
         let Some(returned) = self.intake.after_outage.likeliest() else { return false };
-        let odds = (returned.evidence + COMES_BACK_OFF) - (suspect.evidence - threshold);
-        self.intake.undecided = odds.abs() < DECISIVE && returned.since < UNDECIDED;
+        let odds = returned.evidence - (suspect.evidence - threshold);
+        let told = self.intake.after_outage.is_found() || returned.against_other > DECISIVE;
+        let open = odds.abs() < DECISIVE || odds > 0.0 && !told;
+        self.intake.undecided = open && returned.since < UNDECIDED;
         if self.intake.undecided || odds < 0.0 {
             return self.intake.undecided;
         }
@@ -111,7 +123,7 @@ impl Tracker {
     fn correct_offset(&mut self, returned: &Returned) {
         let Returned { channel, offset, since, .. } = *returned;
         self.intake.quarantine.take_off(channel, offset);
-        self.intake.after_outage.end();
+        self.intake.after_outage.correct(returned);
         let now = self.now();
         let first = (self.window.oldest()..self.window.end())
             .rev()
@@ -130,7 +142,7 @@ impl Tracker {
         self.clear_suspicion();
         let run = &mut self.monitor.law.run;
         let spread = match returned {
-            Some(returned) => returned.filter,
+            Some(returned) => returned.without(run.filter),
             None => {
                 let [[qq, _], [_, vv]] = run.filter.covariance;
                 let [q, qd] = self.monitor.law.noise.sensor;

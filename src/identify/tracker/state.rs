@@ -172,7 +172,7 @@ impl Tracker {
                 excitation: ExcitationGate::default(),
                 quarantine: Quarantine::new(),
                 scatter: Scatter::default(),
-                after_outage: AfterOutage::new(),
+                after_outage: AfterOutage::default(),
                 undecided: false,
                 force: Repetition::default(),
                 force_lost: false,

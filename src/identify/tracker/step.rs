@@ -86,7 +86,7 @@ impl Tracker {
                 return;
             }
             monitor.bank.step(&monitor.law.run.map, &innovations);
-            self.weigh_faults(setup, number, &innovations);
+            self.weigh_faults(number, &innovations);
             let (sample, monitor) = (self.window.sample(number), &mut self.monitor);
             monitor.prediction.step(setup.problem, setup.settings, &monitor.law, sample, &observation);
             if number.is_multiple_of(SPAWN_EVERY) {
