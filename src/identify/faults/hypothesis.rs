@@ -96,8 +96,8 @@ pub struct Value {
     pub start: f64,
 }
 
-/// Probability that what befalls one channel befalls both: a loose plug, a logger that fails.
-const SHARED: f64 = 0.5;
+/// Probability that what befalls one channel begins in the other too: a loose plug, a logger that fails.
+const SHARED: f64 = 0.05;
 
 /// A stuck sensor that varies is none, nats.
 const VARIES: f64 = -40.0;
@@ -302,8 +302,7 @@ impl Hypothesis {
             return false;
         }
         let repeats = value.repeats.unwrap_or(0.0);
-        let other = self.bursts[1 - index].probability;
-        let start = value.start.max(SHARED * other);
+        let start = value.start.max(SHARED * self.bursts[1 - index].begun());
         self.log += self.bursts[index].take(working(residual, variance), faulty, start) - repeats;
         if self.bursts[index].is_on() {
             return false;

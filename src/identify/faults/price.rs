@@ -56,6 +56,11 @@ impl Burst {
         total
     }
 
+    /// Probability that the burst began with the last reading.
+    pub fn begun(&self) -> f64 {
+        if self.age <= 1.0 { self.probability } else { 0.0 }
+    }
+
     /// Whether the last reading was more likely faulty than not.
     pub fn is_on(&self) -> bool {
         self.probability > 0.5
