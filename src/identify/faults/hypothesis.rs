@@ -292,7 +292,7 @@ impl Hypothesis {
             std::array::from_fn(|row| self.covariance[row][index] + offset * self.covariance[row][2]);
         let variance = column[index] + offset * column[2] + law.noise.sensor[index];
         let residual = value.value - self.mean[index] - offset * self.mean[2];
-        let faulty = faulty(residual, variance.sqrt());
+        let faulty = faulty(residual, law.noise.sensor[index].sqrt());
         if self.kind.sticks(channel) {
             self.log += match value.repeats {
                 Some(_) => 0.0,

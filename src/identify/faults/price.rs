@@ -15,7 +15,8 @@ pub fn working(residual: f64, variance: f64) -> f64 {
 }
 
 /// Log-density of a residual that may be of any size: 1 ÷ (2 s (1 + u) (1 + ln(1 + u))²), u = |residual| ÷ s, which
-/// integrates to one and has no scale of its own beyond s.
+/// integrates to one and has no scale of its own beyond s. `std` is the working sensor's, whatever the hypothesis: one
+/// that expects little would else pay less for every reading.
 pub fn faulty(residual: f64, std: f64) -> f64 {
     let scale = SCALE * std;
     let beyond = (residual.abs() / scale).min(f64::MAX).ln_1p();
