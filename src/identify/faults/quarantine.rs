@@ -154,6 +154,20 @@ impl Quarantine {
         self.count + self.waiting
     }
 
+    /// Changes the last `count` readings, as far as they are not in the record yet; returns how many are.
+    pub fn amend(&mut self, count: u64, mut change: impl FnMut(&mut Reading)) -> u64 {
+        let behind = self.behind();
+        let own = behind.min(usize::try_from(count).unwrap_or(behind));
+        let room = self.through.len();
+        for place in behind - own..behind {
+            match place.checked_sub(self.waiting) {
+                Some(held) => change(&mut self.held[held]),
+                None => change(&mut self.through[(self.first + place) % room]),
+            }
+        }
+        count - own as u64
+    }
+
     /// Whether what is held speaks for another law more than for any fault.
     pub fn suspects_law(&self) -> bool {
         self.count > 0 && self.weighing.law_against_fault() > 0.0

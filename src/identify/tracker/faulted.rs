@@ -94,7 +94,9 @@ impl Tracker {
     fn lose_excitation(&mut self) {
         self.intake.force_lost = true;
         let (since, unseen) = (self.intake.force.length(), self.unknown_excitation());
-        self.window.amend(since, |reading| reading.unseen += unseen);
+        let open = |reading: &mut Reading| reading.unseen += unseen;
+        let recorded = self.intake.quarantine.amend(since, open);
+        self.window.amend(recorded, open);
         self.segment.begin_run(&self.window);
         self.restart_law(None);
     }
@@ -129,10 +131,12 @@ impl Tracker {
             .rev()
             .take_while(|number| now - self.window.sample(*number).t <= since);
         let count = first.count() as u64;
-        self.window.amend(count, |Reading { sample, .. }| match channel {
+        let take_off = |Reading { sample, .. }: &mut Reading| match channel {
             Channel::Q => sample.q -= offset,
             Channel::Qd => sample.qd -= offset,
-        });
+        };
+        self.intake.quarantine.amend(u64::MAX, take_off);
+        self.window.amend(count, take_off);
         self.segment.begin_run(&self.window);
         self.restart_law(Some(returned));
     }
