@@ -162,6 +162,11 @@ impl Hypothesis {
         self.bursts = bursts;
     }
 
+    /// How likely each channel is in a burst.
+    pub fn bursts(&self) -> [Burst; 2] {
+        self.bursts
+    }
+
     /// The samples held have been let through.
     pub fn forget_held(&mut self) {
         self.faulty = [0; 2];
