@@ -42,7 +42,7 @@ pub use initial_state::initial_state;
 pub use innovation_gate::{InnovationGate, OUTLYING};
 pub use pass::{IntervalMap, Observation, Pass, gains};
 pub use rivals::{RIVALS, Rivals};
-pub use score_test::{Missing, ScoreTest};
+pub use score_test::{Lag, Missing, ScoreTest};
 pub use smoother::{Smoothable, smooth};
 pub use symmetric::{Lane, LogSum, System, WIDTH};
 pub use term_selection::{TermSelection, price_of_a_term};

@@ -42,10 +42,24 @@ impl Missing {
     }
 }
 
+/// When F acted, by the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Lag {
+    /// By how many samples F acted later than it is taken to.
+    pub samples: f64,
+    /// Std of that.
+    pub std: f64,
+    /// Log-likelihood that it would gain, nats.
+    pub evidence: f64,
+}
+
 /// The candidates beside a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScoreTest {
     candidates: Vec<Candidate>,
+    /// F as it was a sample before and as it is a sample later, each less what it is: their coefficients are F's lag,
+    /// and by how much it acts too early.
+    lags: [Sums; 2],
     own: Information,
     solution: Solution,
     active: Vec<bool>,
@@ -57,6 +71,12 @@ pub struct ScoreTest {
 struct Candidate {
     entry: usize,
     term: Term,
+    sums: Sums,
+}
+
+/// What the innovations say of one more coefficient.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Sums {
     /// ∂(q, q̇)/∂ its coefficient.
     sensitivity: [f64; 2],
     /// Its expected measurement by channel.
@@ -79,17 +99,11 @@ impl ScoreTest {
         };
         let entries = Catalogue::ENTRIES.iter().enumerate();
         let candidates = entries.filter(|(_, entry)| entry.term.is_pointwise() && absent(&entry.term));
-        let candidate = |(entry, found): (usize, &crate::law::Entry)| Candidate {
-            entry,
-            term: found.term,
-            sensitivity: [0.0; 2],
-            rows: [0.0; 2],
-            information: 0.0,
-            score: 0.0,
-            cross: vec![0.0; n],
-        };
+        let candidate =
+            |(entry, found): (usize, &crate::law::Entry)| Candidate { entry, term: found.term, sums: Sums::new(n) };
         ScoreTest {
             candidates: candidates.map(candidate).collect(),
+            lags: [Sums::new(n), Sums::new(n)],
             own: Information::none(n),
             solution: Solution::none(n),
             active: vec![true; n],
@@ -100,21 +114,23 @@ impl ScoreTest {
 
     /// Begins beside a run; inner parameters follow the largest motion seen.
     pub fn begin(&mut self, state: State, largest: [f64; 2]) {
+        self.lags.iter_mut().for_each(Sums::clear);
         for candidate in &mut self.candidates {
-            (candidate.sensitivity, candidate.information, candidate.score) = ([0.0; 2], 0.0, 0.0);
-            candidate.cross.fill(0.0);
+            candidate.sums.clear();
             candidate.term = scaled(candidate.term, largest);
         }
         self.own.clear();
         self.before = state;
     }
 
-    /// Takes the sample that the run has just taken, under the law `motion`.
+    /// Takes the sample that the run has just taken, under the law `motion`; `shifts` is what F was a sample before and
+    /// will be a sample later, less what it is.
     pub fn step(
         &mut self,
         motion: &Motion,
         pass: &Pass,
         observation: &Observation,
+        shifts: [f64; 2],
         innovations: &[Option<Innovation>; 2],
     ) {
         let state = pass.filter.state();
@@ -126,7 +142,10 @@ impl ScoreTest {
             let term = candidate.term;
             let force = 0.5 * (term.force(self.before.q, self.before.qd, from) + term.force(state.q, state.qd, to));
             let push = -(force + term.mass(state.q) * acceleration) * inverse_mass;
-            (candidate.rows, candidate.sensitivity) = pass.carry(candidate.sensitivity, push, &gains);
+            candidate.sums.carry(pass, push, &gains);
+        }
+        for (sums, shift) in self.lags.iter_mut().zip(shifts) {
+            sums.carry(pass, shift * inverse_mass, &gains);
         }
         self.before = state;
         self.sum(pass, innovations);
@@ -137,12 +156,8 @@ impl ScoreTest {
             let Some(innovation) = &innovations[channel as usize] else { continue };
             self.row.copy_from_slice(pass.expected(channel));
             self.own.add(&self.row, innovation.residual, innovation.variance);
-            for candidate in &mut self.candidates {
-                let scaled = candidate.rows[channel as usize] * innovation.precision;
-                candidate.information += scaled * candidate.rows[channel as usize];
-                candidate.score += scaled * innovation.residual;
-                candidate.cross.iter_mut().zip(&self.row).for_each(|(sum, other)| *sum += scaled * other);
-            }
+            let all = self.candidates.iter_mut().map(|candidate| &mut candidate.sums).chain(&mut self.lags);
+            all.for_each(|sums| sums.add(channel, innovation, &self.row));
         }
     }
 
@@ -153,7 +168,7 @@ impl ScoreTest {
         self.solution.solve(&self.own, &self.active);
         let price = (self.candidates.len().max(1) as f64).ln();
         let evidence = |candidate: &Candidate| {
-            let (coefficient, gain) = candidate.gain(&self.solution, &self.active, &self.own.score);
+            let (coefficient, gain, _) = candidate.sums.gain(&self.solution, &self.active, &self.own.score);
             let allowed = Catalogue::ENTRIES[candidate.entry].sign.allows(coefficient);
             if allowed { gain / overdispersion.max(1.0) - price } else { 0.0 }
         };
@@ -161,11 +176,46 @@ impl ScoreTest {
             self.candidates.iter().map(|candidate| Missing { entry: candidate.entry, evidence: evidence(candidate) });
         all.max_by(|a, b| a.evidence.total_cmp(&b.evidence)).filter(|missing| missing.evidence > NAMED)
     }
+
+    /// When F acted, where that is not when it is taken to have; after [`missing`](Self::missing).
+    pub fn lag(&self, overdispersion: f64) -> Option<Lag> {
+        let inflated = overdispersion.max(1.0);
+        let lag = |sums: &Sums, sign: f64| {
+            let (samples, gain, information) = sums.gain(&self.solution, &self.active, &self.own.score);
+            Lag { samples: sign * samples, std: (inflated / information).sqrt(), evidence: gain / inflated }
+        };
+        let [late, early] = &self.lags;
+        let [late, early] = [lag(late, 1.0), lag(early, -1.0)];
+        Some(if late.evidence > early.evidence { late } else { early }).filter(|lag| lag.evidence > NAMED)
+    }
 }
 
-impl Candidate {
-    /// (coefficient, gain in log-likelihood) beside the law's own terms.
-    fn gain(&self, own: &Solution, active: &[bool], own_score: &[f64]) -> (f64, f64) {
+impl Sums {
+    fn new(n: usize) -> Sums {
+        Sums { sensitivity: [0.0; 2], rows: [0.0; 2], information: 0.0, score: 0.0, cross: vec![0.0; n] }
+    }
+
+    fn clear(&mut self) {
+        (self.sensitivity, self.information, self.score) = ([0.0; 2], 0.0, 0.0);
+        self.cross.fill(0.0);
+    }
+
+    /// Goes with the run over an interval in which a coefficient of 1 accelerates by `push`.
+    fn carry(&mut self, pass: &Pass, push: f64, gains: &[[f64; 2]; 2]) {
+        (self.rows, self.sensitivity) = pass.carry(self.sensitivity, push, gains);
+    }
+
+    /// Takes the innovation of a channel, of which the law's terms expect `own`.
+    fn add(&mut self, channel: Channel, innovation: &Innovation, own: &[f64]) {
+        let row = self.rows[channel as usize];
+        let scaled = row * innovation.precision;
+        self.information += scaled * row;
+        self.score += scaled * innovation.residual;
+        self.cross.iter_mut().zip(own).for_each(|(sum, other)| *sum += scaled * other);
+    }
+
+    /// (coefficient, gain in log-likelihood, information of its own) beside the law's own terms.
+    fn gain(&self, own: &Solution, active: &[bool], own_score: &[f64]) -> (f64, f64, f64) {
         let n = self.cross.len();
         let terms = || (0..n).filter(|index| active[*index] && own.determined[*index]);
         let (mut information, mut score) = (self.information, self.score);
@@ -175,8 +225,8 @@ impl Candidate {
             score -= shared * own_score[row];
         }
         match information > OWN * self.information {
-            true => (score / information, 0.5 * score * score / information),
-            false => (0.0, 0.0),
+            true => (score / information, 0.5 * score * score / information, information),
+            false => (0.0, 0.0, 0.0),
         }
     }
 }

@@ -99,6 +99,8 @@ pub struct Identification {
     pub noise_force: Option<f64>,
     /// The laws that were validated, to be recognised in other recordings.
     pub known_laws: SavedLaws,
+    /// What the excitation did between samples: as set, or as the motion tells.
+    pub hold: Hold,
     /// The sensors' faults, in the order of their start.
     pub sensors: Vec<SensorFault>,
     /// The samples that were not used, and why.
@@ -145,7 +147,8 @@ pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) ->
             break;
         }
     }
-    let tried = rivals.iter().filter_map(|(hold, identifier)| Some((*hold, identifier.likelihood()?)));
+    // a rival whose hold the motion has told to be wrong goes on under the other
+    let tried = rivals.iter().filter_map(|(_, identifier)| Some((identifier.output().hold, identifier.likelihood()?)));
     tried.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(Hold::Linear, |(hold, _)| hold)
 }
 
@@ -189,6 +192,7 @@ pub fn identify_knowing(
         noise_qd: None,
         noise_force: None,
         known_laws: known.clone(),
+        hold: settings.hold,
         sensors: Vec::new(),
         skipped: Vec::new(),
     };
@@ -214,6 +218,7 @@ fn follow(
         let sensors = identifier.output().sensors;
         found.skipped.extend(identifier.step(sample).err());
         note_faults(&mut found.sensors, sensors, identifier.output().sensors, sample.t);
+        found.hold = identifier.output().hold;
         if identifier.output().switch_count != switches {
             let next = begin(&identifier, identifier.output().switch_time);
             present.end = next.start;

@@ -9,6 +9,7 @@ use super::published_method::Publication;
 use super::report::{Coefficient, Output, SensorState, Status};
 use super::sample::{Sample, Skipped};
 use super::settings::{Method, Settings};
+use super::timing::{Alignment, Timing};
 use super::tracker::Tracker;
 use crate::law::{Model, Term};
 use serde::{Deserialize, Serialize};
@@ -41,6 +42,8 @@ pub struct Identifier {
     coefficients: Vec<Coefficient>,
     output: Output,
     clock: Clock,
+    timing: Timing,
+    alignment: Alignment,
 }
 
 impl Identifier {
@@ -81,8 +84,11 @@ impl Identifier {
             noise_qd: None,
             noise_force: None,
             missing: None,
+            hold: settings.hold,
         };
-        Ok(Identifier { settings, problem, engine, potential, coefficients, output, clock: Clock::default() })
+        let (clock, alignment) = (Clock::default(), Alignment::default());
+        let timing = Timing::new(settings.hold);
+        Ok(Identifier { settings, problem, engine, potential, coefficients, output, clock, timing, alignment })
     }
 
     /// Takes one sample.
@@ -95,11 +101,17 @@ impl Identifier {
             Err(skipped) => return Err(self.skip(&sample, skipped)),
         };
         self.clock.advance(sample.t);
-        let Identifier { settings, problem, engine, coefficients, output, .. } = self;
+        let Some(sample) = self.alignment.align(self.timing.lag, sample) else { return Ok(()) };
+        let Identifier { settings, problem, engine, coefficients, output, timing, .. } = self;
         match engine {
             Engine::Default(tracker) => {
                 tracker.step(problem, settings, sample);
+                if let Some(corrected) = tracker.corrected_timing(timing) {
+                    (*timing, problem.hold) = (corrected, corrected.hold);
+                    tracker.begin_under_another_timing(problem);
+                }
                 tracker.show(problem, settings, coefficients, output);
+                timing.say_late(&mut output.sensors);
             }
             Engine::Publication(publication) => publication.step(problem, settings, sample, coefficients, output),
             Engine::Force(tracker) => tracker.step(problem, settings, sample, coefficients, output),

@@ -26,6 +26,7 @@ mod sample;
 mod section;
 mod segment;
 mod settings;
+mod timing;
 mod tracker;
 mod validation;
 mod window;

@@ -1,7 +1,7 @@
 //! What an identifier tells after a step.
 
 use crate::estimation::Missing;
-use crate::law::Term;
+use crate::law::{Hold, Term};
 use serde::{Deserialize, Serialize};
 
 /// What the identifier is doing; numbered as in the FMU.
@@ -107,6 +107,8 @@ pub struct Output {
     pub recognised: bool,
     /// What the identifier is doing.
     pub status: Status,
+    /// What F is taken to do between samples: as set, until the motion tells otherwise.
+    pub hold: Hold,
     /// Whether the present law is validated, every std known and honest, and the last samples were used.
     pub valid: bool,
     /// What the sensors of q, q̇ and F do.

@@ -132,6 +132,16 @@ impl Window {
         number > self.oldest() && self.sample(number).t - self.sample(number - 1).t > OUTAGE * self.pace.dt
     }
 
+    /// What F is taken to do between samples.
+    pub fn hold(&self) -> Hold {
+        self.hold
+    }
+
+    /// From now on F is taken to do this between samples.
+    pub fn set_hold(&mut self, hold: Hold) {
+        self.hold = hold;
+    }
+
     /// Changes the last `count` readings.
     pub fn amend(&mut self, count: u64, change: impl Fn(&mut Reading)) {
         for number in self.end().saturating_sub(count).max(self.oldest())..self.end() {
@@ -144,18 +154,40 @@ impl Window {
     #[inline]
     pub fn observation(&self, number: u64) -> Observation {
         let (before, after) = (self.sample(number - 1), self.sample(number));
-        let drive = match self.hold {
-            _ if !self.channels.excitation => Drive::Held(0.0),
-            Hold::Zero => Drive::Held(before.excitation),
-            Hold::Linear => Drive::Line(before.excitation, after.excitation),
-            Hold::BandLimited => self.interpolate(number - 1),
-        };
+        let drive = self.drive(number);
         let Reading { faulty: [q_faulty, qd_faulty], unseen, .. } = self.ring[self.slot(number)];
         let counts = [self.channels.q && !q_faulty, self.channels.qd && !qd_faulty];
         let measured = [counts[0].then_some(after.q), counts[1].then_some(after.qd)];
         let dt = after.t - before.t;
         let unseen = unseen + self.pace.unseen(dt, after.excitation - before.excitation);
         Observation { dt, drive, measured, unseen }
+    }
+
+    /// The excitation since the sample before sample `number`.
+    fn drive(&self, number: u64) -> Drive {
+        let [before, after] = [number - 1, number].map(|number| self.sample(number).excitation);
+        match self.hold {
+            _ if !self.channels.excitation => Drive::Held(0.0),
+            Hold::Zero => Drive::Held(before),
+            Hold::Linear => Drive::Line(before, after),
+            Hold::BandLimited => self.interpolate(number - 1),
+        }
+    }
+
+    /// By how much the excitation of the interval before, and of that after, differs in the middle from the one since
+    /// the sample before sample `number`; by nothing where they are not in the window.
+    pub fn shifts(&self, number: u64) -> [f64; 2] {
+        let middle = |number: u64| self.drive(number).part(0, 1)[1];
+        let now = middle(number);
+        let before = if number > self.oldest() + 1 { middle(number - 1) - now } else { 0.0 };
+        // of a force that moves straight nobody knows where to before the next sample
+        let known = number + 1 < self.end() || self.hold == Hold::Zero && number < self.end();
+        let after = match known {
+            true if self.hold == Hold::Zero => self.sample(number).excitation - now,
+            true => middle(number + 1) - now,
+            false => 0.0,
+        };
+        [before, if self.channels.excitation { after } else { 0.0 }]
     }
 
     /// The state at sample `start` from that sample and the next alone, where a filter run begins.

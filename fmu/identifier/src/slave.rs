@@ -5,7 +5,7 @@ use crate::stream::Watch;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use switchid::identify::{Identifier, OutputValue, Outputs, Sample, SavedLaws, SavedLawsError, SensorState, Skipped};
-use switchid::law::{Model, ModelError, Term};
+use switchid::law::{Hold, Model, ModelError, Term};
 use switchid_fmu_slave::{Category, Description, Log, Slave, SlaveError, Value, Values, memory, seconds};
 use thiserror::Error;
 
@@ -113,7 +113,7 @@ impl Slave for IdentifierSlave {
         let Some(running) = self.running.as_mut() else { return Ok(()) };
         let [q, qd, excitation] = self.inputs.map(|reference| values.real(reference));
         let before = running.identifier.output().switch_count;
-        let sensors = running.identifier.output().sensors;
+        let (sensors, hold) = (running.identifier.output().sensors, running.identifier.output().hold);
         let sample = Sample { t: time, q, qd, excitation };
         let outcome = running.identifier.step(sample);
         running.publish(&self.output_references, values);
@@ -124,6 +124,7 @@ impl Slave for IdentifierSlave {
         values.put(self.stream, Value::Integer(running.watch.shown()));
         running.say_switch(before, log);
         running.say_sensors(time, sensors, log);
+        running.say_hold(time, hold, log);
         Ok(())
     }
 }
@@ -146,11 +147,26 @@ impl Running {
                 let t = seconds(time);
                 log.warn_of_onset(channel.1, || match now {
                     SensorState::Ok => format!("sensor of {}: {} until t = {t} s, ok again", channel.0, before.id()),
+                    SensorState::Late => format!(
+                        "sensor of {}: late from t = {t} s on, by a sample; it is taken for the one before",
+                        channel.0
+                    ),
                     fault => {
                         format!("sensor of {}: {} from t = {t} s on, its readings do not count", channel.0, fault.id())
                     }
                 });
             }
+        }
+    }
+
+    /// A hold that the motion contradicts is left, and that is said.
+    fn say_hold(&self, time: f64, before: Hold, log: &mut Log) {
+        let now = self.identifier.output().hold;
+        if before != now {
+            let t = seconds(time);
+            log.warn_of_onset("hold", || {
+                format!("hold: the motion until t = {t} s tells that F is {now} between samples, not {before}; so it is taken from here on")
+            });
         }
     }
 

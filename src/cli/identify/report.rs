@@ -110,7 +110,7 @@ impl Report {
             stages: stages(run).map(|(stage, limit)| StageReport::of(stage, limit, forced, &opened.units)).collect(),
             noise: Pairs(noise(found)),
             sensors: found.sensors.iter().map(SensorReport::of).collect(),
-            hold: settings.hold.id(),
+            hold: found.hold.id(),
             inner: Pairs(run.inner.clone()),
             gaps: opened.recording.gaps().into_iter().map(|gap| [gap.start, gap.end]).collect(),
             skipped: found.skipped.len(),

@@ -95,7 +95,13 @@ fn head(run: &Run) -> String {
     }
     text += &match run.gives_force {
         true => "F is the output: F = law(q, q̇)\n".into(),
-        false => format!("between samples: {} ({})\n", run.settings.hold, run.hold_from),
+        false if run.found.hold == run.settings.hold => {
+            format!("between samples: {} ({})\n", run.settings.hold, run.hold_from)
+        }
+        false => format!(
+            "between samples: {}; {} ({}) is not what the motion tells\n",
+            run.found.hold, run.settings.hold, run.hold_from
+        ),
     };
     let noise = words::noise(&noise(&run.found), &run.opened.units);
     let _ = writeln!(text, "sensor noise (std): {}", if noise.is_empty() { "not known" } else { &noise });

@@ -56,6 +56,11 @@ impl KnownLaws {
         }
     }
 
+    /// No law is known any more; those to come are numbered on.
+    pub fn forget(&mut self) {
+        self.count = 0;
+    }
+
     /// The laws, each at the place that it keeps while it is known.
     pub fn laws(&self) -> &[KnownLaw] {
         &self.laws[..self.count]

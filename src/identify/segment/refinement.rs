@@ -10,7 +10,7 @@ use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
 use super::prior::{InertiaPrior, Prior};
 use super::state::{NOISE_MEMORY, Runs, Segment};
-use crate::estimation::{Noise, Observation, Pass};
+use crate::estimation::{Noise, Pass};
 use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
@@ -65,7 +65,7 @@ impl Segment {
             self.known.inertia = Some(InertiaPrior { centre: prior.centre[index], log_std: prior.log_inertia });
         }
         self.fit.gain = f64::INFINITY;
-        self.missing = None;
+        (self.missing, self.lag) = (None, None);
         self.score_test.next_look = 0;
         self.convergence.clear();
         self.run.largest = [0.0; 2];
@@ -106,7 +106,7 @@ impl Segment {
         }
         let stop = end.min(self.run.next + budget as u64);
         while self.run.next < stop {
-            self.take(problem, &window.observation(self.run.next));
+            self.take(problem, window, self.run.next);
         }
         let fresh = self.run.closed_at + FRESH.max((GROWTH * self.length(end) as f64) as u64);
         if self.run.next < end || (self.run.next < fresh && self.fit.decrement < SETTLED) || self.length(end) < 4 {
@@ -117,12 +117,14 @@ impl Segment {
     }
 
     /// The run takes a sample, and so does all that is summed up beside it.
-    fn take(&mut self, problem: &Problem, observation: &Observation) {
+    fn take(&mut self, problem: &Problem, window: &Window, number: u64) {
+        let observation = &window.observation(number);
         let Segment { run, score_test, convergence, all, noise, .. } = self;
         let motion = problem.motion(all);
         let innovations = run.filter_run.step(&motion, &problem.free_terms, noise, observation);
         if score_test.looking {
-            score_test.candidates.step(&motion, &run.filter_run, observation, &innovations);
+            let shifts = window.shifts(number);
+            score_test.candidates.step(&motion, &run.filter_run, observation, shifts, &innovations);
         }
         run.scales.add(problem, all, &run.filter_run, observation);
         run.sandwich.step(&run.filter_run.information);
@@ -174,6 +176,7 @@ impl Segment {
     fn end_score_test(&mut self) {
         if self.score_test.looking {
             self.missing = self.score_test.candidates.missing(&self.active, self.fit.overdispersion);
+            self.lag = self.score_test.candidates.lag(self.fit.overdispersion);
             self.score_test.next_look = (LOOK_AGAIN * self.length(self.run.next) as f64) as u64;
         }
     }

@@ -3,7 +3,7 @@
 use super::convergence::Convergence;
 use super::motion_scales::MotionScales;
 use super::prior::InertiaPrior;
-use crate::estimation::{Information, Missing, Noise, Pass, ScoreTest, Solution, TermSelection};
+use crate::estimation::{Information, Lag, Missing, Noise, Pass, ScoreTest, Solution, TermSelection};
 use crate::identify::library::Estimate;
 use crate::identify::problem::Problem;
 use crate::identify::validation::{Constancy, SandwichFactor, Stability};
@@ -38,6 +38,8 @@ pub struct Segment {
     pub runs: Runs,
     /// The effect that the law lacks most, as of the last run that looked for one.
     pub missing: Option<Missing>,
+    /// When F acted, where that run told that it was another time.
+    pub lag: Option<Lag>,
     /// What is known beside the record.
     pub(super) known: Known,
     /// The run under way.
@@ -157,6 +159,7 @@ impl Segment {
             fit: Fit::unknown(),
             runs: Runs::default(),
             missing: None,
+            lag: None,
             known: Known {
                 information: Information::none(n),
                 inertia: None,

@@ -1,10 +1,11 @@
 //! How the record of another law begins.
 
 use super::regime::Event;
-use super::state::{Fitting, SWITCH_SIZE, Schedule, Tracker};
+use super::state::{Fitting, History, SWITCH_SIZE, Schedule, Tracker};
 use crate::estimation::Noise;
 use crate::identify::problem::Problem;
 use crate::identify::segment::{NOISE_MEMORY, Prior};
+use crate::identify::timing::Timing;
 
 /// The prior of a new law is this much wider than the switch that is looked for.
 pub(super) const PRIOR_WIDTH: f64 = 3.0;
@@ -59,6 +60,41 @@ impl Tracker {
         self.library.end_trials();
         self.library.trial_due = Some(end);
         self.enter(Event::StateLost);
+    }
+
+    /// What the record of the present law tells of when F acted, where that is not as assumed.
+    pub fn corrected_timing(&mut self, timing: &Timing) -> Option<Timing> {
+        let lag = self.segment.lag.take().filter(|_| self.is_refining())?;
+        timing.corrected(&lag, self.record_length())
+    }
+
+    /// F has acted at other times than was assumed: no law so far is worth keeping. The record is fitted anew where only
+    /// the hold was another one, else the next samples are.
+    pub fn begin_under_another_timing(&mut self, problem: &Problem) {
+        let rereads = self.window.hold() != problem.hold && self.regime.law().is_some();
+        self.window.set_hold(problem.hold);
+        match rereads {
+            true => self.fit_again(),
+            false => self.lose(),
+        }
+        self.library.known.forget();
+        self.library.end_trials();
+        self.published.forget_stds(problem);
+        self.weak_form.restart();
+        self.weak_row_drift.restart(self.window.end());
+        self.augmented_drift.end();
+        self.intake.after_outage.end();
+        (self.history, self.drifted) = (History::default(), false);
+    }
+
+    /// The segment's record once more, from its coefficients.
+    fn fit_again(&mut self) {
+        self.segment.begin_run(&self.window);
+        self.begin_weak_rows(self.window.end());
+        self.monitor.stop();
+        self.monitor.bank.clear();
+        self.monitor.empirical_null.clear();
+        self.refute_law();
     }
 
     /// A law that was validated does not explain its record any more, and no switch does: it is contested again.

@@ -50,6 +50,7 @@ impl Tracker {
             prediction_q: prediction.shown.q,
             prediction_qd: prediction.shown.qd,
             missing: published.missing,
+            hold: self.window.hold(),
             explained: None,
             noise_q: published.noise[0],
             noise_qd: published.noise[1],

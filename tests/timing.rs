@@ -1,0 +1,65 @@
+//! When the excitation acted: samples that come late, and a hold that is said wrongly.
+
+use switchid::identify::{Identifier, Sample, SensorState, Settings};
+use switchid::law::{Given, Hold, Model};
+use switchid::simulate::{Builtin, Scenario, record};
+
+/// Std of the sensors' noise.
+const NOISE: f64 = 0.01;
+
+/// Largest error ÷ std that is an honest one.
+const BEYOND: f64 = 6.0;
+
+/// One law for 20 s, read every `sample_time` s while F is held.
+fn scenario(builtin: Builtin, seed: u64, sample_time: f64) -> Scenario {
+    let mut scenario = builtin.random(seed).with_noise(NOISE);
+    scenario.stages.truncate(1);
+    scenario.excitation.sample_time = sample_time;
+    scenario.duration = 20.0;
+    scenario
+}
+
+fn samples(scenario: &Scenario) -> Vec<Sample> {
+    let readings = record(scenario).unwrap().into_iter();
+    readings.map(|read| Sample { t: read.t, q: read.q, qd: read.qd, excitation: read.excitation }).collect()
+}
+
+/// The identifier after the samples: its law is valid, its coefficients as far off as their std say, and no switch was
+/// seen.
+fn identify(builtin: Builtin, hold: Hold, scenario: &Scenario, samples: &[Sample]) -> Identifier {
+    let model = Model::of("plant", builtin.terms().into_iter().map(|term| (term, Given::Fit)));
+    let mut identifier = Identifier::new(&model, Settings { hold, ..Settings::default() }).unwrap();
+    samples.iter().for_each(|sample| identifier.step(*sample).unwrap());
+    let truth = &scenario.stages[0].coefficients;
+    let off = identifier.coefficients().iter().zip(truth);
+    let off = off.map(|(known, truth)| (known.value - truth).abs() / known.std.unwrap()).fold(0.0, f64::max);
+    let output = identifier.output();
+    assert!(output.valid && output.switch_count == 0 && off < BEYOND, "{hold}: {off} std, {output:?}");
+    identifier
+}
+
+#[test]
+fn a_motion_or_a_force_that_comes_a_sample_late_is_said_to_and_counted_with() {
+    let builtin = Builtin::DuffingWhite;
+    let scenario = scenario(builtin, 7, 1e-3);
+    let read = samples(&scenario);
+    let pairs = || read.windows(2);
+    let motion: Vec<Sample> = pairs().map(|pair| Sample { q: pair[0].q, qd: pair[0].qd, ..pair[1] }).collect();
+    let force: Vec<Sample> = pairs().map(|pair| Sample { excitation: pair[0].excitation, ..pair[1] }).collect();
+    let (ok, late) = (SensorState::Ok, SensorState::Late);
+    for (samples, expected) in [(&read, [ok; 3]), (&motion, [late, late, ok]), (&force, [ok, ok, late])] {
+        assert_eq!(identify(builtin, Hold::Zero, &scenario, samples).output().sensors, expected);
+    }
+}
+
+#[test]
+fn a_hold_that_is_said_wrongly_is_found_in_the_stream() {
+    for (builtin, seed) in [(Builtin::DuffingWhite, 8), (Builtin::DuffingSine, 8), (Builtin::VanDerPolWhite, 9)] {
+        let scenario = scenario(builtin, seed, 0.01);
+        let samples = samples(&scenario);
+        for said in [Hold::Zero, Hold::Linear] {
+            let found = identify(builtin, said, &scenario, &samples).output().hold;
+            assert_eq!(found, Hold::Zero, "{} said to be {said}", builtin.id());
+        }
+    }
+}
