@@ -204,3 +204,47 @@ fn valid_is_a_promise_whatever_the_sensors_do() {
         assert!(seen.switches == 1, "seed {seed}: the switch at 10 s is the only one: {seen:?}");
     }
 }
+
+#[test]
+fn a_sensor_that_becomes_louder_is_believed_and_its_noise_told() {
+    let (scenario, mut samples) = steady(60);
+    let mut generator = ChaCha8Rng::seed_from_u64(60);
+    let mut more = || NOISE * 8.0_f64.sqrt() * (0..12).map(|_| generator.random_range(-0.5..0.5)).sum::<f64>();
+    samples[FIRST - 3000..]
+        .iter_mut()
+        .for_each(|sample| (sample.q, sample.qd) = (sample.q + more(), sample.qd + more()));
+    let mut identifier = identifier(Builtin::DuffingSine);
+    samples.iter().for_each(|sample| identifier.step(*sample).unwrap());
+    let output = identifier.output();
+    let ratio = output.noise_qd.unwrap() / (3.0 * NOISE);
+    assert!((0.75..1.25).contains(&ratio) && output.switch_count == 0 && output.valid, "{ratio}: {output:?}");
+    assert!(output.sensors == [SensorState::Ok; 3] && scenario.stages.len() == 2, "{:?}", output.sensors);
+}
+
+#[test]
+fn a_sensor_that_comes_back_from_an_outage_with_an_offset_is_no_switch() {
+    let (_, mut samples) = steady(61);
+    samples[FIRST..].iter_mut().for_each(|sample| sample.q += 5.0 * NOISE);
+    samples.drain(FIRST - 1000..FIRST);
+    let mut identifier = identifier(Builtin::DuffingSine);
+    // the first sample after an outage is believed with the second one
+    samples.iter().for_each(|sample| _ = identifier.step(*sample).ok());
+    let output = identifier.output();
+    assert!(output.switch_count == 0 && output.sensors[0] == SensorState::Offset, "{output:?}");
+}
+
+/// Switches between two samples, of plants without noise: what the law then is, is wrong by thousands of stds.
+#[test]
+fn without_noise_a_switch_is_no_fault_of_all_sensors() {
+    for (seed, switch) in [(29, 10.0004), (34, 10.0003), (10, 10.0007)] {
+        let scenario = plant(Builtin::VanDerPolWhite, seed, switch, 12.0).with_noise(0.0);
+        let mut identifier = identifier(Builtin::VanDerPolWhite);
+        samples(&scenario).iter().for_each(|sample| identifier.step(*sample).unwrap());
+        let output = identifier.output();
+        let delay = output.detection_time.map(|detected| detected - switch);
+        assert!(
+            output.switch_count == 1 && output.valid && delay.is_some_and(|delay| delay < 0.01),
+            "{seed}: {output:?}"
+        );
+    }
+}

@@ -24,11 +24,15 @@ pub enum Kind {
     Stuck(Channel),
     /// Both channels do.
     BothStuck,
+    /// A channel scatters more than it did, and goes on to.
+    Louder(Channel),
+    /// Both channels do.
+    BothLouder,
 }
 
 impl Kind {
     /// Every one of them, the least first.
-    pub const ALL: [Kind; 10] = [
+    pub const ALL: [Kind; 13] = [
         Kind::Readings,
         Kind::Law { before: 0, times: 1 },
         Kind::Law { before: 0, times: 10 },
@@ -39,11 +43,19 @@ impl Kind {
         Kind::Stuck(Channel::Q),
         Kind::Stuck(Channel::Qd),
         Kind::BothStuck,
+        Kind::Louder(Channel::Q),
+        Kind::Louder(Channel::Qd),
+        Kind::BothLouder,
     ];
 
     /// Whether the channel repeats its value.
     pub fn sticks(self, channel: Channel) -> bool {
         self == Kind::BothStuck || self == Kind::Stuck(channel)
+    }
+
+    /// Whether the channel scatters more than it did.
+    pub fn is_louder(self, channel: Channel) -> bool {
+        self == Kind::BothLouder || self == Kind::Louder(channel)
     }
 
     /// Whether the law is another one.
@@ -99,6 +111,9 @@ pub struct Value {
 /// Probability that what befalls one channel begins in the other too: a loose plug, a logger that fails.
 const SHARED: f64 = 0.05;
 
+/// A sensor that has become louder has this many times the std: three times as much is what is told from a burst.
+const LOUDER: f64 = 3.0;
+
 /// A stuck sensor that varies is none, nats.
 const VARIES: f64 = -40.0;
 
@@ -153,7 +168,7 @@ impl Hypothesis {
                 (self.covariance[2][2], self.covariance[3][3]) = (square, gain * gain);
             }
             Kind::Offset(channel) => self.covariance[2][2] = law.size[channel as usize].powi(2),
-            Kind::Readings | Kind::Kick | Kind::Stuck(_) | Kind::BothStuck => {}
+            _ => {}
         }
     }
 
@@ -295,7 +310,8 @@ impl Hypothesis {
         let offset = if self.kind == Kind::Offset(channel) { 1.0 } else { 0.0 };
         let column: [f64; 4] =
             std::array::from_fn(|row| self.covariance[row][index] + offset * self.covariance[row][2]);
-        let variance = column[index] + offset * column[2] + law.noise.sensor[index];
+        let louder = if self.kind.is_louder(channel) { LOUDER * LOUDER } else { 1.0 };
+        let variance = column[index] + offset * column[2] + louder * law.noise.sensor[index];
         let residual = value.value - self.mean[index] - offset * self.mean[2];
         let faulty = faulty(residual, law.noise.sensor[index].sqrt());
         if self.kind.sticks(channel) {

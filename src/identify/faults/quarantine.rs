@@ -345,7 +345,10 @@ impl Quarantine {
         self.weighing.forget_held();
         self.stance = Stance::Named(place);
         match kind {
-            Kind::Law { .. } => (self.stance, self.decided) = (Stance::Calm, DECIDED),
+            // the law in use follows how loud the sensors are
+            Kind::Law { .. } | Kind::Louder(_) | Kind::BothLouder => {
+                (self.stance, self.decided) = (Stance::Calm, DECIDED)
+            }
             Kind::Offset(channel) => self.know_offset(channel, offset, law),
             _ => {}
         }
