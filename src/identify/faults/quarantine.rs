@@ -29,6 +29,9 @@ const DECIDED: u32 = 200;
 /// An offset is known once its std is below this part of the sensor's noise.
 const OFFSET_KNOWN: f64 = 0.5;
 
+/// … and is taken off for good at these log-odds: a motion that was kicked is told from it by q alone, which takes time.
+const CERTAIN: f64 = 10.0;
+
 /// Samples that the size of the motion is known from.
 const MEMORY: f64 = 10_000.0;
 
@@ -349,7 +352,7 @@ impl Quarantine {
             Kind::Law { .. } | Kind::Louder(_) | Kind::BothLouder => {
                 (self.stance, self.decided) = (Stance::Calm, DECIDED)
             }
-            Kind::Offset(channel) => self.know_offset(channel, offset, law),
+            Kind::Offset(channel) if self.weighing.odds(place) > CERTAIN => self.know_offset(channel, offset, law),
             _ => {}
         }
         self.say(kind, any, first);

@@ -98,6 +98,12 @@ impl Weighing {
         }
     }
 
+    /// Log-odds of the hypothesis of this place against all others.
+    pub fn odds(&self, place: usize) -> f64 {
+        let others = self.hypotheses.iter().enumerate().filter(|(other, _)| *other != place);
+        self.hypotheses[place].log - others.map(|(_, other)| other.log).fold(f64::NEG_INFINITY, log_sum)
+    }
+
     /// The likeliest of all.
     pub fn best(&self) -> usize {
         self.likeliest(self.law_against_fault() > 0.0)
