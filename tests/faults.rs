@@ -2,7 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use switchid::identify::{Identifier, Sample, SensorState, Settings};
+use switchid::identify::{Channels, Identifier, Sample, SensorState, Settings};
 use switchid::law::{Given, Model};
 use switchid::simulate::{Builtin, Scenario, record};
 
@@ -246,5 +246,19 @@ fn without_noise_a_switch_is_no_fault_of_all_sensors() {
             output.switch_count == 1 && output.valid && delay.is_some_and(|delay| delay < 0.01),
             "{seed}: {output:?}"
         );
+    }
+}
+
+/// Where one channel is measured the other has no size: that must not make every switch a fault of the sensor's.
+#[test]
+fn a_switch_is_seen_in_either_channel_alone() {
+    for channels in [(true, false), (false, true)].map(|(q, qd)| Channels { q, qd, excitation: true }) {
+        let scenario = plant(Builtin::DuffingSine, 70, 8.0, 10.0).with_noise(1e-4);
+        let model = Model::of("plant", Builtin::DuffingSine.terms().into_iter().map(|term| (term, Given::Fit)));
+        let mut identifier = Identifier::new(&model, Settings { channels, ..Settings::default() }).unwrap();
+        samples(&scenario).iter().for_each(|sample| identifier.step(*sample).unwrap());
+        let output = identifier.output();
+        let delay = output.detection_time.map(|detected| detected - 8.0);
+        assert!(output.switch_count == 1 && delay.is_some_and(|delay| delay < 0.1), "{channels:?}: {output:?}");
     }
 }

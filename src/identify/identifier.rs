@@ -111,7 +111,7 @@ impl Identifier {
                     tracker.begin_under_another_timing(problem);
                 }
                 tracker.show(problem, settings, coefficients, output);
-                timing.say_late(&mut output.sensors);
+                timing.say_late(problem.channels, &mut output.sensors);
             }
             Engine::Publication(publication) => publication.step(problem, settings, sample, coefficients, output),
             Engine::Force(tracker) => tracker.step(problem, settings, sample, coefficients, output),

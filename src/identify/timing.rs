@@ -2,6 +2,7 @@
 
 use super::report::SensorState;
 use super::sample::Sample;
+use super::settings::Channels;
 use crate::estimation::Lag;
 use crate::law::Hold;
 use serde::{Deserialize, Serialize};
@@ -44,11 +45,11 @@ impl Timing {
         (lag.abs() <= 1.0).then_some(Timing { hold, lag: lag as i8, told_by: samples })
     }
 
-    /// Says which channels come late, where they do nothing worse.
-    pub fn say_late(&self, sensors: &mut [SensorState; 3]) {
+    /// Says which of the channels measured come late, where they do nothing worse.
+    pub fn say_late(&self, channels: Channels, sensors: &mut [SensorState; 3]) {
         let late = match self.lag {
             0 => [false; 3],
-            1.. => [true, true, false],
+            1.. => [channels.q, channels.qd, false],
             _ => [false, false, true],
         };
         let said = sensors.iter_mut().zip(late).filter(|(state, late)| *late && **state == SensorState::Ok);

@@ -73,6 +73,8 @@ pub struct Expected<'a> {
     pub noise: Noise,
     /// Std of what a switch adds to q̈, and of the part of F ÷ m that it does.
     pub switch: [f64; 2],
+    /// Radians of the motion in a second.
+    pub rate: f64,
     /// RMS of q and q̇: what an offset or a kick may be.
     pub size: [f64; 2],
     /// Parts of an interval between two samples.
@@ -80,11 +82,6 @@ pub struct Expected<'a> {
 }
 
 impl Expected<'_> {
-    /// Radians of the motion in a second.
-    fn rate(&self) -> f64 {
-        self.size[1] / self.size[0]
-    }
-
     /// Intensity of the white force, N² s, that moves q̇ by its own RMS within an interval of `dt` s.
     pub fn kick(&self, q: f64, dt: f64) -> f64 {
         (self.size[1] * self.motion.mass(q)).powi(2) / dt
@@ -271,7 +268,7 @@ impl Hypothesis {
             Kind::Law { times, .. } => {
                 let acceleration = f64::from(times) * acceleration;
                 let event = (acceleration * acceleration + (gain * inputs[1]).powi(2)) * dt;
-                [if first { event } else { 0.0 }, acceleration * acceleration * law.rate()]
+                [if first { event } else { 0.0 }, acceleration * acceleration * law.rate]
             }
             Kind::Kick if first => [law.size[1] * law.size[1] / dt, 0.0],
             _ => [0.0; 2],

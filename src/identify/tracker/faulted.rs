@@ -33,6 +33,7 @@ pub(super) fn expected<'a>(
         motion: problem.motion(&law.all),
         noise: law.noise_now(),
         switch: [scales.restoring_acceleration(), GAIN],
+        rate: scales.natural_time().recip(),
         size,
         parts: law.run.parts,
     }
