@@ -139,12 +139,11 @@ fn sources(folder: &Path) -> Vec<(PathBuf, String)> {
     found
 }
 
-/// The arrows between the files of a crate, by its folder of sources.
-fn arrows(folder: &str) -> BTreeSet<Arrow> {
+/// The files of a crate, by its folder of sources.
+fn house(folder: &str) -> House {
     let folder = root().join(folder);
     let sources = sources(&folder);
-    let inside = sources.iter().map(|(path, source)| (path.strip_prefix(&folder).unwrap(), source.as_str()));
-    House::new(inside).arrows()
+    House::new(sources.iter().map(|(path, source)| (path.strip_prefix(&folder).unwrap(), source.as_str())))
 }
 
 #[test]
@@ -166,10 +165,32 @@ fn no_source_breaks_a_rule() {
 
 #[test]
 fn no_import_runs_upward_and_none_in_a_circle() {
-    let arrows = arrows("src");
+    let arrows = house("src").arrows();
     assert!(arrows.len() > 100, "only {} arrows found", arrows.len());
     let broken = broken_arrows(&arrows);
     assert!(broken.is_empty(), "{} broken:\n{}", broken.len(), broken.join("\n"));
+}
+
+#[test]
+fn names_are_taken_from_the_file_that_defines_them() {
+    let detours = house("src").detours();
+    let told: Vec<String> = detours.iter().map(told).collect();
+    assert!(told.is_empty(), "these go through the file of their own folder:\n{}", told.join("\n"));
+}
+
+#[test]
+fn a_name_that_is_handed_on_is_seen() {
+    let files = [("law/mod.rs", "mod term;\npub use term::Term;"), ("law/term.rs", "pub struct Term;")];
+    for (source, detours) in [
+        ("use super::Term;", 1),
+        ("fn x() -> crate::law::Term {}", 1),
+        ("use super::term::Term;", 0),
+        ("use super::term;\nfn x() -> term::Term {}", 0),
+    ] {
+        let files = files.into_iter().chain([("law/model.rs", source)]);
+        let house = House::new(files.map(|(path, source)| (Path::new(path), source)));
+        assert_eq!(house.detours().len(), detours, "{source}");
+    }
 }
 
 /// Folders of sources of the workspace's other crates.
@@ -191,7 +212,7 @@ const OTHER_CRATES: [&str; 11] = [
 fn no_other_crate_has_a_circle_of_files() {
     for folder in OTHER_CRATES {
         assert!(root().join(folder).is_dir(), "{folder} is not there");
-        let arrows = arrows(folder);
+        let arrows = house(folder).arrows();
         let told: Vec<String> = circles(&arrows).iter().map(|(inside, way)| circle(&arrows, inside, way)).collect();
         assert!(told.is_empty(), "{folder}: {}", told.join("\n"));
     }

@@ -1,6 +1,6 @@
 //! Recordings whose columns are stored one after the other: the variables of a MAT file, the columns of Parquet.
 
-use super::DataError;
+use super::error::DataError;
 use super::header::{Column, Headings, Layout, TimeBase};
 use super::rows::{Rows, Signals, Source};
 use crate::identify::Recording;

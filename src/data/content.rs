@@ -1,6 +1,6 @@
 //! The content of a file: its beginning in memory, the rest where it is until it is wanted.
 
-use super::DataError;
+use super::error::DataError;
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;

@@ -1,8 +1,8 @@
 //! Reading a recording from text: CSV and its relatives.
 
-use super::DataError;
 use super::cells::Separator;
 use super::dialect::{Dialect, is_comment, lines, split_lines};
+use super::error::DataError;
 use super::guess;
 use super::header::{Column, Headings, Layout, TimeBase};
 use super::instant::{DAY, Instant};

@@ -1,6 +1,6 @@
 //! Model, scenario and law files.
 
-use super::DataError;
+use super::error::DataError;
 use crate::identify::SavedLaws;
 use crate::law::Model;
 use crate::simulate::Scenario;

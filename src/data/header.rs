@@ -1,6 +1,6 @@
 //! Which column holds which quantity, and in which unit.
 
-use super::DataError;
+use super::error::DataError;
 use super::guess;
 use super::kind::FileKind;
 use super::preamble;

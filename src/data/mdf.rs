@@ -1,7 +1,7 @@
 //! MDF 4 files (ASAM), as measuring instruments and loggers write them: channels in groups that share a clock.
 
-use super::DataError;
 use super::arrays::{Arrays, Unfit};
+use super::error::DataError;
 use super::names::{Name, headers};
 use super::rows::Source;
 use falcon_mdf::{Channel, Mf4Error as Error, Mf4File};

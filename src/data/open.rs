@@ -1,11 +1,12 @@
 //! Opening a recording, whatever kind of file it is in.
 
 use super::content::Content;
+use super::error::DataError;
 use super::header::{Column, Layout};
 use super::kind::FileKind;
 use super::rows::{Signals, Source};
 use super::text::Text;
-use super::{DataError, csv, kind, spreadsheet, stored};
+use super::{csv, kind, spreadsheet, stored};
 use crate::identify::{Recording, RecordingError};
 use crate::law::{Channel, Given, Model, Term, Unit, Units};
 

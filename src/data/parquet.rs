@@ -1,7 +1,7 @@
 //! Parquet files: flat columns of numbers, in as many row groups as the writer made.
 
-use super::DataError;
 use super::arrays::{Arrays, Unfit};
+use super::error::DataError;
 use super::rows::Source;
 use ::parquet::basic::{ConvertedType, LogicalType, Type};
 use ::parquet::column::reader::{ColumnReader, ColumnReaderImpl};

@@ -1,7 +1,7 @@
 //! From the rows of any table to the signals of a section, in SI units.
 
-use super::DataError;
 use super::content::Content;
+use super::error::DataError;
 use super::header::{Column, Layout};
 use super::kind::{self, FileKind};
 use super::section::Section;

@@ -1,6 +1,6 @@
 //! `DATA@t0:t1`: a file, or a section of it.
 
-use super::DataError;
+use super::error::DataError;
 use std::path::PathBuf;
 
 /// What of which file is to be read: t0 ≤ t < t1, s.

@@ -1,8 +1,8 @@
 //! Spreadsheets: the first sheet with numbers, as the text that it would be exported to.
 
-use super::DataError;
 #[cfg(feature = "formats")]
 use super::content::Content;
+use super::error::DataError;
 use super::rows::Source;
 use super::text::Text;
 #[cfg(feature = "formats")]

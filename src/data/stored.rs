@@ -1,6 +1,6 @@
 //! Files that store a recording column by column: MAT, MDF and Parquet. Without the feature `formats` they are refused by name.
 
-use super::DataError;
+use super::error::DataError;
 use super::header::Layout;
 #[cfg(feature = "formats")]
 use super::kind::FileKind;

@@ -1,7 +1,8 @@
 //! The identifier's interface for a model.
 
 use super::description::describe;
-use super::{FmuError, ports};
+use super::error::FmuError;
+use super::ports;
 use crate::identify::{
     Identifier, Method, OutputDescription, OutputKind, Outputs, Parameter, SavedLaws, SensorState, Settings, Status,
 };

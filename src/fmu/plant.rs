@@ -1,7 +1,7 @@
 //! A plant's interface for a law with parameters.
 
-use super::FmuError;
 use super::description::describe;
+use super::error::FmuError;
 use crate::law::{Catalogue, Entry, Expression, InnerParameter, InnerRange, InnerUnit};
 use crate::simulate::{Excitation, ParametricLaw, is_smooth};
 use switchid_fmu_package::variables::{at_least, choice, derivative, input, output, real, variable};

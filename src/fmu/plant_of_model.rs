@@ -3,11 +3,13 @@
 //! Terms without inner parameters are parameters of every stage. Those with inner ones are the plant's `hidden.*` effects, whose
 //! start values are then the model's: the law file has no place for a gap.
 
+use super::error::FmuError;
 use super::plant::{pack, plant_description, with_equations};
+use super::ports;
 use super::specimen::{pack_specimen, specimen_description};
-use super::{Fmu, FmuError, ports};
 use crate::law::{Expression, Given, Model, ModelTerm, SiUnit, Term, Units, equation};
 use crate::simulate::{ParametricLaw, is_smooth};
+use switchid_fmu_package::Fmu;
 use switchid_fmu_slave::{Description, Kind};
 
 /// A plant of the model's law, still without binaries; it starts at rest under a sine of amplitude 1. Of a model

@@ -1,7 +1,7 @@
 //! The interface of a specimen: a plant whose law gives F for the q and qd that its inputs impose.
 
-use super::FmuError;
 use super::description::describe;
+use super::error::FmuError;
 use super::plant::{NEVER, STAGES, hidden, own_effect, true_coefficients};
 use crate::law::Catalogue;
 use crate::simulate::ParametricLaw;

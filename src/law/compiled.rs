@@ -5,7 +5,9 @@
 //! only the force is wanted. The order of a sum, and so its last bits, depend on nothing but terms and coefficients.
 
 use super::effect::Effect;
-use super::{Expression, Monomial, Motion, State, Term};
+use super::expression::Expression;
+use super::motion::{Motion, State};
+use super::term::{Monomial, Term};
 use serde::{Deserialize, Serialize};
 
 /// Factors of q or q̇: the powers, then the effects'; a power of two, so that a place is never out of range.

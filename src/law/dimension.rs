@@ -1,6 +1,7 @@
 //! Dimensions of terms: what a coefficient is measured in is the excitation's unit divided by the term's.
 
-use super::{Effect, Monomial, Term};
+use super::effect::Effect;
+use super::term::{Monomial, Term};
 use serde::{Deserialize, Serialize};
 
 /// \[q\]^coordinate · s^time · \[F\]^excitation.
@@ -86,7 +87,7 @@ mod tests {
     }
 
     fn rescaled(term: Term, length: f64, second: f64) -> Term {
-        use crate::law::InnerUnit;
+        use crate::law::inner::InnerUnit;
         let Term::Effect(effect) = term else { return term };
         let scaled = effect.inner().iter().zip(effect.inner_values()).map(|(parameter, value)| match parameter.unit {
             InnerUnit::Coordinate => value * length,

@@ -1,6 +1,6 @@
 //! The excitation between two samples.
 
-use super::Hold;
+use super::hold::Hold;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 

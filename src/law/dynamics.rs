@@ -4,9 +4,12 @@
 //! step within which an internal state changes much is cut into parts, and one within which the velocity reverses under dry friction is cut
 //! there. Laws without such terms are faster by [`Motion`].
 
+use super::effect::Effect;
+use super::history::History;
 use super::memory::{LARGEST, parts};
+use super::motion::{Motion, State};
 use super::reversal::{MOST_CUTS, NEGLIGIBLE, REFINEMENTS, direction_from_rest, release, rest_within};
-use super::{Effect, History, Motion, State, Term};
+use super::term::Term;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -277,8 +280,10 @@ fn refined(mut share: f64, by: impl Fn(f64) -> f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::law::expression::Expression;
     use crate::law::history::Samples;
-    use crate::law::{Expression, Hold, Own};
+    use crate::law::hold::Hold;
+    use crate::law::own::Own;
 
     fn effect(id: &str, inner: &[f64]) -> Term {
         Term::Effect(Effect::prototype(id).unwrap().with_inner(inner).unwrap())

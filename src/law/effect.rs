@@ -1,6 +1,6 @@
 //! Named physical effects that are no product of powers.
 //!
-//! Effects that are monomials (`linear_damping` is `qd`) are names of terms: [`super::Term::parse`] knows them. An effect carries its
+//! Effects that are monomials (`linear_damping` is `qd`) are names of terms: [`super::term::Term::parse`] knows them. An effect carries its
 //! inner parameters (gap, delay …) with it, so that it alone says what its coefficient multiplies. The feature of a
 //! pointwise effect is a function of (q, q̇, F) at one instant; the others have a memory:
 //!
@@ -339,7 +339,7 @@ impl Effect {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::InnerRange;
+    use crate::law::inner::InnerRange;
 
     #[test]
     fn inner_values_are_set_and_read_in_the_order_of_their_names() {

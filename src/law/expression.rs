@@ -3,8 +3,8 @@
 //! Functions: abs, sign (signum), sqrt, exp, ln (log), sin, cos, tan, atan, sinh, cosh, tanh, min(a, b), max(a, b); the constant pi; every
 //! other name is an inner parameter. A power of a negative base needs a whole exponent: `abs(qd)^0.5`.
 
-use super::Own;
 use super::formula::{Binary, FormulaError, Instruction, STACK, Unary, VARIABLES, parse};
+use super::own::Own;
 use serde::{Deserialize, Serialize};
 
 /// A named formula with values of its inner parameters.

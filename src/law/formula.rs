@@ -10,7 +10,7 @@ use thiserror::Error;
 pub(super) const STACK: usize = 24;
 
 /// The most inner parameters of an expression: more than any record determines beside the coefficients.
-const MAX_PARAMETERS: usize = super::Own::MAX_INNER;
+const MAX_PARAMETERS: usize = super::own::Own::MAX_INNER;
 
 /// How deep parentheses, signs and powers may nest, so that no text overflows the parser's recursion.
 const NESTING: usize = 60;

@@ -1,6 +1,9 @@
 //! Terms of a law that has formulas of the user's own: which term a formula is, and what it is at a point.
 
-use super::{Expression, Own, State, Term};
+use super::expression::Expression;
+use super::motion::State;
+use super::own::Own;
+use super::term::Term;
 
 impl Expression {
     /// The term that stands for it among a law's expressions, at that place.

@@ -1,6 +1,6 @@
 //! The excitation as a function of time, present and past.
 
-use super::Hold;
+use super::hold::Hold;
 
 /// An excitation that can be asked for its past.
 pub trait History {

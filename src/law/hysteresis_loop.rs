@@ -5,7 +5,8 @@
 //! the coordinate moves on; where it turns, ρ becomes −ρ. Play of ± g is a way of 2g between unloading and loading. So a loop costs the same however sharp it is, where integration in time has
 //! to follow every yielding.
 
-use super::{Effect, State};
+use super::effect::Effect;
+use super::motion::State;
 
 /// Way between nodes of the tables, in yield displacements: Runge and Kutta's step of order 4 then errs by some 0.04⁵ ÷ 120 a node.
 const SPACING: f64 = 0.04;
@@ -225,7 +226,7 @@ impl Loop {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::Inner;
+    use crate::law::inner::Inner;
 
     /// Against the rate equation integrated in small steps, through loading, turning in mid-way and full reversal.
     #[test]

@@ -6,9 +6,15 @@
 //! line whose mean is ∫ f ds and whose moment about the middle is ∫ f (s − ½) ds: what acts on a coordinate that hardly moves
 //! within the interval is exact to second order.
 
+use super::effect::Effect;
+use super::expression::Expression;
+use super::hold::Hold;
 use super::hysteresis_loop::Loop;
+use super::motion::State;
+use super::own::Own;
 use super::quadrature::GAUSS;
-use super::{Effect, Expression, Hold, Own, State, Term, Trajectory};
+use super::series::Trajectory;
+use super::term::Term;
 
 /// A force over an interval as a straight line: its values at the start and at the end.
 pub type Line = [f64; 2];
@@ -208,7 +214,9 @@ fn integrated(trajectory: &Trajectory, [from, to]: [f64; 2], shift: f64, offset:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::{Dynamics, Motion, Phase, term_series};
+    use crate::law::dynamics::{Dynamics, Phase};
+    use crate::law::motion::Motion;
+    use crate::law::series::term_series;
 
     struct Record {
         t: Vec<f64>,

@@ -1,7 +1,10 @@
 //! Memories that are linear in the motion or in the excitation, between samples: a hidden mass, a Maxwell element, an actuator that lags.
 
+use super::effect::Effect;
+use super::history::History;
+use super::hold::Hold;
 use super::memory::{LARGEST, lagged};
-use super::{Effect, History, Hold, Trajectory};
+use super::series::Trajectory;
 
 /// Mean of a force over an interval, and its first moment about the middle, the interval being 1.
 pub(super) type Moments = [f64; 2];

@@ -4,8 +4,9 @@
 //! itself is integrated with order 4; A and B are taken at the middle of the step (order 2), which leaves a Gauss–Newton
 //! fixed point where it is: only the path to it depends on them.
 
+use super::compiled::Compiled;
 use super::compiled::Table;
-use super::{Compiled, State};
+use super::motion::State;
 
 /// A step and what it is linear about.
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +95,8 @@ impl Compiled {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::{Motion, Term};
+    use crate::law::motion::Motion;
+    use crate::law::term::Term;
 
     const TERMS: [Term; 4] = [Term::Inertia, Term::power(0, 1), Term::power(1, 0), Term::power(2, 1)];
     const COEFFICIENTS: [f64; 4] = [1.3, 0.3, 4.0, 0.7];

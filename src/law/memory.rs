@@ -4,8 +4,9 @@
 //! ẏ (m/s); the equations stand in [`super::effect`]. At rest z = e = w = 0, F_a is the excitation that has acted so far, and the hidden mass
 //! moves with the coordinate.
 
+use super::effect::Effect;
+use super::motion::State;
 use super::pointwise::sign;
-use super::{Effect, State};
 
 /// The most internal states of one effect.
 pub(super) const LARGEST: usize = 2;

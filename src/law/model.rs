@@ -1,7 +1,12 @@
 //! A model file: which terms a law may have, what is known of them, and which columns of a recording it reads.
 
+use super::compiled::Compiled;
+use super::effect::Effect;
+use super::expression::Expression;
+use super::hold::Hold;
 use super::model_error::ModelError;
-use super::{ColumnUnits, Compiled, Effect, Expression, Hold, Monomial, Term};
+use super::term::{Monomial, Term};
+use super::units::ColumnUnits;
 use serde::{Deserialize, Serialize};
 
 /// What the user knows of a coefficient.

@@ -1,6 +1,8 @@
 //! Why a model is refused.
 
-use super::{FormulaError, InnerError, TermError};
+use super::formula::FormulaError;
+use super::inner::InnerError;
+use super::term::TermError;
 use thiserror::Error;
 
 /// Why a model is refused.

@@ -12,9 +12,15 @@
 //! expression = "abs(qd/v)^0.5*qd"
 //! ```
 
+use super::expression::Expression;
+use super::hold::Hold;
+use super::inner::InnerError;
 use super::model::{Columns, Given, Model, ModelTerm};
 use super::model_error::ModelError;
-use super::{Channel, ColumnUnits, Expression, Hold, InnerError, Own, Term};
+use super::own::Own;
+use super::term::Term;
+use super::unit::Channel;
+use super::units::ColumnUnits;
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -280,7 +286,8 @@ fn read_potential(key: &str) -> Result<Term, ModelError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::{Effect, Inner};
+    use crate::law::effect::Effect;
+    use crate::law::inner::Inner;
 
     const HEAD: &str = "name = \"x\"\n[terms]\nqdd = \"fit\"\n";
 

@@ -3,7 +3,8 @@
 //! `Σ θ_j f_j = F` solved for the acceleration, `q̈ = (F − Σ θ_j force_j(q, q̇, F)) ÷ Σ θ_j mass_j(q)`, and one step of the
 //! classical Runge–Kutta method (order 4) under an excitation that is held or runs on a straight line over the step.
 
-use super::{Expression, Term};
+use super::expression::Expression;
+use super::term::Term;
 use serde::{Deserialize, Serialize};
 
 /// Displacement and velocity of the coordinate.
@@ -103,7 +104,7 @@ impl<'a> Motion<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::Effect;
+    use crate::law::effect::Effect;
 
     const TERMS: [Term; 5] =
         [Term::Inertia, Term::power(0, 1), Term::power(1, 0), Term::power(2, 0), Term::power(3, 0)];

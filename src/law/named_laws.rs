@@ -1,6 +1,6 @@
 //! Laws that have a name: choices where no text can be entered.
 
-use super::Term;
+use super::term::Term;
 
 /// A law by its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +46,8 @@ impl NamedLaw {
 #[cfg(test)]
 mod tests {
     use super::NamedLaw;
-    use crate::law::{Model, Term};
+    use crate::law::model::Model;
+    use crate::law::term::Term;
 
     #[test]
     fn the_cubic_library_has_them_all_and_a_linear_law_one() {

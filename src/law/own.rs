@@ -1,6 +1,6 @@
 //! A user's own effect as a term of a law: its name, where its formula stands, and numbers for its inner parameters.
 
-use super::Inner;
+use super::inner::Inner;
 use arrayvec::{ArrayString, ArrayVec};
 use serde::{Deserialize, Serialize};
 

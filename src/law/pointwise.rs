@@ -1,6 +1,6 @@
 //! Forces of the effects that one instant gives, and their slopes.
 
-use super::Effect;
+use super::effect::Effect;
 use super::term::raised;
 
 impl Effect {

@@ -4,7 +4,8 @@
 //! up to the root of q̇; at rest the forces beside friction decide whether it slides back or sticks until they exceed it (Leine and
 //! Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, Springer 2004, ch. 4 and 7).
 
-use super::{Effect, State};
+use super::effect::Effect;
+use super::motion::State;
 
 /// Pieces into which a step may be cut; the last one goes through to its end.
 pub(super) const MOST_CUTS: usize = 12;

@@ -1,8 +1,13 @@
 //! What a term is at every sample of a given motion.
 
+use super::effect::Effect;
+use super::expression::Expression;
+use super::history::Samples;
+use super::hold::Hold;
 use super::hysteresis_loop::Loop;
 use super::memory::{LARGEST, lagged, parts};
-use super::{Effect, Expression, Hold, Samples, State, Term};
+use super::motion::State;
+use super::term::Term;
 
 /// A motion at instants, measured or estimated; all slices are of one length.
 #[derive(Clone, Copy, Debug)]
@@ -154,7 +159,8 @@ fn runge_kutta(effect: Effect, states: [State; 3], memory: [f64; LARGEST], dt: f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::{Dynamics, Motion, Phase};
+    use crate::law::dynamics::{Dynamics, Phase};
+    use crate::law::motion::Motion;
 
     struct Record {
         t: Vec<f64>,

@@ -4,9 +4,11 @@
 //! I + (f⁺ − f⁻) hᵀ ÷ (h · f⁻) of the surface q̇ = 0 (Leine and Nijmeijer 2004, sec. 7.3): with f = (q̇, q̈) that is
 //! diag(1, q̈⁺ ÷ q̈⁻), and diag(1, 0) where it comes to stick.
 
+use super::compiled::Compiled;
 use super::compiled::Table;
+use super::linearized::Linearized;
+use super::motion::State;
 use super::reversal::{MOST_CUTS, NEGLIGIBLE, REFINEMENTS, direction_from_rest, release, rest_within};
-use super::{Compiled, Linearized, State};
 
 /// Largest factor by which a reversal may change δq̇. Friction makes it smaller, so that 10 bounds only what no friction does:
 /// a force that pushes could make it anything.
@@ -170,7 +172,9 @@ impl Sliding {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::{Effect, Motion, Term};
+    use crate::law::effect::Effect;
+    use crate::law::motion::Motion;
+    use crate::law::term::Term;
 
     fn terms() -> [Term; 5] {
         let stribeck = Effect::prototype("stribeck_friction").unwrap().with_inner(&[0.4]).unwrap();

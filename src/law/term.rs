@@ -1,7 +1,7 @@
 //! One term of a law: the inertia, a product of powers, or a named effect.
 
-use super::Own;
 use super::effect::Effect;
+use super::own::Own;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -30,7 +30,7 @@ pub enum Term {
     Monomial(Monomial),
     /// A named effect that is no monomial.
     Effect(Effect),
-    /// A user's own effect: one of [`super::Model::expressions`].
+    /// A user's own effect: one of [`super::model::Model::expressions`].
     Expression(Own),
 }
 

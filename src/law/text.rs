@@ -1,6 +1,6 @@
 //! A law on one line, as an engineer writes it.
 
-use super::Term;
+use super::term::Term;
 
 /// Writes `1.000 q̈ + 0.300 q̇ + 4.00 q + 2.00 q³ = F`; coefficients have as many digits as their std supports, 2
 /// significant ones at least. Terms whose coefficient is 0 are left out; `forced` puts `F` on the right, else 0.

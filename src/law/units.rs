@@ -4,8 +4,10 @@
 //! ([`Term::dimension`]): N/m³ for q³ where q is a length and F a force. In free motion the inertia's coefficient is 1,
 //! and the others are relative to it: \[q\]/s² ÷ \[feature\]. Where a unit that it takes is not known, there is none.
 
+use super::dimension::Dimension;
+use super::inner::InnerUnit;
+use super::term::Term;
 use super::unit::{Channel, Quantity, Unit};
-use super::{Dimension, InnerUnit, Term};
 use serde::{Deserialize, Serialize};
 
 /// Units that a model names for the columns that it reads, as written; `None` leaves it to the header.
@@ -228,7 +230,7 @@ fn superscript(power: i8) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::Effect;
+    use crate::law::effect::Effect;
 
     fn of(displacement: Quantity, excitation: Quantity, terms: &[&str]) -> Vec<String> {
         let units = Units::forced(Some(displacement), None, Some(excitation));
@@ -327,7 +329,7 @@ mod tests {
         let half = Units::forced(Some(Quantity::Length), None, None);
         assert_eq!(unit_of(Term::power(1, 0), &half), None);
         assert_eq!(unit_of(Term::parse("F*q").unwrap(), &half).unwrap(), "1/m");
-        assert_eq!(unit_of(Term::Expression(crate::law::Own::new(0, "x", false, &[])), &half), None);
+        assert_eq!(unit_of(Term::Expression(crate::law::own::Own::new(0, "x", false, &[])), &half), None);
         let whole = Units::forced(Some(Quantity::Length), None, Some(Quantity::Force));
         assert_eq!(whole.common(half), half);
         assert_eq!(whole.common(Units::free(Some(Quantity::Length), None)), Units::default());

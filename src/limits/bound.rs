@@ -1,7 +1,7 @@
 //! The Cramér–Rao bound of a record.
 
-use super::LimitsError;
 use super::course::{Course, Sensors};
+use super::error::LimitsError;
 use super::law::Law;
 use super::marginal::{Marginal, Start};
 use crate::law::Term;

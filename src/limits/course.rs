@@ -1,6 +1,6 @@
 //! What a law runs through: times, excitation, motion; and the sensors that look at it.
 
-use super::LimitsError;
+use super::error::LimitsError;
 use crate::law::{Drive, Motion, State};
 
 /// Angle, rad, by which the motion may turn in a step of integration: one of order 4 then errs by 0.2⁵ ÷ 120, 3e-6 of it.

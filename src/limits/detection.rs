@@ -4,8 +4,8 @@
 //! two laws is on average Σ|old − new|²/(2σ²) over the readings since; it decides once it passes ln(false alarm interval ÷ sample time)
 //! (Lorden, *Annals of Mathematical Statistics* 42 (1971), 1897, for the delay that no procedure beats).
 
-use super::LimitsError;
 use super::course::{Course, Sensors};
+use super::error::LimitsError;
 use super::law::Law;
 
 /// Instants at which the switch is tried: enough for a median, whose own scatter is then 1.25 ÷ √200 of theirs.

@@ -3,9 +3,9 @@
 //! The Fisher information is J = Σ φφᵀ/σ², φ the features; a known change is seen once Σ (old − new force)²/(2σ²)
 //! passes the level.
 
-use super::LimitsError;
 use super::bound::{Bound, GROWTH, SETTLED_ERROR};
 use super::detection::{Detection, SHARE, STARTS};
+use super::error::LimitsError;
 use super::law::Law;
 use crate::law::State;
 use nalgebra::DMatrix;

@@ -1,7 +1,7 @@
 //! The law whose limits are asked for.
 
-use super::LimitsError;
 use super::course::Course;
+use super::error::LimitsError;
 use crate::law::{Motion, Term};
 
 /// A law with numbers, and which of them are sought.

@@ -1,6 +1,6 @@
 //! One weak equation from one interval of samples.
 
-use super::Variation;
+use super::variation::Variation;
 use crate::law::{Expression, GAUSS, Hold, Monomial, Motion, State, Term, raised};
 use serde::{Deserialize, Serialize};
 

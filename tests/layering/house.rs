@@ -80,6 +80,23 @@ impl House {
         arrows
     }
 
+    /// Names that a file takes from the file of a folder around it, which only hands them on: read by its imports, the
+    /// file would stand above the one that defines the name and below the one that hands it on.
+    pub fn detours(&self) -> BTreeSet<Arrow> {
+        let of = |(from, source): (&Module, &Source)| {
+            let paths: Vec<_> = source.imports.iter().map(|import| import.path.clone()).collect();
+            let detour = |path: Vec<String>| {
+                let (name, folder) = path.split_last()?;
+                let to = self.module(from, folder).filter(|to| from != to && from.starts_with(to))?;
+                let is_module = self.sources.contains_key(&child(&to, name));
+                let handed_on = !is_module && self.sources[&to].imports.iter().any(|import| import.name == *name);
+                handed_on.then(|| Arrow { from: from.clone(), to, name: name.clone() })
+            };
+            paths.into_iter().chain(text::paths(&source.body)).filter_map(detour).collect::<Vec<_>>()
+        };
+        self.sources.iter().flat_map(of).collect()
+    }
+
     /// A glob that is not handed on may take anything of the module's own file.
     fn globs(&self, from: &Module, source: &Source) -> Vec<Arrow> {
         let globs = source.imports.iter().filter(|import| import.name == "*" && !import.is_public);

@@ -44,6 +44,7 @@ usage: cargo xtask CHORE
                      trajectories
   bench [ARGUMENT..] cost per sample by phase, terms and window; arguments go to the
                      benchmark (--help lists them)
+  bench interface    what the FMU's interface costs: starting, a step, its state copied
   figures [SEEDS] [SCENARIO] | --against-limits [FIRST..END] [ROW] [--only TEXT] [--threads N]
                      errors, delays, missed switches and false alarms of the built-in scenarios; beside
                      what any method could reach
@@ -92,6 +93,9 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         ("sanitize", rest) => sanitize::sanitize(rest),
         ("endurance", rest) => binaries::endurance(rest),
         ("importers", []) => importers::importers(),
+        ("bench", [interface]) if interface == "interface" => {
+            cargo(&["bench", "--package", MEASURE, "--bench", "interface"], &[])
+        }
         ("bench", rest) => cargo(&["bench", "--package", MEASURE, "--bench", "step", "--"], rest),
         (program @ ("figures" | "study" | "effects" | "faults" | "known-laws" | "dropbear" | "picture"), rest) => {
             cargo(&["run", "--quiet", "--release", "--package", MEASURE, "--bin", program, "--"], rest)

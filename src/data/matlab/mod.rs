@@ -6,8 +6,8 @@ mod mat5;
 mod objects;
 mod value;
 
-use super::DataError;
 use super::arrays::{Arrays, Unfit};
+use super::error::DataError;
 use super::kind::FileKind;
 use super::names::{self, Name};
 use super::rows::Source;

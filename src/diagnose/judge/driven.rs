@@ -6,8 +6,8 @@
 
 use super::equation::delay_of;
 use super::record::{Column, Record, Timing};
-use crate::diagnose::Piece;
 use crate::diagnose::motion::Motion;
+use crate::diagnose::piece::Piece;
 use crate::law::{self, Dynamics, Effect, History, Hold, Samples, State, Term, Trajectory, term_series};
 use std::f64::consts::TAU;
 

@@ -6,7 +6,7 @@
 
 use super::spline::{Sensors, Spline};
 use super::track::Track;
-use crate::diagnose::Piece;
+use crate::diagnose::piece::Piece;
 use nalgebra::{DMatrix, DVector};
 
 /// Samples before and after an instant whose noise of q a derivative may hold.

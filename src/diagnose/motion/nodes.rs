@@ -4,7 +4,7 @@
 
 use super::smoothed::Motion;
 use super::track::{UNREAD, readings};
-use crate::diagnose::Piece;
+use crate::diagnose::piece::Piece;
 use crate::law::{Hold, NODES, Trajectory};
 
 /// A piece on a uniform grid; a value stands for the middle of its node.

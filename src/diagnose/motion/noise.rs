@@ -4,7 +4,7 @@
 //! excitation does between samples does not vanish, so the differences of the velocity are taken beside those of Σ F dt, those of the
 //! displacement beside those of ΣΣ F dt². A reading that is rounded to steps of δ errs by δ²/12 at least.
 
-use crate::diagnose::Piece;
+use crate::diagnose::piece::Piece;
 
 /// Orders of differences that are tried; the one that leaves least is kept.
 const ORDERS: std::ops::RangeInclusive<usize> = 2..=6;

@@ -4,7 +4,7 @@ use super::kinematics::Kinematics;
 use super::noise::sensor_noise;
 use super::spline::{Sensors, Spline};
 use super::track::{Track, UNREAD, follow, readings, track};
-use crate::diagnose::Piece;
+use crate::diagnose::piece::Piece;
 use crate::diagnose::piece::thinned;
 use crate::identify::Recording;
 use crate::law::{Hold, State};

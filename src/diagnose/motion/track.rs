@@ -1,7 +1,7 @@
 //! The motion of a piece, smoothed from its readings; wild ones are doubted.
 
 use super::spline::{Sensors, Spline, States};
-use crate::diagnose::Piece;
+use crate::diagnose::piece::Piece;
 use crate::estimation::OUTLYING;
 
 /// Factor on the variance of a reading that is not to be taken.

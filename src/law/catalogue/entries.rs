@@ -1,7 +1,8 @@
 //! The entries, in the order of the design.
 
 use super::entry::{Entry, Sign};
-use crate::law::{Effect, Term};
+use crate::law::effect::Effect;
+use crate::law::term::Term;
 
 pub(super) const ENTRIES: [Entry; 30] = [
     Entry {

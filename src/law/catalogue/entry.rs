@@ -1,6 +1,8 @@
 //! What the catalogue says of an effect.
 
-use crate::law::{Effect, InnerParameter, Term};
+use crate::law::effect::Effect;
+use crate::law::inner::InnerParameter;
+use crate::law::term::Term;
 
 /// The sign that physics allows a coefficient on the left-hand side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

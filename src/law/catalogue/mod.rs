@@ -5,7 +5,7 @@ mod entry;
 
 pub use entry::{Entry, Sign};
 
-use super::Term;
+use super::term::Term;
 
 /// The catalogue.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +42,9 @@ impl Catalogue {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::{Effect, Inner, Monomial};
+    use crate::law::effect::Effect;
+    use crate::law::inner::Inner;
+    use crate::law::term::Monomial;
 
     #[test]
     fn every_effect_stands_once_under_its_own_id() {

@@ -1,6 +1,6 @@
-//! What the interface costs: `cargo bench --package switchid-fmu-identifier`. Duffing, four terms, 1 kHz, noise of 1 %.
+//! What the interface costs: `cargo xtask bench interface`. Duffing, four terms, 1 kHz, noise of 1 %.
 
-#[path = "../tests/contract/subject.rs"]
+#[path = "../../fmu/identifier/tests/contract/subject.rs"]
 mod subject;
 
 use std::time::{Duration, Instant};
