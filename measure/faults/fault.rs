@@ -58,11 +58,13 @@ pub enum Fault {
     Late,
     /// One sample in so many is kept: F moves within the step, and is not held.
     Coarse(usize),
+    /// The plant has this effect throughout, and the law lacks it.
+    Lacks(&'static str),
 }
 
 impl Fault {
     /// All of them, in the order of the table.
-    pub const ALL: [Fault; 25] = [
+    pub const ALL: [Fault; 29] = [
         Fault::Clean,
         Fault::Burst(Of::Q),
         Fault::Burst(Of::Qd),
@@ -88,6 +90,10 @@ impl Fault {
         Fault::Coarse(5),
         Fault::Coarse(10),
         Fault::Coarse(20),
+        Fault::Lacks("coulomb_friction"),
+        Fault::Lacks("quadratic_damping"),
+        Fault::Lacks("bilinear_stiffness"),
+        Fault::Lacks("signed_quadratic_stiffness"),
     ];
 
     /// Its name in the table.
@@ -107,6 +113,7 @@ impl Fault {
             Fault::Stamp => "one time stamp 1e6".into(),
             Fault::Late => "q, qd one sample late".into(),
             Fault::Coarse(step) => format!("steps of {step} ms, hold wrong"),
+            Fault::Lacks(effect) => format!("lacks {effect}"),
         }
     }
 
@@ -133,7 +140,7 @@ impl Fault {
         let last = readings.partition_point(|reading| reading.t < COURSE[0] + self.lasts());
         let mut end = last;
         match self {
-            Fault::Clean => {}
+            Fault::Clean | Fault::Lacks(_) => {}
             Fault::Burst(of) => {
                 end = first + SHORT[generator.random_range(0..SHORT.len())];
                 burst(&mut readings[first..end], of, &mut generator);
@@ -174,7 +181,7 @@ impl Fault {
         }
         match self {
             Fault::Stamp => COURSE[0],
-            Fault::Late | Fault::Coarse(_) => COURSE[0],
+            Fault::Late | Fault::Coarse(_) | Fault::Lacks(_) => COURSE[0],
             _ => readings[end.clamp(first + 1, readings.len()) - 1].t.min(COURSE[0] + self.lasts().max(0.05)),
         }
     }

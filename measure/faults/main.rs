@@ -7,11 +7,14 @@
 //! |---|---|
 //! | valid and wrong | time with `valid` while e is above 0.05², the second after the switch left out, s a record |
 //! | dishonest | time with `valid` while a coefficient is beyond 6 of its std, s a record |
-//! | false | switches counted from the fault on that are none |
+//! | false | switches counted from the fault on that are none; of a law that lacks an effect, from the beginning on |
 //! | valid again | from the last faulty sample until the law is valid, s; of records valid before the fault |
 //! | missed | next switches not counted in 10 s |
 //! | unknown | samples with `valid` and a coefficient without std |
 //! | named | delay of the switch's name ÷ limit of detection |
+//! | z² | of all coefficients over the time with `valid`, the second after the switch left out: mean by record of \
+//!        ((θ − θ*) ÷ std)², then its median and mean over the records |
+//! | missing | records in which an effect is said to be missing |
 
 mod fault;
 mod tally;
@@ -21,7 +24,7 @@ use fault::Fault;
 use std::ops::Range;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use switchid::law::{Given, Model};
+use switchid::law::{Given, Model, Term};
 use switchid::simulate::{Builtin, Scenario};
 use tally::{HEAD, Tally};
 use watch::{Seen, watch};
@@ -34,6 +37,9 @@ const PLANTS: [Builtin; 4] =
 
 /// Std of the sensors' noise on q and q̇.
 const NOISE: f64 = 0.01;
+
+/// RMS of the force of an effect that a law lacks ÷ RMS of the inertia's.
+const LACKED: f64 = 0.1;
 
 /// Times at which the fault begins, the law switches, and the record ends, s.
 const COURSE: [f64; 3] = [10.0, 20.0, 30.0];
@@ -134,7 +140,18 @@ impl Cell {
         scenario
     }
 
+    /// The same with the effect that the fault is, at a tenth of the inertia's force.
+    fn scenario_of_fault(&self) -> Result<Scenario, Failure> {
+        let mut scenario = self.scenario();
+        if let Fault::Lacks(effect) = self.fault {
+            let term = Term::parse(effect)?;
+            let scale = watch::ratio_of_forces(&scenario, term)?;
+            scenario.hidden.push(term, LACKED * scale);
+        }
+        Ok(scenario)
+    }
+
     fn watch(&self) -> Result<Seen, Failure> {
-        watch(&self.model(), &self.scenario(), self.fault, self.seed)
+        watch(&self.model(), &self.scenario_of_fault()?, self.fault, self.seed)
     }
 }

@@ -6,8 +6,8 @@ use crate::watch::Seen;
 const SEEN_WITHIN: f64 = 1.0;
 
 /// The head of the table.
-pub const HEAD: &str = "| fault | records | valid and wrong, s a record | worst | dishonest, s a record | worst | false a record | valid again, s, median | 90 % | never | missed | unknown, % | named ÷ limit, median | 90 % | worst |
-|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
+pub const HEAD: &str = "| fault | records | valid and wrong, s a record | worst | dishonest, s a record | worst | false a record | valid again, s, median | 90 % | never | missed | unknown, % | named ÷ limit, median | 90 % | worst | z², median | mean | missing |
+|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|";
 
 /// Figures of the records of one fault.
 pub struct Tally<'a> {
@@ -29,9 +29,11 @@ impl<'a> Tally<'a> {
         let must = || self.seen.iter().filter(|seen| seen.limit < SEEN_WITHIN);
         let ratios = must().filter(|seen| seen.named.is_finite()).map(|seen| seen.named / seen.limit);
         let named = Quantiles::of(ratios);
+        let known = self.seen.iter().filter(|seen| seen.squares[1] > 0.0);
+        let squares = Quantiles::of(known.map(|seen| seen.squares[0] / seen.squares[1]));
         let [valid, unknown] = [0, 1].map(|index| self.seen.iter().map(|seen| seen.valid[index]).sum::<u64>());
         format!(
-            "{} | {:.3} | {:.2} | {:.3} | {:.2} | {:.3} | {:.3} | {:.2} | {} of {} | {} of {} | {:.3} | {:.2} | {:.2} | {:.2}",
+            "{} | {:.3} | {:.2} | {:.3} | {:.2} | {:.3} | {:.3} | {:.2} | {} of {} | {} of {} | {:.3} | {:.2} | {:.2} | {:.2} | {:.2} | {:.2} | {}",
             self.seen.len(),
             mean(|seen| seen.wrong),
             most(|seen| seen.wrong),
@@ -48,6 +50,9 @@ impl<'a> Tally<'a> {
             named.at(0.5),
             named.at(0.9),
             named.at(1.0),
+            squares.at(0.5),
+            squares.mean(),
+            self.seen.iter().filter(|seen| seen.missing).count(),
         )
     }
 }
@@ -65,6 +70,10 @@ impl Quantiles {
     fn at(&self, part: f64) -> f64 {
         let place = (part * self.0.len() as f64) as usize;
         self.0.get(place.min(self.0.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
+    }
+
+    fn mean(&self) -> f64 {
+        self.0.iter().sum::<f64>() / self.0.len() as f64
     }
 
     fn infinite(&self) -> usize {

@@ -3,7 +3,7 @@
 use crate::fault::Fault;
 use crate::{COURSE, Failure};
 use switchid::identify::{Coefficient, Identifier, Sample, Settings};
-use switchid::law::{Drive, Model, State};
+use switchid::law::{Drive, Model, State, Term};
 use switchid::limits::{Course, Law, Sensors, detection, level};
 use switchid::simulate::{Plant, Reading, Scenario};
 
@@ -38,6 +38,10 @@ pub struct Seen {
     pub limit: f64,
     /// Samples with `valid`, and of those with a coefficient of unknown std.
     pub valid: [u64; 2],
+    /// Sum of the coefficients' mean ((θ − θ*) ÷ std)² over samples with `valid`, and number of those samples.
+    pub squares: [f64; 2],
+    /// Whether an effect was said to be missing.
+    pub missing: bool,
 }
 
 /// The motion without noise beside what sensors say of it.
@@ -58,6 +62,20 @@ fn record(scenario: &Scenario) -> Result<Recorded, Failure> {
     Ok(recorded)
 }
 
+/// RMS of the inertia's force ÷ RMS of what the term multiplies, before the law switches.
+pub fn ratio_of_forces(scenario: &Scenario, term: Term) -> Result<f64, Failure> {
+    let recorded = record(scenario)?;
+    let times: Vec<f64> = recorded.readings.iter().map(|reading| reading.t).take_while(|t| *t < COURSE[1]).collect();
+    let inertia = scenario.terms.iter().position(|term| *term == Term::Inertia).ok_or("no inertia")?;
+    let mut squares = [0.0; 2];
+    for (state, next) in recorded.states.iter().zip(&recorded.states[1..]).take(times.len()) {
+        let acceleration = (next.qd - state.qd) / scenario.excitation.sample_time;
+        squares[0] += (scenario.stages[0].coefficients[inertia] * acceleration).powi(2);
+        squares[1] += term.force(state.q, state.qd, 0.0).powi(2);
+    }
+    Ok((squares[0] / squares[1]).sqrt())
+}
+
 /// Steps a new identifier over the scenario's record with the fault in it.
 pub fn watch(model: &Model, scenario: &Scenario, fault: Fault, seed: u64) -> Result<Seen, Failure> {
     let recorded = record(scenario)?;
@@ -75,7 +93,7 @@ pub fn watch(model: &Model, scenario: &Scenario, fault: Fault, seed: u64) -> Res
         seen.take(&identifier, scenario, t, t - before, last);
         let switches = identifier.output().switch_count;
         if switches != count {
-            seen.alarm(t, switches.saturating_sub(count));
+            seen.alarm(t, switches.saturating_sub(count), fault);
         }
         (before, count) = (t, switches);
     }
@@ -85,6 +103,7 @@ pub fn watch(model: &Model, scenario: &Scenario, fault: Fault, seed: u64) -> Res
 impl Seen {
     fn take(&mut self, identifier: &Identifier, scenario: &Scenario, t: f64, dt: f64, last: f64) {
         let valid = identifier.output().valid;
+        self.missing |= identifier.output().missing.is_some();
         if t < COURSE[0] - BEFORE {
             self.valid_before = valid;
         } else if valid && t > last && t < COURSE[1] {
@@ -101,14 +120,17 @@ impl Seen {
         if stage > 0 && since < ALLOWED {
             return;
         }
-        let [error, z] = errors(coefficients, scenario, stage);
+        let [error, z, square] = errors(coefficients, scenario, stage);
+        self.squares[0] += square;
+        self.squares[1] += 1.0;
         self.wrong += if error > WRONG { dt } else { 0.0 };
         self.dishonest += if z > BEYOND { dt } else { 0.0 };
     }
 
-    fn alarm(&mut self, t: f64, count: u32) {
+    fn alarm(&mut self, t: f64, count: u32, fault: Fault) {
+        let begins = if matches!(fault, Fault::Lacks(_)) { 0.0 } else { COURSE[0] };
         match t < COURSE[1] {
-            true if t >= COURSE[0] => self.false_switches += count,
+            true if t >= begins => self.false_switches += count,
             true => {}
             false if self.named.is_infinite() => {
                 (self.named, self.false_switches) = (t - COURSE[1], self.false_switches + count - 1)
@@ -118,14 +140,16 @@ impl Seen {
     }
 }
 
-/// e of eq. (8), and the largest error ÷ stated std.
-fn errors(published: &[Coefficient], scenario: &Scenario, stage: usize) -> [f64; 2] {
+/// e of eq. (8), the largest error ÷ stated std, and the mean square of these.
+fn errors(published: &[Coefficient], scenario: &Scenario, stage: usize) -> [f64; 3] {
     let truth = &scenario.stages[stage].coefficients;
     let of = |known: &Coefficient| scenario.terms.iter().position(|term| *term == known.term).map_or(0.0, |i| truth[i]);
     let square: f64 = published.iter().map(|known| (known.value - of(known)).powi(2)).sum();
     let z = |known: &Coefficient| known.std.filter(|std| *std > 0.0).map(|std| (known.value - of(known)).abs() / std);
     let worst = published.iter().filter_map(z).fold(0.0, f64::max);
-    [square / truth.iter().map(|value| value * value).sum::<f64>(), worst]
+    let squares: Vec<f64> = published.iter().filter_map(z).map(|z| z * z).collect();
+    let mean = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
+    [square / truth.iter().map(|value| value * value).sum::<f64>(), worst, mean]
 }
 
 /// The limit of the delay at the switch, s; infinite where it cannot be seen.

@@ -7,7 +7,7 @@
 //! becomes the maximum likelihood of the trajectory, with its initial state marginalised; as it grows, that of the
 //! equation error.
 //!
-//! - [`DifferenceNoise`]: the sensors' noise before any law;
+//! - [`DifferenceNoise`]: the sensors' noise before any law; [`RowsOfLength`]: first coefficients, from weak rows;
 //! - [`Filter`]: N states and their covariance, from sample to sample, begun by [`initial_state`]; [`Rivals`]: under
 //!   other process noise; [`smooth`]: the motion as all samples tell it;
 //! - [`InnovationGate`]: readings that are no part of the motion;
@@ -32,6 +32,7 @@ mod smoother;
 mod symmetric;
 mod term_selection;
 mod track;
+mod weak_start;
 
 pub use augmented_filter::{AugmentedFilter, Start, Unknowns};
 pub use covariance::Matrix;
@@ -47,3 +48,4 @@ pub use smoother::{Smoothable, smooth};
 pub use symmetric::{Lane, LogSum, System, WIDTH};
 pub use term_selection::{TermSelection, price_of_a_term};
 pub use track::Track;
+pub use weak_start::{OVERLAP, RowsOfLength, VARIATION};

@@ -5,16 +5,12 @@ use super::problem::Problem;
 use super::sample::Sample;
 use super::window::Window;
 use crate::law::Hold;
-use crate::weak::Section;
+use crate::weak::{Section, differentiate, integrate};
 use serde::{Deserialize, Serialize};
 
 /// Samples in the longest variation of weak rows, where the window has room for it: half a period of a motion of 4096
 /// samples a period.
 pub const LONGEST_VARIATION: usize = 2048;
-
-/// Rows begin this fraction of a variation apart: rows within a quarter of one share what they say, more of them would
-/// tell nothing new.
-pub const OVERLAP: usize = 8;
 
 /// Room for one section.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -81,22 +77,5 @@ impl SectionBuffer {
             excitation: &self.excitation[..length],
             hold: if problem.channels.excitation { problem.hold } else { Hold::Zero },
         }
-    }
-}
-
-/// Central differences over two samples on each side, fewer at the ends.
-fn differentiate(t: &[f64], q: &[f64], qd: &mut [f64]) {
-    let last = t.len() - 1;
-    for (k, slope) in qd.iter_mut().enumerate() {
-        let (from, to) = (k.saturating_sub(2), (k + 2).min(last));
-        *slope = (q[to] - q[from]) / (t[to] - t[from]);
-    }
-}
-
-/// Trapezoidal sum from 0: the displacement up to a constant.
-fn integrate(t: &[f64], qd: &[f64], q: &mut [f64]) {
-    q[0] = 0.0;
-    for k in 1..t.len() {
-        q[k] = q[k - 1] + 0.5 * (t[k] - t[k - 1]) * (qd[k] + qd[k - 1]);
     }
 }

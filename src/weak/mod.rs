@@ -15,9 +15,11 @@
 mod functional;
 mod regression;
 mod row;
+mod unmeasured;
 mod variation;
 
 pub(crate) use functional::{Functional, Pole, signal};
 pub use regression::{Direction, Fit, Regression};
 pub use row::{Row, Section};
+pub(crate) use unmeasured::{differentiate, integrate};
 pub use variation::Variation;

@@ -6,13 +6,11 @@ use super::inner_slopes::{self, Sought};
 use super::noise_covariance::{self, GAIN, Signals};
 use super::outcome::{self, Law, Outcome};
 use super::run;
-use super::solve::{Solved, solve, solve_damped};
 use super::start;
 use crate::diagnose::piece::Piece;
 use crate::diagnose::scale::Scale;
-use crate::estimation::{Information, Noise, Pass, RIVALS, smooth};
+use crate::estimation::{Information, Noise, Pass, RIVALS, Solution, smooth};
 use crate::law::{Effect, State, Term};
-use nalgebra::{DMatrix, DVector};
 
 /// Most passes of one descent.
 const PASSES: usize = 25;
@@ -55,6 +53,27 @@ const DAMPING_RATIO: f64 = 10.0;
 
 /// Std of the prior of a delayed excitation's coefficient about 1: for short delays only its product with the delay can be told.
 const DELAYED: f64 = 0.2;
+
+/// A step, and what the record says without its damping.
+struct Solved {
+    step: Vec<f64>,
+    solution: Solution,
+}
+
+impl Solved {
+    /// The Gauss–Newton step with that part of each unknown's information added to it; unknowns that the record leaves open stay. None where
+    /// a run left no numbers.
+    fn of(information: &Information, damping: f64) -> Option<Solved> {
+        let solve = |information: &Information| {
+            let mut solution = Solution::none(information.n);
+            solution.solve(information, &vec![true; information.n]);
+            solution.step.iter().all(|value| value.is_finite()).then_some(solution)
+        };
+        let solution = information.is_finite().then(|| solve(information)).flatten()?;
+        let step = if damping > 0.0 { solve(&information.damped(damping))?.step } else { solution.step.clone() };
+        Some(Solved { step, solution })
+    }
+}
 
 /// Where a descent stands.
 #[derive(Clone, Debug)]
@@ -137,7 +156,7 @@ impl<'a> Descent<'a> {
             let decrement = descended / solved.step.len().max(1) as f64;
             let followed = self.is_followed(needed, log_likelihood);
             let reached = (log_likelihood >= reached).then(|| {
-                let mut fit = self.summary(log_likelihood, solved.covariance, measurements);
+                let mut fit = self.summary(log_likelihood, solved.solution, measurements);
                 fit.noise = noise_covariance::calibrated(&self.noise, &outcomes);
                 (fit, self.clone())
             });
@@ -163,9 +182,9 @@ impl<'a> Descent<'a> {
 
     /// The step, without inner parameters that it would carry out of what the motion can tell.
     fn solved(&self, information: &mut Information, damping: f64) -> Option<Solved> {
-        let solved = solve_damped(information, damping)?;
+        let solved = Solved::of(information, damping)?;
         let first = self.parts.unknowns.len();
-        let steps = &solved.step.as_slice()[first..first + self.inner.len()];
+        let steps = &solved.step[first..first + self.inner.len()];
         let held = inner_slopes::outward(&self.form, &self.inner, &self.limits, steps);
         if held.is_empty() {
             return Some(solved);
@@ -175,7 +194,7 @@ impl<'a> Descent<'a> {
             *own = HELD_FAST * own.max(f64::MIN_POSITIVE);
             information.score[row] = 0.0;
         }
-        solve_damped(information, damping)
+        Solved::of(information, damping)
     }
 
     /// Back to where the last step began; where that bore no motion either, with more process noise to hold it.
@@ -206,7 +225,7 @@ impl<'a> Descent<'a> {
             if gained > 0.0 {
                 best = Some((log_likelihood, self.clone()));
             }
-            let Some(solved) = solve(&information) else { break };
+            let Some(solved) = Solved::of(&information, 0.0) else { break };
             noise_covariance::follow(&mut self.noise, &mut self.ratios, &outcomes, self.signals);
             if gained.abs() < GAIN || loud - reached.max(log_likelihood) > HOPELESS * gained {
                 break;
@@ -299,12 +318,11 @@ impl<'a> Descent<'a> {
         outcomes.iter().map(of).collect()
     }
 
-    fn summary(&self, log_likelihood: f64, covariance: DMatrix<f64>, measurements: f64) -> Fit {
-        let sought = self.parts.unknowns.len() + self.inner.len();
+    fn summary(&self, log_likelihood: f64, solution: Solution, measurements: f64) -> Fit {
         Fit {
             form: self.form.clone(),
             coefficients: self.coefficients.clone(),
-            covariance: covariance.view((0, 0), (sought, sought)).into_owned(),
+            solution,
             noise: self.noise,
             log_likelihood,
             log_likelihood_if_right: f64::NEG_INFINITY,
@@ -316,15 +334,15 @@ impl<'a> Descent<'a> {
 
     /// Takes the Gauss–Newton step as far as it goes: the inertia becomes at most [`LARGEST_RATIO`] times larger or smaller (as it grows without
     /// bounds, the law forgets its excitation), an inner parameter by a third.
-    pub(super) fn take(&mut self, step: &DVector<f64>) {
-        let (coefficients, others) = step.as_slice().split_at(self.parts.unknowns.len());
+    pub(super) fn take(&mut self, step: &[f64]) {
+        let (coefficients, others) = step.split_at(self.parts.unknowns.len());
         let inner = &others[..self.inner.len()];
         let fraction = self.bounded(coefficients).min(inner_slopes::bounded(inner));
         for (index, change) in self.parts.unknowns.iter().zip(coefficients) {
             self.coefficients[*index] += fraction * change;
         }
         inner_slopes::take(&mut self.form, &self.inner, &self.limits, inner, fraction);
-        self.exogenous.take(step.as_slice(), fraction);
+        self.exogenous.take(step, fraction);
     }
 
     /// The part of a step that the inertia allows.

@@ -1,9 +1,8 @@
 //! A form of law, and what a fit of it is.
 
 use super::means::is_series;
-use crate::estimation::Noise;
+use crate::estimation::{Noise, Solution};
 use crate::law::{Expression, State, Term};
-use nalgebra::DMatrix;
 
 /// A form of law: which terms it has, and what is known of each coefficient.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,9 +24,9 @@ pub struct Fit {
     pub form: Form,
     /// One coefficient per term.
     pub coefficients: Vec<f64>,
-    /// Covariance of what is sought: coefficients in the order of the terms, terms that the state gives first, then logarithms of inner
-    /// parameters.
-    pub covariance: DMatrix<f64>,
+    /// What the record says of all that is sought: coefficients in the order of the terms, terms that the state gives
+    /// first, then logarithms of inner parameters, then beginnings.
+    pub(super) solution: Solution,
     /// Noise levels: the sensors', and the white acceleration that the law leaves unexplained.
     pub noise: Noise,
     /// Log-likelihood of all pieces.
@@ -93,11 +92,11 @@ impl Fit {
         (self.log_likelihood - self.log_likelihood_if_right).max(0.0)
     }
 
-    /// Std of the coefficient of that position; 0 where it is held.
+    /// Std of the coefficient of that position; 0 where it is held, infinite where the record leaves it open.
     pub fn std(&self, index: usize) -> f64 {
         let unknowns = Parts::of(&self.form).unknowns;
         let row = unknowns.iter().position(|unknown| *unknown == index);
-        row.map_or(0.0, |row| self.covariance[(row, row)].max(0.0).sqrt())
+        row.map_or(0.0, |row| self.solution.std(row, 1.0))
     }
 }
 

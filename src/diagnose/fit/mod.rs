@@ -14,7 +14,6 @@ mod noise_covariance;
 mod outcome;
 mod refit;
 mod run;
-mod solve;
 mod start;
 
 pub use evidence::{Evidence, best_as_given, is_evident};

@@ -12,8 +12,9 @@
 use super::oscillation::Oscillation;
 use super::sensor_noise::SensorNoise;
 use super::variation_length::VariationLength;
+use crate::estimation::OVERLAP;
 use crate::identify::problem::Problem;
-use crate::identify::section::{LONGEST_VARIATION, OVERLAP, SectionBuffer};
+use crate::identify::section::{LONGEST_VARIATION, SectionBuffer};
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
 use crate::weak::{Row, Variation};
