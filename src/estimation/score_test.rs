@@ -60,9 +60,9 @@ pub struct ScoreTest {
     /// F as it was a sample before and as it is a sample later, each less what it is: their coefficients are F's lag,
     /// and by how much it acts too early.
     lags: [Sums; 2],
-    own: Information,
     solution: Solution,
     active: Vec<bool>,
+    own_score: Vec<f64>,
     before: State,
     row: Vec<f64>,
 }
@@ -104,9 +104,9 @@ impl ScoreTest {
         ScoreTest {
             candidates: candidates.map(candidate).collect(),
             lags: [Sums::new(n), Sums::new(n)],
-            own: Information::none(n),
             solution: Solution::none(n),
             active: vec![true; n],
+            own_score: vec![0.0; n],
             before: State::default(),
             row: vec![0.0; n],
         }
@@ -119,7 +119,6 @@ impl ScoreTest {
             candidate.sums.clear();
             candidate.term = scaled(candidate.term, largest);
         }
-        self.own.clear();
         self.before = state;
     }
 
@@ -155,20 +154,24 @@ impl ScoreTest {
         for channel in Channel::ALL {
             let Some(innovation) = &innovations[channel as usize] else { continue };
             self.row.copy_from_slice(pass.expected(channel));
-            self.own.add(&self.row, innovation.residual, innovation.variance);
             let all = self.candidates.iter_mut().map(|candidate| &mut candidate.sums).chain(&mut self.lags);
             all.for_each(|sums| sums.add(channel, innovation, &self.row));
         }
     }
 
+    /// Solves for the law's own terms, of which `own` is what the run says.
+    pub fn end(&mut self, own: &Information, active: &[bool]) {
+        self.active.copy_from_slice(active);
+        self.own_score.copy_from_slice(&own.score);
+        self.solution.solve(own, active);
+    }
+
     /// The candidate with the most evidence, `overdispersion` being what the law's lasting error makes of a nat; none
     /// below the evidence at which one is named, or with a sign that physics does not allow.
-    pub fn missing(&mut self, active: &[bool], overdispersion: f64) -> Option<Missing> {
-        self.active.copy_from_slice(active);
-        self.solution.solve(&self.own, &self.active);
+    pub fn missing(&self, overdispersion: f64) -> Option<Missing> {
         let price = (self.candidates.len().max(1) as f64).ln();
         let evidence = |candidate: &Candidate| {
-            let (coefficient, gain, _) = candidate.sums.gain(&self.solution, &self.active, &self.own.score);
+            let (coefficient, gain, _) = candidate.sums.gain(&self.solution, &self.active, &self.own_score);
             let allowed = Catalogue::ENTRIES[candidate.entry].sign.allows(coefficient);
             if allowed { gain / overdispersion.max(1.0) - price } else { 0.0 }
         };
@@ -177,11 +180,11 @@ impl ScoreTest {
         all.max_by(|a, b| a.evidence.total_cmp(&b.evidence)).filter(|missing| missing.evidence > NAMED)
     }
 
-    /// When F acted, where that is not when it is taken to have; after [`missing`](Self::missing).
+    /// When F acted, where that is not when it is taken to have.
     pub fn lag(&self, overdispersion: f64) -> Option<Lag> {
         let inflated = overdispersion.max(1.0);
         let lag = |sums: &Sums, sign: f64| {
-            let (samples, gain, information) = sums.gain(&self.solution, &self.active, &self.own.score);
+            let (samples, gain, information) = sums.gain(&self.solution, &self.active, &self.own_score);
             Lag { samples: sign * samples, std: (inflated / information).sqrt(), evidence: gain / inflated }
         };
         let [late, early] = &self.lags;

@@ -1,7 +1,7 @@
 //! One weak equation from one interval of samples.
 
 use super::variation::Variation;
-use crate::law::{Expression, GAUSS, Hold, Monomial, Motion, State, Term, raised};
+use crate::law::{Expression, Hold, Monomial, Motion, State, Term, raised};
 use serde::{Deserialize, Serialize};
 
 /// Samples of one interval [T₁, T₂]; all slices are of one length ≥ 3.
@@ -64,21 +64,23 @@ impl Row {
         self.clear();
         let (start, end) = (section.t[0], section.t[section.t.len() - 1]);
         let length = end - start;
+        let mut before = [0.0; 3];
         for k in 0..section.t.len() {
             let [value, slope, curvature] = variation.at((section.t[k] - start) / length);
+            let at = [value, slope / length, curvature / (length * length)];
             let weight = half_widths(section.t, k);
-            let phi = [weight * value, weight * slope / length, weight * curvature / (length * length)];
+            let phi = at.map(|derivative| weight * derivative);
             self.norm += phi[0] * value;
             self.add_sample(section, k, phi, law);
             if !law.coefficients.is_empty() {
                 self.add_residual_noise(law.coefficients);
             }
-            if section.hold == Hold::BandLimited {
-                self.excitation += section.excitation[k] * phi[0];
-            }
-        }
-        if section.hold != Hold::BandLimited {
-            self.excitation = held_excitation(section, variation, start, length);
+            self.excitation += match section.hold {
+                Hold::BandLimited => section.excitation[k] * phi[0],
+                _ if k == 0 => 0.0,
+                _ => held_excitation(section, k, [before, at]),
+            };
+            before = at;
         }
     }
 
@@ -149,21 +151,21 @@ fn sensitivity(term: Term, own: &[Expression], section: &Section, k: usize, phi:
     }
 }
 
-/// ∫ F φ dt with φ integrated by Gauss's rule on every interval between samples.
-fn held_excitation(section: &Section, variation: Variation, start: f64, length: f64) -> f64 {
-    let intervals = section.t.windows(2).zip(section.excitation.windows(2));
-    let integrals = intervals.map(|(t, force)| {
-        let dt = t[1] - t[0];
-        let points = GAUSS.map(|(x, weight)| {
-            let at = match section.hold {
-                Hold::Zero => force[0],
-                _ => force[0] + x * (force[1] - force[0]),
-            };
-            weight * at * variation.value((t[0] + x * dt - start) / length)
-        });
-        dt * points.iter().sum::<f64>()
-    });
-    integrals.sum()
+/// ∫ F φ dt over the interval that ends at sample k, from φ, φ' and φ'' at its ends: exact where φ is a polynomial of
+/// degree 5 there (its Hermite interpolation).
+#[inline]
+fn held_excitation(section: &Section, k: usize, [from, to]: [[f64; 3]; 2]) -> f64 {
+    let h = section.t[k] - section.t[k - 1];
+    let [first, last] = [section.excitation[k - 1], section.excitation[k]];
+    let integral = h * (0.5 * (from[0] + to[0]) + h * (0.1 * (from[1] - to[1]) + h * (from[2] + to[2]) / 120.0));
+    if section.hold == Hold::Zero {
+        return first * integral;
+    }
+    // ∫ φ x dt with x from 0 to 1 over the interval
+    let values = from[0] / 7.0 + to[0] * (5.0 / 14.0);
+    let slopes = from[1] * (4.0 / 105.0) - to[1] * (13.0 / 210.0);
+    let moment = h * (values + h * (slopes + h * (from[2] / 280.0 + to[2] / 210.0)));
+    first * integral + (last - first) * moment
 }
 
 #[cfg(test)]
@@ -210,6 +212,29 @@ mod tests {
                 assert!(order > 1.9, "{hold}: order {order} from {n} samples");
             }
         }
+    }
+
+    #[test]
+    fn an_excitation_held_or_linear_is_integrated_exactly() {
+        // ∫ (4 s (1 − s))² ds = 8 ÷ 15, at equal and at unequal distances between samples
+        let t = [0.0, 0.3, 0.5, 1.1, 1.9, 2.0];
+        let [ramp, zeros] = [t, [0.0; 6]];
+        let variation = Variation::Polynomial { power: 2 };
+        let mut row = Row::new(0);
+        let mut integral = |excitation: &[f64], hold| {
+            let section = Section { t: &t, q: &zeros, qd: &zeros, qd_measured: true, excitation, hold };
+            row.integrate(&section, variation, &Motion::new(&[], &[]));
+            row.excitation
+        };
+        let whole = 2.0 * 8.0 / 15.0;
+        assert!((integral(&[1.0; 6], Hold::Zero) - whole).abs() < 1e-14);
+        assert!((integral(&ramp, Hold::Linear) - whole).abs() < 1e-14);
+        // a step holds what is behind it
+        let step = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        let held = integral(&step, Hold::Zero);
+        let s: f64 = 1.1 / 2.0;
+        let before = 16.0 * (s.powi(3) / 3.0 - s.powi(4) / 2.0 + s.powi(5) / 5.0);
+        assert!((held - (whole - 2.0 * before)).abs() < 1e-14, "{held}");
     }
 
     #[test]

@@ -25,17 +25,6 @@ pub enum Variation {
 }
 
 impl Variation {
-    /// φ at 0 ≤ s ≤ 1, the first of [`Variation::at`].
-    #[inline]
-    pub fn value(self, s: f64) -> f64 {
-        match self {
-            Variation::Polynomial { power } => polynomial_value(s, i32::from(power)),
-            Variation::Sine { mode: 1 } => (PI * s).sin().powi(2),
-            Variation::Sine { mode } => Variation::Sine { mode: 1 }.value(s) * (f64::from(mode) * PI * s).sin(),
-            Variation::SmoothSine { mode } => polynomial_value(s, 6) * (f64::from(mode) * PI * s).sin(),
-        }
-    }
-
     /// [φ, dφ/ds, d²φ/ds²] at 0 ≤ s ≤ 1, all without unit.
     pub fn at(self, s: f64) -> [f64; 3] {
         match self {
@@ -48,12 +37,6 @@ impl Variation {
             Variation::SmoothSine { mode } => product(polynomial(s, 6), sine(s, f64::from(mode))),
         }
     }
-}
-
-#[inline]
-fn polynomial_value(s: f64, p: i32) -> f64 {
-    let base = 4.0 * s * (1.0 - s);
-    low_power(base, p) * base * base
 }
 
 /// xᵖ⁻²; the powers that are in use without a loop.
@@ -115,7 +98,6 @@ mod tests {
         let h = 1e-5;
         for variation in FAMILIES {
             for s in [0.13, 0.5, 0.71] {
-                assert_eq!(variation.value(s), variation.at(s)[0], "{variation:?} at {s}");
                 let [below, at, above] = [s - h, s, s + h].map(|s| variation.at(s));
                 let scale = at[2].abs().max(1.0);
                 assert!(((above[0] - below[0]) / (2.0 * h) - at[1]).abs() < 1e-7 * scale, "{variation:?} at {s}");

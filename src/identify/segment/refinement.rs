@@ -175,8 +175,10 @@ impl Segment {
 
     fn end_score_test(&mut self) {
         if self.score_test.looking {
-            self.missing = self.score_test.candidates.missing(&self.active, self.fit.overdispersion);
-            self.lag = self.score_test.candidates.lag(self.fit.overdispersion);
+            let candidates = &mut self.score_test.candidates;
+            candidates.end(&self.run.filter_run.information, &self.active);
+            self.missing = candidates.missing(self.fit.overdispersion);
+            self.lag = candidates.lag(self.fit.overdispersion);
             self.score_test.next_look = (LOOK_AGAIN * self.length(self.run.next) as f64) as u64;
         }
     }
