@@ -1,7 +1,7 @@
 //! The identifier's FMU over simulated hours: `cargo xtask endurance [HOURS]`.
 //!
-//! A Duffing plant at 1 kHz whose law switches every ten minutes among five; what a step costs, how much memory the process has, and how well
-//! each stage is known, two hours by two hours. Nothing may grow.
+//! A Duffing plant at 1 kHz whose law switches every ten minutes among five; what a step costs, how much memory the
+//! process has, and how well each stage is known, two hours by two hours. Nothing may grow.
 
 use rustix::time::{ClockId, clock_gettime};
 use switchid::fmu::identifier;

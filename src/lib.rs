@@ -1,14 +1,14 @@
 //! Rapid identification of switched systems.
 //!
-//! A vibrating system is watched sample by sample: displacement `q`, velocity `q̇` and excitation `F`. The identifier keeps
-//! the equation of motion that explains them, notices when the system switches to another law, and re-identifies it. A
-//! diagnosis says which physical effect a model lacks. Everything is in SI units; terms stand on the left, the excitation on
-//! the right, `m q̈ + c q̇ + k₁ q + k₃ q³ = F`.
+//! A vibrating system is watched sample by sample: displacement `q`, velocity `q̇` and excitation `F`. The identifier
+//! keeps the equation of motion that explains them, notices when the system switches to another law, and re-identifies
+//! it. A diagnosis says which physical effect a model lacks. Everything is in SI units; terms stand on the left, the
+//! excitation on the right, `m q̈ + c q̇ + k₁ q + k₃ q³ = F`.
 //!
 //! # A first identification
 //!
-//! A [`Model`] names the terms that the law may have; an [`Identifier`] takes one [`Sample`] after the other. Its [`Output`]
-//! and coefficients hold after each of them.
+//! A [`Model`] names the terms that the law may have; an [`Identifier`] takes one [`Sample`] after the other. Its
+//! [`Output`] and coefficients hold after each of them.
 //!
 //! ```
 //! use switchid::simulate::{Builtin, record};
@@ -35,8 +35,8 @@
 //!
 //! # A first diagnosis
 //!
-//! A [`Recording`] holds what was measured; [`diagnose_stages`] says whether the model's form explains it down to its sensors
-//! ([`Finding::Adequate`]), or which effect of the [catalogue](law::Catalogue) it lacks ([`Finding::Missing`]).
+//! A [`Recording`] holds what was measured; [`diagnose_stages`] says whether the model's form explains it down to its
+//! sensors ([`Finding::Adequate`]), or which effect of the [catalogue](law::Catalogue) it lacks ([`Finding::Missing`]).
 //!
 //! ```
 //! use switchid::simulate::{Scenario, columns, record};
@@ -89,8 +89,8 @@
     doc = "| [`fmu`] | what our FMUs are: variables, units, resources | [`fmu::identifier()`] |"
 )]
 //!
-//! Without the default features (`cli`, `formats`, `pictures`) only the heart is built: it opens no file, reads no clock,
-//! prints nothing, and the same samples give the same bits.
+//! Without the default features (`cli`, `formats`, `pictures`) only the heart is built: it opens no file, reads no
+//! clock, prints nothing, and the same samples give the same bits.
 
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -1,5 +1,5 @@
-//! What the figures beside their limits say, on few seeds that were fixed beforehand: `cargo xtask figures --against-limits`
-//! has the whole of it.
+//! What the figures beside their limits say, on few seeds that were fixed beforehand: `cargo xtask figures
+//! --against-limits` has the whole of it.
 
 #[path = "../measure/figures/against_limits/disturbed.rs"]
 mod disturbed;
@@ -32,8 +32,8 @@ fn first_stage(builtin: Builtin, seed: u64, noise: f64, duration: f64) -> Scenar
     Scenario { duration, ..scenario }
 }
 
-/// Σ ((θ − θ*) ÷ std)² over 16 seeds is χ² with 16 degrees of freedom for each coefficient: 4.1 and 37.7 are left once in 400 times
-/// each way for one, in two hundred for any of the four.
+/// Σ ((θ − θ*) ÷ std)² over 16 seeds is χ² with 16 degrees of freedom for each coefficient: 4.1 and 37.7 are left once
+/// in 400 times each way for one, in two hundred for any of the four.
 #[test]
 fn stated_std_are_those_of_the_errors() {
     let builtin = Builtin::DuffingNoise;
@@ -93,8 +93,9 @@ fn switches_are_seen_about_as_soon_as_the_noise_allows() {
     }
 }
 
-/// One of four coefficients changes by a fifth; what is sought has eleven. Each could have been another, and so could the law before: with
-/// all of that open at every switch the second of these was seen after 3.2 limits, and one switch in eighty never.
+/// One of four coefficients changes by a fifth; what is sought has eleven. Each could have been another, and so could
+/// the law before: with all of that open at every switch the second of these was seen after 3.2 limits, and one switch
+/// in eighty never.
 #[test]
 fn a_switch_of_one_coefficient_is_seen_in_a_full_library_as_soon_as_in_its_own_terms() {
     let mut ratios = Vec::new();
@@ -120,8 +121,8 @@ fn a_switch_of_one_coefficient_is_seen_in_a_full_library_as_soon_as_in_its_own_t
     assert!(ratios.iter().all(|ratio| *ratio < 1.5), "delays in terms of the limit: {ratios:?}");
 }
 
-/// In the fifth switch's record a law of before is recognised that is not the new one: when it is left, up to half a second later, there was
-/// one mistake and no switch.
+/// In the fifth switch's record a law of before is recognised that is not the new one: when it is left, up to half a
+/// second later, there was one mistake and no switch.
 #[test]
 fn a_law_that_was_recognised_wrongly_is_left_without_an_alarm() {
     for (library, seed, noise, duration) in [(Library::Maybe, 16002, 0.1, 94.0), (Library::Given, 16022, 1e-3, 103.0)] {
@@ -136,7 +137,8 @@ fn a_law_that_was_recognised_wrongly_is_left_without_an_alarm() {
     }
 }
 
-/// After ten seconds much noise and eleven terms allow a wrong law that explains the record; five seconds later one other explains all of it.
+/// After ten seconds much noise and eleven terms allow a wrong law that explains the record; five seconds later one
+/// other explains all of it.
 #[test]
 fn a_first_law_that_was_wrong_gives_way_without_an_alarm() {
     let scenario = first_stage(Builtin::VanDerPolSine, 18029, 0.1, 22.0);
@@ -147,8 +149,8 @@ fn a_first_law_that_was_wrong_gives_way_without_an_alarm() {
     assert_eq!(terms, 4, "{:?}", found.coefficients());
 }
 
-/// The level is that of the false-alarm interval: with 10 s there are alarms, by far not one a second, although the law that comes back
-/// after each has no more than a short record on the terms that it does not have.
+/// The level is that of the false-alarm interval: with 10 s there are alarms, by far not one a second, although the law
+/// that comes back after each has no more than a short record on the terms that it does not have.
 #[test]
 fn false_alarms_come_about_as_often_as_asked() {
     for library in [Library::Given, Library::Maybe] {
@@ -161,7 +163,8 @@ fn false_alarms_come_about_as_often_as_asked() {
     }
 }
 
-/// Two in a row, three in eight: where one reading in 200 is off by anything, chance brings both several times a minute.
+/// Two in a row, three in eight: where one reading in 200 is off by anything, chance brings both several times a
+/// minute.
 #[test]
 fn a_sensor_s_outliers_are_no_switch() {
     for (builtin, seed) in [(Builtin::DuffingWhite, 700), (Builtin::DuffingWhite, 701), (Builtin::VanDerPolWhite, 700)]
@@ -173,8 +176,8 @@ fn a_sensor_s_outliers_are_no_switch() {
     }
 }
 
-/// A law may be validated a while before its fit has come to the likelihood's maximum: the estimate of 8 s, a hundred times what is
-/// possible in 24 s, was then kept to the end.
+/// A law may be validated a while before its fit has come to the likelihood's maximum: the estimate of 8 s, a hundred
+/// times what is possible in 24 s, was then kept to the end.
 #[test]
 fn a_law_that_was_validated_early_gets_as_exact_as_any() {
     for seed in [3167, 3170] {

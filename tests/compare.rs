@@ -1,7 +1,8 @@
-//! Comparing a model with records whose truth is known: where a wrong law fails, and that a right one is at its noise floor.
+//! Comparing a model with records whose truth is known: where a wrong law fails, and that a right one is at its noise
+//! floor.
 //!
-//! The plants are integrated here, law and all, so that anything can be hidden in them. Seeds are drawn anew at every run and stand in
-//! every message.
+//! The plants are integrated here, law and all, so that anything can be hidden in them. Seeds are drawn anew at every
+//! run and stand in every message.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -129,7 +130,8 @@ fn numbers_that_are_off_are_no_missing_effect() {
     assert!(found.given.error.free_run_nrmse > found.best.error.free_run_nrmse);
 }
 
-/// Whether one of the first two sentences on a record with hidden Coulomb friction says "around velocity reversals", rightly.
+/// Whether one of the first two sentences on a record with hidden Coulomb friction says "around velocity reversals",
+/// rightly.
 fn reversals_are_named(seed: u64) -> bool {
     let recording = record(seed, 60.0, 0.01, true, |_, q, qd| duffing(q, qd) + 6.0 * qd.signum());
     let found = found(&recording, &fitted(&[]));

@@ -1,4 +1,5 @@
-//! House rules of the documents: no line is too long to be read in a terminal, every link leads somewhere.
+//! House rules of the documents and of the comments in sources: no line is too long to be read in a terminal; every
+//! link of a document leads somewhere.
 
 use std::path::{Path, PathBuf};
 
@@ -12,13 +13,16 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The documents of a folder, and with `deep` of the folders in it.
-fn documents(folder: &Path, deep: bool) -> Vec<PathBuf> {
+/// Folders of sources.
+const SOURCES: [&str; 7] = ["src", "tests", "examples", "fmu", "harness", "measure", "xtask"];
+
+/// The files of a folder with that extension, and with `deep` of the folders in it.
+fn files(folder: &Path, extension: &str, deep: bool) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
         if path.is_dir() && deep {
-            found.extend(documents(&path, deep));
-        } else if path.extension().is_some_and(|extension| extension == "md") {
+            found.extend(files(&path, extension, deep));
+        } else if path.extension().is_some_and(|own| own == extension) {
             found.push(path);
         }
     }
@@ -26,7 +30,11 @@ fn documents(folder: &Path, deep: bool) -> Vec<PathBuf> {
 }
 
 fn all_documents() -> Vec<(PathBuf, String)> {
-    let paths = [documents(root(), false), documents(&root().join(FOLDER), true)].concat();
+    let paths = [files(root(), "md", false), files(&root().join(FOLDER), "md", true)].concat();
+    read(paths)
+}
+
+fn read(paths: Vec<PathBuf>) -> Vec<(PathBuf, String)> {
     paths.into_iter().map(|path| (path.clone(), std::fs::read_to_string(&path).unwrap())).collect()
 }
 
@@ -34,6 +42,15 @@ fn all_documents() -> Vec<(PathBuf, String)> {
 fn long_lines(text: &str) -> Vec<usize> {
     let lines = text.lines().enumerate();
     lines.filter(|(_, line)| line.chars().count() > LONGEST).map(|(number, _)| number + 1).collect()
+}
+
+/// The comments of a source, other lines empty; rows of tables, which cannot be broken, left out.
+fn comments(source: &str) -> String {
+    let comment = |line: &&str| {
+        let text = line.trim_start();
+        text.starts_with("//") && !text.trim_start_matches(['/', '!']).trim_start().starts_with('|')
+    };
+    source.lines().map(|line| Some(line).filter(comment).unwrap_or_default()).collect::<Vec<_>>().join("\n")
 }
 
 /// The text without its fenced blocks: what they hold is no Markdown.
@@ -84,7 +101,11 @@ fn broken_links(path: &Path, text: &str) -> Vec<String> {
 fn no_line_is_longer_than_a_terminal() {
     let documents = all_documents();
     assert!(documents.len() > 10, "only {} documents found", documents.len());
-    let long = documents.iter().flat_map(|(path, text)| {
+    let sources = read(SOURCES.iter().flat_map(|folder| files(&root().join(folder), "rs", true)).collect());
+    assert!(sources.len() > 100, "only {} sources found", sources.len());
+    let comments = sources.into_iter().map(|(path, source)| (path, comments(&source)));
+    let texts: Vec<(PathBuf, String)> = documents.into_iter().chain(comments).collect();
+    let long = texts.iter().flat_map(|(path, text)| {
         long_lines(text).into_iter().map(move |line| format!("{}:{line} is longer than {LONGEST}", path.display()))
     });
     let long: Vec<String> = long.collect();
@@ -105,6 +126,9 @@ fn every_link_leads_somewhere() {
 fn a_long_line_is_seen_and_characters_are_counted() {
     let text = format!("{}\n{}\nshort\n{}\n", "q̇".repeat(60), "θ".repeat(120), "x".repeat(121));
     assert_eq!(long_lines(&text), [3 + 1]);
+    let long = "x".repeat(121);
+    let source = format!("let x = \"{long}\";\n    /// {long}\n//! | {long} |\n// short");
+    assert_eq!(long_lines(&comments(&source)), [2]);
 }
 
 #[test]

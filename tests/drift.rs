@@ -6,7 +6,8 @@ use switchid::simulate::{Builtin, ExcitationKind, Scenario, Stage, record};
 
 const SAMPLE_TIME: f64 = 4e-3;
 
-/// A Duffing oscillator under a sine for `duration` s whose linear stiffness is this function of time, in steps of 50 ms.
+/// A Duffing oscillator under a sine for `duration` s whose linear stiffness is this function of time, in steps of 50
+/// ms.
 fn duffing(duration: f64, stiffness: impl Fn(f64) -> f64) -> Scenario {
     let stage = |step: u32| {
         let start = 0.05 * f64::from(step);

@@ -1,4 +1,5 @@
-//! A real record whose stiffness switches and drifts (DROPBEAR), from its strain alone in real time, to the floors of its figures.
+//! A real record whose stiffness switches and drifts (DROPBEAR), from its strain alone in real time, to the floors of
+//! its figures.
 //!
 //! The folder is named by `SWITCHID_DATA`; without it the test says that it skips, and in CI that is a failure.
 

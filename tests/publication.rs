@@ -1,4 +1,5 @@
-//! The published procedure, selected by `method`: what it reaches, where it gives up, and the contract of every identifier.
+//! The published procedure, selected by `method`: what it reaches, where it gives up, and the contract of every
+//! identifier.
 
 use switchid::identify::{Channels, Coefficient, Identifier, Method, Sample, Settings, Status};
 use switchid::law::{Given, Hold, Model, Term};

@@ -1,5 +1,5 @@
-//! Real recordings, from position alone with default settings: one stage, no alarm, the coefficients of their sources; and how wrong models
-//! of them are, as their sources measured it.
+//! Real recordings, from position alone with default settings: one stage, no alarm, the coefficients of their sources;
+//! and how wrong models of them are, as their sources measured it.
 //!
 //! The folder is named by `SWITCHID_DATA`; without it the tests say that they skip, and in CI that is a failure.
 
@@ -89,9 +89,10 @@ fn near(found: &Value, pointer: &str, source: f64, share: f64) {
     assert!((value / source - 1.0).abs() < share, "{pointer} = {value}, source {source}");
 }
 
-/// Records with the coefficients that an independent robust weak-form regression finds at 0.3 T₀, and whether it finds the same within 10 % at
-/// 1 T₀. It adds a Stribeck part to the Coulomb friction of kuka_ax6 (0.37) and kuka_ax4 (0.29), which ours has to share between Coulomb and
-/// viscous friction, and a Dahl friction in Coulomb's place to marm_free.
+/// Records with the coefficients that an independent robust weak-form regression finds at 0.3 T₀, and whether it finds
+/// the same within 10 % at 1 T₀. It adds a Stribeck part to the Coulomb friction of kuka_ax6 (0.37) and kuka_ax4
+/// (0.29), which ours has to share between Coulomb and viscous friction, and a Dahl friction in Coulomb's place to
+/// marm_free.
 const REFERENCE: [(&str, &str, Coefficients); 6] = [
     ("emps/emps_train_tidy.csv", EMPS_COLUMNS, EMPS_TRAIN),
     ("emps/emps_test_pulses_tidy.csv", EMPS_COLUMNS, EMPS_TEST),
@@ -130,7 +131,8 @@ fn with_friction(columns: &str, inertia: &str, more: &str) -> String {
     )
 }
 
-/// A law on each of them; 90 % of the coefficients within 3 std of the reference's, and 90 % of those that it knows well known to a third.
+/// A law on each of them; 90 % of the coefficients within 3 std of the reference's, and 90 % of those that it knows
+/// well known to a third.
 #[test]
 fn real_records_with_friction_give_the_coefficients_that_they_know() {
     let (mut within, mut all, mut sharp, mut well_known) = (0, 0, 0, 0);
@@ -313,8 +315,8 @@ fn forces_of_testing_machines_are_published_and_not_validated() {
 const DAMPER: &str = "[terms]\nlinear_damping = \"fit\"\nlinear_stiffness = \"fit\"\nconstant_force = \"fit\"\n";
 const PENDULUM: &str = "linear_damping = \"fit\"\npendulum_restoring = \"fit\"\nconstant_force = \"fit\"\n";
 
-/// Records of rigs, the model to begin with, and the first answers that count as right by an independent robust weak-form regression; none
-/// where it is sure of none.
+/// Records of rigs, the model to begin with, and the first answers that count as right by an independent robust
+/// weak-form regression; none where it is sure of none.
 fn rigs() -> [(&'static str, String, &'static [&'static str]); 8] {
     let friction: &[&str] = &["coulomb_friction", "stribeck_friction"];
     let presliding: &[&str] = &["presliding_friction", "hysteresis"];

@@ -69,14 +69,16 @@ fn the_publication_s_van_der_pol_noise_case_is_found_in_the_full_library() {
     assert!(error <= 1e-2, "{error:e}");
 }
 
-/// Its first law, once found, was contested by its equal again and again, and so never validated: every switch was missed.
+/// Its first law, once found, was contested by its equal again and again, and so never validated: every switch was
+/// missed.
 #[test]
 fn a_law_that_alternative_fits_confirm_is_validated() {
     let found = figures(Builtin::VanDerPolSine, &Builtin::VanDerPolSine.random(40).with_noise(0.01));
     assert_eq!((found.missed(), found.false_alarms), (0, 0), "{found:#?}");
 }
 
-/// Its first law is a wrong one if it is validated too early: the record then held several laws until its end, and every switch was missed.
+/// Its first law is a wrong one if it is validated too early: the record then held several laws until its end, and
+/// every switch was missed.
 #[test]
 fn a_motion_that_many_laws_explain_for_a_while_is_followed() {
     let mut scenario = Builtin::VanDerPolSine.random(52_006).with_noise(0.03);
@@ -86,8 +88,8 @@ fn a_motion_that_many_laws_explain_for_a_while_is_followed() {
     assert_eq!((found.missed(), found.false_alarms), (0, 0), "{found:#?}");
 }
 
-/// One coefficient after the other changes by a third or a tenth, before the law in between is known to a twentieth: two switches in a row
-/// were read as a drift, and what followed it was missed.
+/// One coefficient after the other changes by a third or a tenth, before the law in between is known to a twentieth:
+/// two switches in a row were read as a drift, and what followed it was missed.
 #[test]
 fn small_switches_in_much_noise_are_no_drift() {
     let mut scenario = Builtin::DuffingSine.random(11_006).with_noise(0.1);

@@ -1,4 +1,5 @@
-//! Plants: what they show depends on time and seed alone, switches fall where the scenario says, noise has its variance.
+//! Plants: what they show depends on time and seed alone, switches fall where the scenario says, noise has its
+//! variance.
 
 use switchid::law::{Motion, State, Term};
 use switchid::simulate::{

@@ -1,5 +1,5 @@
-//! What the stream says about what it does not know yet: how well it knows the instant of a switch, and how much more of a record a law
-//! needs.
+//! What the stream says about what it does not know yet: how well it knows the instant of a switch, and how much more
+//! of a record a law needs.
 
 use switchid::identify::{Coefficient, Identifier, Output, Sample, Settings};
 use switchid::law::{Given, Model};
@@ -63,7 +63,8 @@ fn the_std_of_a_switch_instant_is_that_of_its_error() {
     assert!(errors.iter().filter(|error| error.abs() > 3.0).count() <= 1, "{errors:?}");
 }
 
-/// What was said between alarm and law: (seconds that it took from then on, seconds that were foretold for the slowest coefficient).
+/// What was said between alarm and law: (seconds that it took from then on, seconds that were foretold for the slowest
+/// coefficient).
 fn foretold(builtin: Builtin, seed: u64, noise: f64) -> Vec<(f64, Option<f64>)> {
     let scenario = one_switch(builtin, seed, noise);
     let (mut said, mut known) = (Vec::new(), None);

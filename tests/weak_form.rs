@@ -1,4 +1,5 @@
-//! Records whose errors are no white sensor noise: what the identifier tells of them, from the weak form beside its filter.
+//! Records whose errors are no white sensor noise: what the identifier tells of them, from the weak form beside its
+//! filter.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -14,8 +15,8 @@ const DT: f64 = 0.005;
 /// Steps of integration in a sample.
 const PARTS: u32 = 20;
 
-/// A servo axis under five sines, with a disturbance of the force of `disturbed` times its RMS over some 0.4 s; encoder of `step`, its
-/// differences come as q̇ a sample late.
+/// A servo axis under five sines, with a disturbance of the force of `disturbed` times its RMS over some 0.4 s; encoder
+/// of `step`, its differences come as q̇ a sample late.
 fn servo(seed: u64, seconds: f64, disturbed: f64, step: f64) -> Vec<Sample> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let sines: Vec<[f64; 3]> = (0..5)

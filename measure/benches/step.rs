@@ -1,9 +1,10 @@
 //! What a sample costs: `cargo xtask bench`.
 //!
-//! divan measures blocks of steps and the throughput of a recording: small, with counters per item, and it leaves `main` to us.
-//! What no benchmark harness measures is the worst single step: the table below runs the same record several times and
-//! takes, for every sample, the fastest of its runs. The identifier is deterministic, so that what is left is its work, not
-//! what else the machine did. Times are the machine's; the ratios within a table are what to compare.
+//! divan measures blocks of steps and the throughput of a recording: small, with counters per item, and it leaves
+//! `main` to us. What no benchmark harness measures is the worst single step: the table below runs the same record
+//! several times and takes, for every sample, the fastest of its runs. The identifier is deterministic, so that what is
+//! left is its work, not what else the machine did. Times are the machine's; the ratios within a table are what to
+//! compare.
 
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};

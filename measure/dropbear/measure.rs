@@ -1,7 +1,7 @@
 //! DROPBEAR through the streaming identifier, and what came of it against the measured roller.
 //!
-//! The beam's first bending mode is q̈ + c q̇ + k q = const, q the strain in V. Its stiffness is known from the roller's position r
-//! (V): k = 24766 − 4346 r + 5009 r², (rad/s)². The identifier sees the strain alone.
+//! The beam's first bending mode is q̈ + c q̇ + k q = const, q the strain in V. Its stiffness is known from the
+//! roller's position r (V): k = 24766 − 4346 r + 5009 r², (rad/s)². The identifier sees the strain alone.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -65,7 +65,8 @@ pub struct Figures {
     pub median: f64,
     /// Its 90th percentile.
     pub ninth_decile: f64,
-    /// RMS of the weak residual over windows of 251 samples under the law known at their start ÷ RMS of the inertia's integral.
+    /// RMS of the weak residual over windows of 251 samples under the law known at their start ÷ RMS of the inertia's
+    /// integral.
     pub residual: f64,
     /// Mean of (error ÷ stated std)² of the stiffness.
     pub normalised_error: f64,
@@ -123,8 +124,8 @@ pub fn figures(beam: &Beam, modes: &[Option<Mode>]) -> Figures {
     }
 }
 
-/// Over all windows from [`MOVES_FROM`] on at whose start a law was valid, against one variation with ∫ φ dt = 0, which the offset
-/// of the strain does not enter.
+/// Over all windows from [`MOVES_FROM`] on at whose start a law was valid, against one variation with ∫ φ dt = 0, which
+/// the offset of the strain does not enter.
 fn residual(beam: &Beam, modes: &[Option<Mode>]) -> f64 {
     let length = beam.t[WINDOW - 1] - beam.t[0];
     let variation = Variation::SmoothSine { mode: 2 };

@@ -1,10 +1,12 @@
 //! The table of figures: `cargo xtask figures [SEEDS] [SCENARIO]`.
 //!
-//! Every built-in scenario through the library, without noise and with sensor noise 0.01 (the publication's two noise cases with
-//! theirs), over many seeds. The first is the documented scenario; the others draw stages, excitation and noise
-//! anew. e is eq. (8) at the end of every stage, delays count from the switch, and in a record of one stage from its start.
+//! Every built-in scenario through the library, without noise and with sensor noise 0.01 (the publication's two noise
+//! cases with theirs), over many seeds. The first is the documented scenario; the others draw stages, excitation and
+//! noise anew. e is eq. (8) at the end of every stage, delays count from the switch, and in a record of one stage from
+//! its start.
 //!
-//! With `--against-limits [FIRST..END] [ROW] [--threads N]` the figures of DESIGN §7 beside what any method could reach ([`against_limits`]).
+//! With `--against-limits [FIRST..END] [ROW] [--threads N]` the figures of DESIGN §7 beside what any method could reach
+//! ([`against_limits`]).
 
 mod against_limits;
 mod follow;

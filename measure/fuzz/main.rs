@@ -1,8 +1,8 @@
 //! Random FMI calls on our FMUs' binaries: `cargo xtask fuzz [--sequences N] [--seed S]`.
 //!
-//! A sequence makes an instance and calls it as a master does, as a careless one does, and as none would: wrong phases, readings of every
-//! kind, states that are freed, foreign, changed or cut short. Chunks of sequences run in processes of their own; one that dies, or a
-//! status that FMI does not have, is told with the seed that repeats it.
+//! A sequence makes an instance and calls it as a master does, as a careless one does, and as none would: wrong phases,
+//! readings of every kind, states that are freed, foreign, changed or cut short. Chunks of sequences run in processes
+//! of their own; one that dies, or a status that FMI does not have, is told with the seed that repeats it.
 
 mod sequence;
 mod subject;

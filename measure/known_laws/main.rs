@@ -1,9 +1,8 @@
 //! The table of known laws: `cargo xtask known-laws [SEEDS]`.
 //!
-//! Three laws take turns, A B A C B A C, drawn with their excitation as in the random built-in scenarios, and recorded with
-//! sensor noise. A law that returns is *known* from when its number stands with `valid` to the
-//! stage's end. Seeds begin at 1000: none of them served to
-//! choose a constant.
+//! Three laws take turns, A B A C B A C, drawn with their excitation as in the random built-in scenarios, and recorded
+//! with sensor noise. A law that returns is *known* from when its number stands with `valid` to the stage's end. Seeds
+//! begin at 1000: none of them served to choose a constant.
 
 use switchid::identify::{Identifier, Output, Sample, Settings};
 use switchid::law::{Given, Model};

@@ -1,9 +1,9 @@
 //! What a large recording costs: `cargo xtask large [--rows N] [--switchid PATH]`.
 //!
-//! A Duffing oscillator under a multisine, 1 kHz, with sensor noise and one switch, is written as text with four columns. The
-//! commands run on it as a user runs them. Memory is the largest resident set of the process ÷ the bytes of its columns as
-//! numbers; time is processor time ÷ that of the identifier alone over the same samples in memory, in the same run, so that
-//! what else the machine does counts little. Linux only: figures come from /proc.
+//! A Duffing oscillator under a multisine, 1 kHz, with sensor noise and one switch, is written as text with four
+//! columns. The commands run on it as a user runs them. Memory is the largest resident set of the process ÷ the bytes
+//! of its columns as numbers; time is processor time ÷ that of the identifier alone over the same samples in memory, in
+//! the same run, so that what else the machine does counts little. Linux only: figures come from /proc.
 
 mod process;
 

@@ -1,6 +1,7 @@
 //! Figures 4 and 8 of the publication: e against noise and length of record, of both methods, beside the limit.
 //!
-//! One run of ours over the longest record gives e at every length; the published method identifies from a first window of each length.
+//! One run of ours over the longest record gives e at every length; the published method identifies from a first window
+//! of each length.
 
 mod claims;
 mod section;

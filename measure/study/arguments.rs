@@ -15,7 +15,8 @@ pub struct Arguments {
     /// Records at a time; 0: as many as there are cores
     #[arg(long, default_value_t = 0)]
     pub threads: usize,
-    /// One figure only: accuracy, loops, delays, alarms, rapid, cost. Its text goes to the terminal, the page stays as it is
+    /// One figure only: accuracy, loops, delays, alarms, rapid, cost. Its text goes to the terminal, the page stays as
+    /// it is
     #[arg(long)]
     pub only: Option<String>,
     /// Folder of the pictures; the page stands beside it, under its name

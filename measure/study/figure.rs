@@ -69,7 +69,8 @@ pub struct Claim {
     pub evidence: String,
 }
 
-/// A table too wide for a page, in two: both begin with the same first `keys` columns, the second goes on at column `at`.
+/// A table too wide for a page, in two: both begin with the same first `keys` columns, the second goes on at column
+/// `at`.
 pub fn split_table(keys: usize, at: usize, head: &[&str], rows: &[Vec<String>]) -> String {
     let part = |from: usize, to: usize| {
         let head: Vec<&str> = [&head[..keys], &head[from..to]].concat();

@@ -215,8 +215,8 @@ mod tests {
         assert!(run.stages[0].normalised.iter().any(|z| z.abs() > 10.0));
     }
 
-    /// Its second switch is taken for a return of the first law, for nine samples in which the excitation all but vanishes: a prior from the
-    /// forces of those alone held the new law to the old one for six seconds.
+    /// Its second switch is taken for a return of the first law, for nine samples in which the excitation all but
+    /// vanishes: a prior from the forces of those alone held the new law to the old one for six seconds.
     #[test]
     fn a_law_that_was_taken_for_another_leaves_no_trace() {
         let plant = Plant::VanDerPol;

@@ -25,8 +25,8 @@ pub struct Delays {
     pub tracking: Option<f64>,
 }
 
-/// Limits of e after records of these lengths, s, of the plant's unswitched scenario with sensor noise of std 1: of its own
-/// terms, or of all that its model has.
+/// Limits of e after records of these lengths, s, of the plant's unswitched scenario with sensor noise of std 1: of its
+/// own terms, or of all that its model has.
 ///
 /// # Errors
 /// A plant or a law that cannot move.

@@ -1,4 +1,5 @@
-//! The loop of switch and re-identification that never ends: the published method under nine settings and noises, ours beside it.
+//! The loop of switch and re-identification that never ends: the published method under nine settings and noises, ours
+//! beside it.
 
 use super::Failure;
 use super::figure::{Claim, Figure, Section, table};

@@ -1,8 +1,8 @@
 //! The study behind docs/study.md: `cargo xtask study [--help]`.
 //!
-//! The publication's figures 4 and 8, the limits and ours drawn in; its claims, each confirmed or refuted; delays against noise, against the
-//! false-alarm interval, under rapid switching; cost against the number of terms. Points that were measured are kept in target/study
-//! and not measured again while the library's sources stay as they are.
+//! The publication's figures 4 and 8, the limits and ours drawn in; its claims, each confirmed or refuted; delays
+//! against noise, against the false-alarm interval, under rapid switching; cost against the number of terms. Points
+//! that were measured are kept in target/study and not measured again while the library's sources stay as they are.
 
 mod accuracy;
 mod alarms;

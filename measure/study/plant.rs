@@ -18,7 +18,8 @@ const SETTLING: f64 = 8.0;
 pub enum Plant {
     /// m q̈ + c q̇ + k₁ q + k₃ q³ = P sin ωt with (1, 0.3, 4, 2), P = 2, ω = 1.5; its four terms are given.
     Duffing,
-    /// L q̈ + α(q² − a)q̇ + q/C = P sin ωt with α = 0.6, a = L = C = 1, P = 1.2, ω = 1.1; the full cubic library of 11 terms is given.
+    /// L q̈ + α(q² − a)q̇ + q/C = P sin ωt with α = 0.6, a = L = C = 1, P = 1.2, ω = 1.1; the full cubic library of 11
+    /// terms is given.
     VanDerPol,
 }
 
@@ -42,7 +43,8 @@ impl Plant {
         }
     }
 
-    /// Natural period, s: of the free undamped motion with the amplitude 1 for Duffing, of the free limit cycle for van der Pol.
+    /// Natural period, s: of the free undamped motion with the amplitude 1 for Duffing, of the free limit cycle for van
+    /// der Pol.
     pub fn period(self) -> f64 {
         match self {
             Plant::Duffing => 2.7,

@@ -36,7 +36,8 @@ pub(super) struct Arguments {
     /// Where to write the new model
     #[arg(short, long, value_name = "MODEL2")]
     output: PathBuf,
-    /// Write coefficients as "fit" in place of the values found, but for numbers that MODEL holds: for `identify` and `fmu`
+    /// Write coefficients as "fit" in place of the values found, but for numbers that MODEL holds: for `identify` and
+    /// `fmu`
     #[arg(long)]
     refit: bool,
     /// Overwrite the output file where it exists

@@ -7,8 +7,8 @@ use clap::Args;
 /// Columns by name or position.
 #[derive(Args, Clone, Default)]
 pub(super) struct ColumnArguments {
-    /// Which column is which: q="Weg [mm]", q=2 (its position, from 1), t=1000Hz (a rate in place of times); t, q, qd or F;
-    /// repeatable, goes before the model's [columns]
+    /// Which column is which: q="Weg [mm]", q=2 (its position, from 1), t=1000Hz (a rate in place of times); t, q, qd
+    /// or F; repeatable, goes before the model's [columns]
     #[arg(long, value_name = "NAME=COLUMN")]
     columns: Vec<String>,
 }

@@ -88,8 +88,8 @@ struct Wrong {
 }
 
 impl Wrong {
-    /// As the judge has it, whose figures `diagnose` and `improve` tell; over windows that were asked for, or where the record is too
-    /// short for a judge, the comparison's own.
+    /// As the judge has it, whose figures `diagnose` and `improve` tell; over windows that were asked for, or where the
+    /// record is too short for a judge, the comparison's own.
     fn of(side: &Side, found: &Comparison, asked: Option<f64>) -> Wrong {
         match side.judged.filter(|_| asked.is_none()) {
             Some(judged) => {

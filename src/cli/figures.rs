@@ -230,8 +230,8 @@ fn beside(candidate: Term, law: &[Term], places: &[&Place]) -> Vec<(Term, f64)> 
     solution.map_or_else(|_| Vec::new(), |solution| own.into_iter().zip(solution.iter().copied()).collect())
 }
 
-/// −θ f of a candidate over the extent of the panel's points, less what the law takes of it; none where it takes more than q or q̇ of
-/// one instant, or does not depend on this one.
+/// −θ f of a candidate over the extent of the panel's points, less what the law takes of it; none where it takes more
+/// than q or q̇ of one instant, or does not depend on this one.
 fn curve(panel: &Panel, candidate: &Candidate, beside: &[(Term, f64)], of_velocity: bool) -> Option<Layer> {
     let Layer::Points { points, .. } = panel.layers.first()? else { return None };
     let term = candidate.term;

@@ -119,8 +119,8 @@ fn with_binaries(mut fmu: Fmu, arguments: &Arguments) -> Result<(Fmu, Vec<&'stat
     Ok((fmu, platforms))
 }
 
-/// The binary in the platform's own folder; in the folder itself lie those of this machine, and those whose ending names the
-/// platform.
+/// The binary in the platform's own folder; in the folder itself lie those of this machine, and those whose ending
+/// names the platform.
 fn binary(folder: &Path, platform: Platform, kind: &str) -> Option<PathBuf> {
     let file = platform.file(&format!("switchid-fmu-{kind}"));
     let own = folder.join(platform.name).join(&file);

@@ -38,7 +38,8 @@ pub(super) struct Arguments {
     /// Recordings that no coefficient has seen, on which every step's law is judged as it is
     #[arg(long, value_name = "DATA2", num_args = 1..)]
     validate: Vec<String>,
-    /// Write coefficients as "fit" in place of the values found, but for numbers that MODEL holds: for `identify` and `fmu`
+    /// Write coefficients as "fit" in place of the values found, but for numbers that MODEL holds: for `identify` and
+    /// `fmu`
     #[arg(long)]
     refit: bool,
     /// Overwrite output files where they exist

@@ -16,8 +16,8 @@ use std::path::PathBuf;
 /// Noise std ÷ largest value below which a record counts as free of noise: six digits in a file leave 3e-7.
 const NOISELESS: f64 = 1e-6;
 
-/// Samples of a recording that are judged, from twice as many on: its windows are then thousands, and what a law lacks by less than
-/// they see is below any sensor's calibration.
+/// Samples of a recording that are judged, from twice as many on: its windows are then thousands, and what a law lacks
+/// by less than they see is below any sensor's calibration.
 pub(super) const ENOUGH: usize = 200_000;
 
 /// Parts that are taken of a longer recording.
@@ -111,7 +111,8 @@ impl Input {
         self.recordings.iter().collect()
     }
 
-    /// The model held against the recordings, each with the hold that is known, or under which the best of its form leaves least.
+    /// The model held against the recordings, each with the hold that is known, or under which the best of its form
+    /// leaves least.
     pub(super) fn compared(&self, options: &Options) -> Comparison {
         let posed = Posed::new(&self.model.freed(), &self.recordings(), self.hold);
         let law = posed.as_ref().and_then(Posed::law);

@@ -1,7 +1,7 @@
 //! The command line: one file per command.
 //!
-//! Human text goes to stdout; `--json` prints exactly one JSON document there instead. Errors and warnings go to stderr. Exit status:
-//! 0 done, 1 a gate or a check failed, 2 bad usage or bad input.
+//! Human text goes to stdout; `--json` prints exactly one JSON document there instead. Errors and warnings go to
+//! stderr. Exit status: 0 done, 1 a gate or a check failed, 2 bad usage or bad input.
 
 mod add;
 mod check;
@@ -85,7 +85,8 @@ impl Command {
     }
 }
 
-/// Reads the process's arguments, runs the command, reports its error on stderr: with `--json` as one line of JSON, the last.
+/// Reads the process's arguments, runs the command, reports its error on stderr: with `--json` as one line of JSON, the
+/// last.
 pub fn run() -> ExitCode {
     let json = std::env::args().any(|argument| argument == "--json");
     let command = match CommandLine::try_parse() {

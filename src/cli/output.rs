@@ -64,7 +64,8 @@ impl Targets {
     /// The file of an option, refused before any work where it cannot be written. `-` is standard output.
     ///
     /// # Errors
-    /// [`CommandError::Input`], [`CommandError::Twice`], [`CommandError::Exists`]; [`CommandError::Write`] where its folder is not there.
+    /// [`CommandError::Input`], [`CommandError::Twice`], [`CommandError::Exists`]; [`CommandError::Write`] where its
+    /// folder is not there.
     pub(super) fn claim(&mut self, option: &'static str, path: &Path) -> Result<Target, CommandError> {
         let file = path.display().to_string();
         if let Some((other, _)) = self.claimed.iter().find(|(_, other)| is_same(other, path)) {

@@ -62,7 +62,8 @@ A scenario file:
 pub(super) struct Arguments {
     /// A scenario file (TOML), or the name of a built-in scenario
     scenario: String,
-    /// Where to write the record; its truth goes beside it with the ending .truth.json; - is standard output, without the truth
+    /// Where to write the record; its truth goes beside it with the ending .truth.json; - is standard output, without
+    /// the truth
     #[arg(short, long, value_name = "DATA")]
     output: PathBuf,
     /// Draw a built-in scenario's stages from this seed; seeds white excitation and sensor noise too

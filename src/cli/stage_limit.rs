@@ -1,4 +1,5 @@
-//! What any method could have reached on each stage that `identify` found: the Cramér–Rao bound of the stage's law on its samples.
+//! What any method could have reached on each stage that `identify` found: the Cramér–Rao bound of the stage's law on
+//! its samples.
 
 use super::input::is_noiseless;
 use crate::diagnose::{Evidence, Fit, Form, is_evident, refit};
@@ -26,7 +27,8 @@ pub(super) struct StageLimit {
 }
 
 impl StageLimit {
-    /// Whether the law explains the stage down to its sensors' noise: where it does not, no estimate comes near the limit.
+    /// Whether the law explains the stage down to its sensors' noise: where it does not, no estimate comes near the
+    /// limit.
     pub(super) fn explained(&self) -> bool {
         self.explained
     }
@@ -63,7 +65,8 @@ pub(super) fn stage_limits(
     found.stages.iter().enumerate().map(of).collect()
 }
 
-/// Where the search for a stage's noise begins: that of the sensors over all, and a law that explains nearly everything.
+/// Where the search for a stage's noise begins: that of the sensors over all, and a law that explains nearly
+/// everything.
 fn noise(found: &Identification) -> Noise {
     let variance = |std: Option<f64>| std.map_or(f64::MIN_POSITIVE, |std| std * std);
     let sensor = [variance(found.noise_q), variance(found.noise_qd)];

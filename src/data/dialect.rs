@@ -1,4 +1,5 @@
-//! How a text file holds its table: what separates cells, which decimal mark, and where header, units and numbers begin.
+//! How a text file holds its table: what separates cells, which decimal mark, and where header, units and numbers
+//! begin.
 
 use super::cells::Separator;
 use super::instant::Instant;
@@ -52,8 +53,8 @@ pub(super) fn split_lines(text: &str) -> Box<dyn Iterator<Item = &str> + '_> {
 }
 
 impl Dialect {
-    /// The dialect under which most cells are numbers; where the file has no numbers, that of its first line. None where
-    /// nothing is a table.
+    /// The dialect under which most cells are numbers; where the file has no numbers, that of its first line. None
+    /// where nothing is a table.
     pub(super) fn of(text: &str) -> Option<Dialect> {
         let looked_at: Vec<Line> = lines(text).take(LOOKED_AT).collect();
         let tried = [Decimal::Point, Decimal::Comma].into_iter().flat_map(|decimal| {
@@ -187,8 +188,8 @@ fn is_heading(cells: &[String], columns: usize, decimal: Decimal) -> bool {
     near && told > 0 && !cells.iter().any(is_value)
 }
 
-/// Whether cells are the units of columns: one at least is one, and so are half of those that are not empty, or stand in brackets; the
-/// others may be formats of times (`hh:mm:ss`) and units of no motion (`°C`).
+/// Whether cells are the units of columns: one at least is one, and so are half of those that are not empty, or stand
+/// in brackets; the others may be formats of times (`hh:mm:ss`) and units of no motion (`°C`).
 fn are_units(cells: &[String]) -> bool {
     let is_unit = |cell: &&String| Unit::parse(bare_unit(cell)).is_some();
     let is_bracket = |cell: &&String| bare_unit(cell) != cell.trim();

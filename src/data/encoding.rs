@@ -1,5 +1,5 @@
-//! The characters of a text's bytes: UTF-8, UTF-16 with a byte order mark, else the Western European code page of instruments
-//! and old spreadsheets.
+//! The characters of a text's bytes: UTF-8, UTF-16 with a byte order mark, else the Western European code page of
+//! instruments and old spreadsheets.
 
 /// Characters looked at before a file counts as text.
 const LOOKED_AT: usize = 4096;

@@ -95,8 +95,8 @@ pub(super) fn is_named(channel: Channel, name: &str) -> bool {
 /// Correlation of a column with another one's rate from which it is its derivative.
 const ALIKE: f64 = 0.9;
 
-/// Columns without names, told apart by their numbers: time increases, a velocity is the derivative of a displacement, and what
-/// is left is the excitation. None where that does not tell.
+/// Columns without names, told apart by their numbers: time increases, a velocity is the derivative of a displacement,
+/// and what is left is the excitation. None where that does not tell.
 pub(super) fn by_content(columns: &[Vec<f64>]) -> Option<Columns> {
     let name = |index: usize| Some((index + 1).to_string());
     let rises = |values: &[f64]| values.len() > 2 && values.windows(2).all(|pair| pair[1] > pair[0]);

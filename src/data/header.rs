@@ -82,8 +82,8 @@ enum Written<'a> {
 }
 
 impl Layout {
-    /// Finds the columns in the headings of a file: those that are named, those of the default names, and where these do not do,
-    /// those that names, units or numbers tell.
+    /// Finds the columns in the headings of a file: those that are named, those of the default names, and where these
+    /// do not do, those that names, units or numbers tell.
     pub(super) fn find(headings: &Headings, model: &Model) -> Result<Layout, DataError> {
         let finder = Finder { headings, units: &model.units };
         let (file, kind) = (headings.file, headings.kind);
@@ -130,8 +130,8 @@ impl Layout {
         self.columns().filter_map(guess).collect()
     }
 
-    /// What the columns say of the units of coefficients. In free motion these are relative to the inertia, unless the model
-    /// holds it at a number.
+    /// What the columns say of the units of coefficients. In free motion these are relative to the inertia, unless the
+    /// model holds it at a number.
     pub(super) fn units(&self, inertia_held: bool) -> Units {
         let quantity =
             |column: &Option<Column>| column.as_ref().and_then(|column| column.unit).map(|unit| unit.quantity);

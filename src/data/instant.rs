@@ -75,8 +75,8 @@ fn whole(text: &str) -> Option<f64> {
     (!text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())).then(|| text.parse().ok())?
 }
 
-/// Days since 1970-01-01 of `2024-05-01`, `01.05.2024`, `1/5/2024`, `01-May-2024`. Where day and month cannot be told apart, a
-/// slash stands between month and day, a point between day and month.
+/// Days since 1970-01-01 of `2024-05-01`, `01.05.2024`, `1/5/2024`, `01-May-2024`. Where day and month cannot be told
+/// apart, a slash stands between month and day, a point between day and month.
 fn date(text: &str) -> Option<i64> {
     let mark = ['-', '/', '.'].into_iter().find(|mark| text.contains(*mark))?;
     let parts: Vec<&str> = text.split(mark).collect();

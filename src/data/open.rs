@@ -38,8 +38,8 @@ pub struct Taken {
     pub guessed: Option<&'static str>,
 }
 
-/// Opens `DATA` or `DATA@t0:t1` and takes from it the columns that the model names. The content tells what kind of file it
-/// is: text, a spreadsheet, MAT (5, 7.3) or Parquet.
+/// Opens `DATA` or `DATA@t0:t1` and takes from it the columns that the model names. The content tells what kind of file
+/// it is: text, a spreadsheet, MAT (5, 7.3) or Parquet.
 ///
 /// # Errors
 /// [`DataError`] names file, line and column (or variable and sample), and what would mend it.

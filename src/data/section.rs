@@ -15,8 +15,8 @@ pub struct Section {
 }
 
 impl Section {
-    /// Reads `DATA`, `DATA@t0:t1`, `DATA@t0:` or `DATA@:t1`. An `@` without a colon behind it, or in the name of a file that is
-    /// there, belongs to the name.
+    /// Reads `DATA`, `DATA@t0:t1`, `DATA@t0:` or `DATA@:t1`. An `@` without a colon behind it, or in the name of a file
+    /// that is there, belongs to the name.
     ///
     /// # Errors
     /// [`DataError::Section`] where a time is no number or t1 does not come after t0.

@@ -1,4 +1,5 @@
-//! Files that store a recording column by column: MAT, MDF and Parquet. Without the feature `formats` they are refused by name.
+//! Files that store a recording column by column: MAT, MDF and Parquet. Without the feature `formats` they are refused
+//! by name.
 
 use super::error::DataError;
 use super::header::Layout;

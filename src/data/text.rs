@@ -59,7 +59,8 @@ impl Text {
         Ok(Some(self.encoding.decode(bytes)))
     }
 
-    /// Takes the whole lines out of the pending bytes, of which more are read until there is one; all at the end of the file.
+    /// Takes the whole lines out of the pending bytes, of which more are read until there is one; all at the end of the
+    /// file.
     fn whole_lines(&mut self) -> io::Result<Vec<u8>> {
         loop {
             if let Some(at) = self.encoding.behind_last(&self.pending, self.end) {

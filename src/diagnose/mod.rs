@@ -1,7 +1,8 @@
 //! Which physical effect a model lacks, and where it fails.
 //!
-//! Data takes one way: the motion that recordings show (`motion`) → a law as weak equations and its held-out errors (`judge`) → every
-//! effect beside it (`candidates`) → the `verdict`. The likelihood (`fit`) sharpens coefficients; `compare` shows where a law fails.
+//! Data takes one way: the motion that recordings show (`motion`) → a law as weak equations and its held-out errors
+//! (`judge`) → every effect beside it (`candidates`) → the `verdict`. The likelihood (`fit`) sharpens coefficients;
+//! `compare` shows where a law fails.
 
 mod candidates;
 mod compare;

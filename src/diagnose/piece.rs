@@ -122,7 +122,8 @@ impl Piece {
     }
 }
 
-/// At most `limit` samples of the pieces, in [`PARTS`] parts spread evenly over them; all of them where there are no more.
+/// At most `limit` samples of the pieces, in [`PARTS`] parts spread evenly over them; all of them where there are no
+/// more.
 pub fn thinned(pieces: &[Piece], limit: usize) -> Vec<Piece> {
     let samples: usize = pieces.iter().map(Piece::len).sum();
     if samples <= limit {

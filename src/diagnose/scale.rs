@@ -46,8 +46,8 @@ impl Scale {
         }
     }
 
-    /// Whether the record shows such an effect as what it is. A resonance whose half-power width 2ζω is less than the record's resolution
-    /// 2π ÷ its duration is a single line of its spectrum: any disturbance of that frequency, too.
+    /// Whether the record shows such an effect as what it is. A resonance whose half-power width 2ζω is less than the
+    /// record's resolution 2π ÷ its duration is a single line of its spectrum: any disturbance of that frequency, too.
     pub fn resolves(&self, effect: Effect) -> bool {
         match effect {
             Effect::HiddenResonator { frequency, damping_ratio } => {
@@ -57,7 +57,8 @@ impl Scale {
         }
     }
 
-    /// Between which values of an inner parameter the motion can tell: beyond them the effect is another of the catalogue, or none.
+    /// Between which values of an inner parameter the motion can tell: beyond them the effect is another of the
+    /// catalogue, or none.
     pub fn limits(&self, effect: Effect, parameter: usize) -> [f64; 2] {
         let [slow, fast] = self.frequency;
         let times = |scale: f64, from: f64, to: f64| [from * scale, to * scale];

@@ -118,8 +118,8 @@ impl Information {
         self.score[index] += score;
     }
 
-    /// The same with that part of each unknown's own information added to it: a shorter step (Marquardt, SIAM Journal 11
-    /// (1963), 431).
+    /// The same with that part of each unknown's own information added to it: a shorter step (Marquardt, SIAM Journal
+    /// 11 (1963), 431).
     pub fn damped(&self, part: f64) -> Information {
         let mut damped = self.clone();
         (0..self.n).for_each(|index| *damped.entry_mut(index, index) *= 1.0 + part);

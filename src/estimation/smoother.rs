@@ -1,7 +1,7 @@
 //! The motion as all samples together tell it: the Bryson–Frazier smoother over a run of the filter.
 //!
-//! Bierman, International Journal of Control 18 (1973), 65: the smoothed mean at k is x − P λ with the filtered x and P,
-//! and λ goes backward through the measurements, λ ← (I − K H)ᵀ λ − Hᵀ ε ÷ s, and through the intervals, λ ← Aᵀ λ.
+//! Bierman, International Journal of Control 18 (1973), 65: the smoothed mean at k is x − P λ with the filtered x and
+//! P, and λ goes backward through the measurements, λ ← (I − K H)ᵀ λ − Hᵀ ε ÷ s, and through the intervals, λ ← Aᵀ λ.
 //! Nothing is inverted: where a law explains its record the covariance is all but singular, and a smoother that divides
 //! by it goes back along the law without the measurements, which a damped motion does not bear.
 

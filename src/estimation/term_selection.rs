@@ -3,8 +3,8 @@
 //! At the maximum of the likelihood, dropping a term of coefficient θ_j with variance v_j costs θ_j²/v_j in twice the
 //! log-likelihood. The cheapest term goes while that is below its price, 2 ln N for N scalar measurements; the rest is
 //! solved anew. After a switch the old structure is the likelier one: a term that the old law had is cheaper by
-//! [`PRIOR_LOG_ODDS`], one that it had not dearer. Where the information is too near to singular for that, the search starts
-//! from the terms of the law as it is, and adds before it drops.
+//! [`PRIOR_LOG_ODDS`], one that it had not dearer. Where the information is too near to singular for that, the search
+//! starts from the terms of the law as it is, and adds before it drops.
 
 use super::information::{Information, Solution};
 use serde::{Deserialize, Serialize};

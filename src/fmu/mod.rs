@@ -1,8 +1,8 @@
 //! What our FMUs are: the variables, units and resources of an identifier for a model, and of a plant for a law.
 //!
-//! model → interface → [`Fmu`], to which the binaries of `fmu/identifier` or `fmu/plant` are added as bytes. Ports are in SI
-//! units: where the model names a unit of q, qd or F, they declare the SI unit of that quantity, else none, so that they
-//! connect to anything.
+//! model → interface → [`Fmu`], to which the binaries of `fmu/identifier` or `fmu/plant` are added as bytes. Ports are
+//! in SI units: where the model names a unit of q, qd or F, they declare the SI unit of that quantity, else none, so
+//! that they connect to anything.
 
 mod description;
 mod error;

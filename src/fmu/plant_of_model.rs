@@ -1,7 +1,7 @@
 //! A plant whose law is a model's, with its numbers.
 //!
-//! Terms without inner parameters are parameters of every stage. Those with inner ones are the plant's `hidden.*` effects, whose
-//! start values are then the model's: the law file has no place for a gap.
+//! Terms without inner parameters are parameters of every stage. Those with inner ones are the plant's `hidden.*`
+//! effects, whose start values are then the model's: the law file has no place for a gap.
 
 use super::error::FmuError;
 use super::plant::{pack, plant_description, with_equations};
@@ -17,7 +17,8 @@ use switchid_fmu_slave::{Description, Kind};
 /// specimen: inputs q and qd, output F.
 ///
 /// # Errors
-/// [`FmuError::NoNumbers`] where a coefficient or an inner parameter has no number, [`FmuError::Memory`] for a specimen that needs the past, and what packing refuses.
+/// [`FmuError::NoNumbers`] where a coefficient or an inner parameter has no number, [`FmuError::Memory`] for a specimen
+/// that needs the past, and what packing refuses.
 pub fn plant_of_model(name: &str, model: &Model) -> Result<Fmu, FmuError> {
     model.check()?;
     let moves = !model.is_force_law();

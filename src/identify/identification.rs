@@ -117,8 +117,8 @@ const HOLD_TRIALS: [usize; 3] = [1500, 3000, 6000];
 const BEATEN: f64 = 500.0;
 
 /// The hold under which the first stretch of the recording has the largest likelihood; a straight line where none gives
-/// a law, which errs least where nothing is known, and of a free motion, where nothing is held. Always by our method: the
-/// publication's states no likelihood. Of a model with numbers only, all are estimated.
+/// a law, which errs least where nothing is known, and of a free motion, where nothing is held. Always by our method:
+/// the publication's states no likelihood. Of a model with numbers only, all are estimated.
 pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) -> Hold {
     if !recording.channels().excitation {
         return Hold::Linear;

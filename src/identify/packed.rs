@@ -1,8 +1,8 @@
 //! Samples in few bytes, every number bit by bit.
 //!
 //! Each channel is written as its distance from the straight line through the two samples before, in steps of the last
-//! binary digit, by as many bytes as that needs: a clock needs one or two, a smooth force half of its eight. A sample is a
-//! word of four 4-bit counts, then the bytes.
+//! binary digit, by as many bytes as that needs: a clock needs one or two, a smooth force half of its eight. A sample
+//! is a word of four 4-bit counts, then the bytes.
 
 use super::sample::Sample;
 use serde::de::{Error, Visitor};
@@ -91,7 +91,8 @@ fn unpack(mut bytes: &[u8]) -> Option<Vec<Sample>> {
     Some(samples)
 }
 
-/// Where the straight line through the two before arrives; 0 where that is no number, of which machines keep different bits.
+/// Where the straight line through the two before arrives; 0 where that is no number, of which machines keep different
+/// bits.
 fn line([first, second]: &[Channels; 2], channel: usize) -> f64 {
     let next = 2.0 * second[channel] - first[channel];
     if next.is_finite() { next } else { 0.0 }

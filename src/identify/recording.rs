@@ -223,7 +223,8 @@ impl Recording {
         Recording::new(&self.source, cut(&self.t), of(&self.q), of(&self.qd), of(&self.excitation))
     }
 
-    /// Evenly spread parts of it, `most` samples together, with gaps between them; none where it is not at least twice as long.
+    /// Evenly spread parts of it, `most` samples together, with gaps between them; none where it is not at least twice
+    /// as long.
     pub fn spread(&self, most: usize, parts: usize) -> Option<Recording> {
         let length = most / parts;
         if self.count() < 2 * most || parts < 2 || length < Recording::MINIMUM {

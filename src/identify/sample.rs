@@ -3,7 +3,8 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// Samples further apart than so many usual distances have a gap between them: four lost ones in a row are still bridged.
+/// Samples further apart than so many usual distances have a gap between them: four lost ones in a row are still
+/// bridged.
 pub const GAP: f64 = 4.5;
 
 /// One measurement.

@@ -58,8 +58,8 @@ pub struct Settings {
     pub channels: Channels,
     /// What the excitation does between samples.
     pub hold: Hold,
-    /// Usual time between two samples, s: with `max_window` it fixes the memory; a sample sooner than half of it after the last
-    /// one is left out.
+    /// Usual time between two samples, s: with `max_window` it fixes the memory; a sample sooner than half of it after
+    /// the last one is left out.
     pub sample_time: f64,
     /// How much record the estimator keeps to refine on, s.
     pub max_window: f64,

@@ -1,8 +1,9 @@
 //! A law with numbers, arranged for speed.
 //!
-//! Every term is a product of one factor of q, one of q̇ and a power of F: the factors that the terms share, powers foremost, are
-//! evaluated once at a point into a [`Table`], and a term is three places in it. Effects with inner parameters get the places that are left. Terms whose coefficient is 0 cost nothing where
-//! only the force is wanted. The order of a sum, and so its last bits, depend on nothing but terms and coefficients.
+//! Every term is a product of one factor of q, one of q̇ and a power of F: the factors that the terms share, powers
+//! foremost, are evaluated once at a point into a [`Table`], and a term is three places in it. Effects with inner
+//! parameters get the places that are left. Terms whose coefficient is 0 cost nothing where only the force is wanted.
+//! The order of a sum, and so its last bits, depend on nothing but terms and coefficients.
 
 use super::effect::Effect;
 use super::expression::Expression;
@@ -45,8 +46,8 @@ impl Shapes {
         Some(first + index as u8)
     }
 
-    /// Of the part of the term that does not multiply q̈; none for the inertia, for an effect with memory and where there is no
-    /// place left.
+    /// Of the part of the term that does not multiply q̈; none for the inertia, for an effect with memory and where
+    /// there is no place left.
     fn places(&mut self, term: Term) -> Option<Places> {
         match term {
             Term::Effect(
@@ -67,7 +68,8 @@ impl Shapes {
 }
 
 impl Places {
-    /// Of the part of the term that does not multiply q̈; none for the inertia and for an effect that has no fixed place.
+    /// Of the part of the term that does not multiply q̈; none for the inertia and for an effect that has no fixed
+    /// place.
     fn of(term: Term) -> Option<Places> {
         let places = |q, qd| Some(Places { q, qd, excitation: 0 });
         match term {
@@ -94,7 +96,8 @@ const OF_QD: [Effect; 3] = [Effect::CoulombFriction, Effect::QuadraticDamping, E
 /// Where |F| stands in the excitation's table.
 const SIZE: u8 = EFFECTS;
 
-/// Where the first of the user's own effects stands in the excitation's table: they are functions of all three, and no product.
+/// Where the first of the user's own effects stands in the excitation's table: they are functions of all three, and no
+/// product.
 const OWN: u8 = SIZE + 1;
 
 /// A term that the law has: its places and its coefficient.
@@ -181,8 +184,8 @@ impl Compiled {
     /// The most expressions of a law.
     pub const MAX_OWN: usize = FACTORS - OWN as usize;
 
-    /// The first term that a compiled law cannot have: one with memory, or one more effect with inner parameters than there are
-    /// places (3 of q, 3 of q̇), or an expression beyond the first [`Compiled::MAX_OWN`].
+    /// The first term that a compiled law cannot have: one with memory, or one more effect with inner parameters than
+    /// there are places (3 of q, 3 of q̇), or an expression beyond the first [`Compiled::MAX_OWN`].
     pub fn refused(terms: &[Term]) -> Option<Term> {
         let mut shapes = Shapes::default();
         terms.iter().copied().find(|term| *term != Term::Inertia && shapes.places(*term).is_none())

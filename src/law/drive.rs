@@ -65,7 +65,8 @@ impl Drive {
 
 /// Interpolates equidistant samples of a band-limited excitation.
 ///
-/// A sinc windowed by (1 − r²) exp(−6 r²), r = distance ÷ `REACH`, whose weights are normalised so that a constant stays one.
+/// A sinc windowed by (1 − r²) exp(−6 r²), r = distance ÷ `REACH`, whose weights are normalised so that a constant
+/// stays one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BandLimited {
     /// `weights[node][tap]`: tap `REACH − 1` is the sample at the interval's start.

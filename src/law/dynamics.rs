@@ -1,8 +1,8 @@
 //! Integration in time of a law with any terms: effects with memory, delayed excitation, expressions.
 //!
-//! The coordinate's (q, q̇) and the internal states of the effects are integrated jointly by the classical Runge–Kutta method (order 4). A
-//! step within which an internal state changes much is cut into parts, and one within which the velocity reverses under dry friction is cut
-//! there. Laws without such terms are faster by [`Motion`].
+//! The coordinate's (q, q̇) and the internal states of the effects are integrated jointly by the classical Runge–Kutta
+//! method (order 4). A step within which an internal state changes much is cut into parts, and one within which the
+//! velocity reverses under dry friction is cut there. Laws without such terms are faster by [`Motion`].
 
 use super::effect::Effect;
 use super::history::History;

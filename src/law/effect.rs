@@ -1,15 +1,17 @@
 //! Named physical effects that are no product of powers.
 //!
-//! Effects that are monomials (`linear_damping` is `qd`) are names of terms: [`super::term::Term::parse`] knows them. An effect carries its
-//! inner parameters (gap, delay …) with it, so that it alone says what its coefficient multiplies. The feature of a
-//! pointwise effect is a function of (q, q̇, F) at one instant; the others have a memory:
+//! Effects that are monomials (`linear_damping` is `qd`) are names of terms: [`super::term::Term::parse`] knows them.
+//! An effect carries its inner parameters (gap, delay …) with it, so that it alone says what its coefficient
+//! multiplies. The feature of a pointwise effect is a function of (q, q̇, F) at one instant; the others have a memory:
 //!
 //! - delayed excitation: F(t) − F(t − τ). With coefficient 1 on the left, F(t) on the right becomes F(t − τ).
-//! - hysteresis: z with ż = q̇ − (s |q̇| |z|^(n−1) z + (1 − s) q̇ |z|^n) ÷ x_y^n, the Bouc–Wen model (Bouc 1967, Wen 1976) in a form
-//!   whose z saturates at the yield displacement x_y; s = β ÷ (β + γ), and s = n = 1 is Dahl's model (1968).
-//! - presliding friction: z ÷ x_s with ż = q̇ − |q̇| z ÷ x_s, Dahl's model (1968) with the level of friction as its coefficient.
-//! - friction with backlash: z ÷ x_s with ė = q̇ − |q̇| z ÷ x_s and z = sign(e) max(|e| − g, 0): presliding friction behind play of
-//!   ± g, its spring without force within it. g = 0 is presliding friction.
+//! - hysteresis: z with ż = q̇ − (s |q̇| |z|^(n−1) z + (1 − s) q̇ |z|^n) ÷ x_y^n, the Bouc–Wen model (Bouc 1967, Wen
+//!   1976) in a form whose z saturates at the yield displacement x_y; s = β ÷ (β + γ), and s = n = 1 is Dahl's model
+//!   (1968).
+//! - presliding friction: z ÷ x_s with ż = q̇ − |q̇| z ÷ x_s, Dahl's model (1968) with the level of friction as its
+//!   coefficient.
+//! - friction with backlash: z ÷ x_s with ė = q̇ − |q̇| z ÷ x_s and z = sign(e) max(|e| − g, 0): presliding friction
+//!   behind play of ± g, its spring without force within it. g = 0 is presliding friction.
 //! - relaxation: w with τ ẇ = q̇ − w, a Maxwell element, whose coefficient is its viscosity, that ÷ τ its stiffness.
 //! - actuator lag: F − F_a with τ Ḟ_a = F − F_a. With coefficient 1 on the left, F on the right becomes F_a.
 //! - hidden resonator: ÿ with ÿ = Ω² (q − y) + 2ζΩ (q̇ − ẏ), an unmeasured mass on a spring that the coordinate carries

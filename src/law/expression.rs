@@ -1,7 +1,8 @@
 //! A user's own effect: a formula in `q, qd, F, t` with named inner parameters.
 //!
-//! Functions: abs, sign (signum), sqrt, exp, ln (log), sin, cos, tan, atan, sinh, cosh, tanh, min(a, b), max(a, b); the constant pi; every
-//! other name is an inner parameter. A power of a negative base needs a whole exponent: `abs(qd)^0.5`.
+//! Functions: abs, sign (signum), sqrt, exp, ln (log), sin, cos, tan, atan, sinh, cosh, tanh, min(a, b), max(a, b); the
+//! constant pi; every other name is an inner parameter. A power of a negative base needs a whole exponent:
+//! `abs(qd)^0.5`.
 
 use super::formula::{Binary, FormulaError, Instruction, STACK, Unary, VARIABLES, parse};
 use super::own::Own;
@@ -75,7 +76,8 @@ impl Expression {
         self.run([q, qd, excitation, t].map(Number::of), &own.inner()).value
     }
 
-    /// (∂/∂q, ∂/∂q̇) at (q, q̇, F); one-sided where the formula has a kink, 0 at the jump of a sign, NaN where it depends on time.
+    /// (∂/∂q, ∂/∂q̇) at (q, q̇, F); one-sided where the formula has a kink, 0 at the jump of a sign, NaN where it
+    /// depends on time.
     pub fn gradient(&self, q: f64, qd: f64, excitation: f64) -> (f64, f64) {
         self.slopes(q, qd, excitation, &self.values)
     }

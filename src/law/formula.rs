@@ -1,12 +1,13 @@
 //! Reading a formula in `q, qd, F, t` and named parameters into a program for a stack.
 //!
-//! `sum = product {± product}`, `product = signed {× ÷ signed}`, `signed = [−] power`, `power = atom [^ signed]`, so that
-//! `-q^2` is −(q²) and `2^3^2` is 2^(3²).
+//! `sum = product {± product}`, `product = signed {× ÷ signed}`, `signed = [−] power`, `power = atom [^ signed]`, so
+//! that `-q^2` is −(q²) and `2^3^2` is 2^(3²).
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// Values that a program may have on its stack at once: what a formula of 24 open operands needs, in an array without allocation.
+/// Values that a program may have on its stack at once: what a formula of 24 open operands needs, in an array without
+/// allocation.
 pub(super) const STACK: usize = 24;
 
 /// The most inner parameters of an expression: more than any record determines beside the coefficients.

@@ -4,8 +4,8 @@ use super::hold::Hold;
 
 /// An excitation that can be asked for its past.
 pub trait History {
-    /// Values at the start, the middle and the end of `from` … `to` (s), a short piece of time within which it counts as smooth. One that
-    /// jumps within the piece gives its mean over it three times.
+    /// Values at the start, the middle and the end of `from` … `to` (s), a short piece of time within which it counts
+    /// as smooth. One that jumps within the piece gives its mean over it three times.
     fn over(&self, from: f64, to: f64) -> [f64; 3];
 }
 

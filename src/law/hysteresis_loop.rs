@@ -1,17 +1,20 @@
 //! A Bouc–Wen loop along a displacement, and friction that is Dahl's, its case s = n = 1, with or without play.
 //!
-//! The loop does not depend on the rate: with ρ = z ÷ x_y taken in the direction of motion and u the way since ρ was 0, in units of x_y,
-//! dρ/du = 1 − ρⁿ while loading (ρ > 0) and 1 + (2s − 1) |ρ|ⁿ while unloading. Both are tabulated once, on the way u, which simply grows as
-//! the coordinate moves on; where it turns, ρ becomes −ρ. Play of ± g is a way of 2g between unloading and loading. So a loop costs the same however sharp it is, where integration in time has
+//! The loop does not depend on the rate: with ρ = z ÷ x_y taken in the direction of motion and u the way since ρ was 0,
+//! in units of x_y, dρ/du = 1 − ρⁿ while loading (ρ > 0) and 1 + (2s − 1) |ρ|ⁿ while unloading. Both are tabulated
+//! once, on the way u, which simply grows as the coordinate moves on; where it turns, ρ becomes −ρ. Play of ± g is a
+//! way of 2g between unloading and loading. So a loop costs the same however sharp it is, where integration in time has
 //! to follow every yielding.
 
 use super::effect::Effect;
 use super::motion::State;
 
-/// Way between nodes of the tables, in yield displacements: Runge and Kutta's step of order 4 then errs by some 0.04⁵ ÷ 120 a node.
+/// Way between nodes of the tables, in yield displacements: Runge and Kutta's step of order 4 then errs by some 0.04⁵ ÷
+/// 120 a node.
 const SPACING: f64 = 0.04;
 
-/// Nodes of each table: they reach 20 yield displacements, where 1 − ρ of the smoothest loop, exp(−20), is 2e-9: it has yielded.
+/// Nodes of each table: they reach 20 yield displacements, where 1 − ρ of the smoothest loop, exp(−20), is 2e-9: it has
+/// yielded.
 const NODES: usize = 512;
 
 /// ρ from which on a loading branch stays: the loop has yielded.
@@ -107,7 +110,8 @@ impl Branch {
     }
 }
 
-/// What a loop is made of: yield displacement or slip length, m, half the play, m, the feature where it has yielded, s and n.
+/// What a loop is made of: yield displacement or slip length, m, half the play, m, the feature where it has yielded, s
+/// and n.
 struct Bend {
     limit: f64,
     gap: f64,
@@ -132,7 +136,8 @@ impl Bend {
 }
 
 impl Effect {
-    /// ∂f/∂q of a loop whose feature is f there, and what a short way `dq` leaves of a difference in f; none of an effect that is no loop.
+    /// ∂f/∂q of a loop whose feature is f there, and what a short way `dq` leaves of a difference in f; none of an
+    /// effect that is no loop.
     pub fn loop_tangent(self, feature: f64, dq: f64) -> Option<[f64; 2]> {
         let Bend { limit, gap, level, share, exponent } = Bend::of(self)?;
         if gap > 0.0 && feature == 0.0 {
@@ -202,8 +207,8 @@ impl Loop {
         self.limit * direction * (ratio + play)
     }
 
-    /// After the way from one state to the next, between which the velocity turns at most once; `at` gives the displacement at a share of
-    /// the time between them.
+    /// After the way from one state to the next, between which the velocity turns at most once; `at` gives the
+    /// displacement at a share of the time between them.
     pub(super) fn followed(&self, place: Place, [from, to]: [State; 2], at: impl Fn(f64) -> f64) -> Place {
         if from.qd * to.qd >= 0.0 {
             return self.moved(place, to.q - from.q);
@@ -254,7 +259,8 @@ mod tests {
         }
     }
 
-    /// ė = q̇ − |q̇| z ÷ x_s, z what of e is beyond the gap, in small steps, through play and partial reversals within it.
+    /// ė = q̇ − |q̇| z ÷ x_s, z what of e is beyond the gap, in small steps, through play and partial reversals within
+    /// it.
     #[test]
     fn play_is_a_way_without_force() {
         let (slip, gap) = (0.3, 0.2);

@@ -1,10 +1,12 @@
-//! What a term does between the samples of a motion that is known at them: the straight line with its mean and its first moment.
+//! What a term does between the samples of a motion that is known at them: the straight line with its mean and its
+//! first moment.
 //!
-//! The displacement follows the cubic that has the displacements and velocities of both ends (Hermite), the velocity the parabola through
-//! those of both ends that has the change of acceleration which the law gives: noise of q does not enter it. Internal states are integrated along it on a
-//! grid [`PANELS`] times finer than the samples, or finer yet where they are fast. A force f(s), s from 0 to 1 over the interval, becomes the
-//! line whose mean is ∫ f ds and whose moment about the middle is ∫ f (s − ½) ds: what acts on a coordinate that hardly moves
-//! within the interval is exact to second order.
+//! The displacement follows the cubic that has the displacements and velocities of both ends (Hermite), the velocity
+//! the parabola through those of both ends that has the change of acceleration which the law gives: noise of q does not
+//! enter it. Internal states are integrated along it on a grid [`PANELS`] times finer than the samples, or finer yet
+//! where they are fast. A force f(s), s from 0 to 1 over the interval, becomes the line whose mean is ∫ f ds and whose
+//! moment about the middle is ∫ f (s − ½) ds: what acts on a coordinate that hardly moves within the interval is exact
+//! to second order.
 
 use super::effect::Effect;
 use super::expression::Expression;
@@ -22,12 +24,13 @@ pub type Line = [f64; 2];
 /// Panels of the quadrature in an interval at least; even.
 const PANELS: usize = 4;
 
-/// Share of an interval that rounding of times may leave: a time of 1000 s is exact to 10⁻¹³ s, 10⁻¹⁰ of an interval of 1 ms.
+/// Share of an interval that rounding of times may leave: a time of 1000 s is exact to 10⁻¹³ s, 10⁻¹⁰ of an interval of
+/// 1 ms.
 const ROUNDING: f64 = 1e-9;
 
 impl Effect {
-    /// Numbers that say where the effect's memory begins, as differences from nothing stored: its internal states, or the excitation
-    /// before the first sample.
+    /// Numbers that say where the effect's memory begins, as differences from nothing stored: its internal states, or
+    /// the excitation before the first sample.
     pub fn beginning_length(self) -> usize {
         match self {
             Effect::ExcitationDelay { .. } => 1,
@@ -55,9 +58,9 @@ impl Effect {
     }
 }
 
-/// The force of a term with memory, a delay or a formula over every interval, per unit of its coefficient; NaN for an expression that is not
-/// there, and for a term that has a pointwise force. `bends` is by how much q̈ changes over each interval, m/s²; `beginning` has
-/// [`Effect::beginning_length`] numbers.
+/// The force of a term with memory, a delay or a formula over every interval, per unit of its coefficient; NaN for an
+/// expression that is not there, and for a term that has a pointwise force. `bends` is by how much q̈ changes over each
+/// interval, m/s²; `beginning` has [`Effect::beginning_length`] numbers.
 pub fn interval_forces(
     term: Term,
     expressions: &[Expression],
@@ -299,7 +302,8 @@ mod tests {
         assert!(coarse < 1e-4 && fine < coarse / 4.0, "{coarse:e}, {fine:e}");
     }
 
-    /// Behind a lag τ a ramp of slope a is followed by a τ (1 − e^(−t/τ)): its mean and moment over the interval from 0.1 s to 0.2 s.
+    /// Behind a lag τ a ramp of slope a is followed by a τ (1 − e^(−t/τ)): its mean and moment over the interval from
+    /// 0.1 s to 0.2 s.
     #[test]
     fn a_lag_follows_a_ramp_gradually() {
         let (t, still) = ([0.0, 0.1, 0.2], [0.0; 3]);

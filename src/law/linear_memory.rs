@@ -1,4 +1,5 @@
-//! Memories that are linear in the motion or in the excitation, between samples: a hidden mass, a Maxwell element, an actuator that lags.
+//! Memories that are linear in the motion or in the excitation, between samples: a hidden mass, a Maxwell element, an
+//! actuator that lags.
 
 use super::effect::Effect;
 use super::history::History;
@@ -13,8 +14,8 @@ pub(super) type Moments = [f64; 2];
 const SMALL_ANGLE: f64 = 1e-6;
 
 impl Effect {
-    /// Moments over every interval of a motion that begins with these internal states; `bends` is by how much q̈ changes, m/s². None of an effect
-    /// without a linear memory.
+    /// Moments over every interval of a motion that begins with these internal states; `bends` is by how much q̈
+    /// changes, m/s². None of an effect without a linear memory.
     pub(super) fn linear_moments(
         self,
         trajectory: &Trajectory,
@@ -33,8 +34,8 @@ impl Effect {
     }
 }
 
-/// A mass that the coordinate carries on a spring. With w = y − q, ẅ + 2ζΩ ẇ + Ω² w = −q̈, which is solved exactly where q̈ is a straight line over
-/// an interval; mean and first moment of ÿ follow from y and ẏ at its ends.
+/// A mass that the coordinate carries on a spring. With w = y − q, ẅ + 2ζΩ ẇ + Ω² w = −q̈, which is solved exactly
+/// where q̈ is a straight line over an interval; mean and first moment of ÿ follow from y and ẏ at its ends.
 struct HiddenMass {
     frequency: f64,
     damping_ratio: f64,

@@ -1,8 +1,8 @@
 //! One step of integration together with its linearisation in state and coefficients.
 //!
-//! With the state x = (q, q̇) and the coefficients θ, a step x⁺ = g(x, θ) has x⁺ + δx⁺ with δx⁺ = A δx + B δθ. The state
-//! itself is integrated with order 4; A and B are taken at the middle of the step (order 2), which leaves a Gauss–Newton
-//! fixed point where it is: only the path to it depends on them.
+//! With the state x = (q, q̇) and the coefficients θ, a step x⁺ = g(x, θ) has x⁺ + δx⁺ with δx⁺ = A δx + B δθ. The
+//! state itself is integrated with order 4; A and B are taken at the middle of the step (order 2), which leaves a
+//! Gauss–Newton fixed point where it is: only the path to it depends on them.
 
 use super::compiled::Compiled;
 use super::compiled::Table;
@@ -24,8 +24,8 @@ pub struct Linearized {
 }
 
 impl Compiled {
-    /// The step `dt` long under an excitation with these values at its start, middle and end. Writes ∂q̈/∂θ of the free terms
-    /// at the middle of the step into `slopes`; a mass that varies with q counts as constant in the transition.
+    /// The step `dt` long under an excitation with these values at its start, middle and end. Writes ∂q̈/∂θ of the free
+    /// terms at the middle of the step into `slopes`; a mass that varies with q counts as constant in the transition.
     #[inline]
     pub fn linearized_step(&self, state: State, dt: f64, excitation: [f64; 3], slopes: &mut [f64]) -> Linearized {
         self.step_with(state, dt, excitation, slopes, |_, _| {})

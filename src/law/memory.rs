@@ -1,8 +1,8 @@
 //! Internal states of effects with memory, and how they follow a motion.
 //!
-//! Hysteresis and presliding friction have z (m), friction with backlash e (m), relaxation w (m/s), the actuator F_a (N), the hidden resonator y (m) and
-//! ẏ (m/s); the equations stand in [`super::effect`]. At rest z = e = w = 0, F_a is the excitation that has acted so far, and the hidden mass
-//! moves with the coordinate.
+//! Hysteresis and presliding friction have z (m), friction with backlash e (m), relaxation w (m/s), the actuator F_a
+//! (N), the hidden resonator y (m) and ẏ (m/s); the equations stand in [`super::effect`]. At rest z = e = w = 0, F_a is
+//! the excitation that has acted so far, and the hidden mass moves with the coordinate.
 
 use super::effect::Effect;
 use super::motion::State;
@@ -12,7 +12,8 @@ use super::pointwise::sign;
 pub(super) const LARGEST: usize = 2;
 
 impl Effect {
-    /// How many internal states the effect has; a delayed excitation remembers the excitation, not the motion, and has none.
+    /// How many internal states the effect has; a delayed excitation remembers the excitation, not the motion, and has
+    /// none.
     pub fn memory_length(self) -> usize {
         match self {
             Effect::Hysteresis { .. }

@@ -60,7 +60,8 @@ pub struct Columns {
     /// Excitation.
     #[serde(rename = "F")]
     pub excitation: Option<String>,
-    /// Whether those that are not named are looked for by names, units and numbers; where none is named they always are.
+    /// Whether those that are not named are looked for by names, units and numbers; where none is named they always
+    /// are.
     #[serde(skip)]
     pub rest_is_guessed: bool,
 }
@@ -89,8 +90,8 @@ pub struct Model {
     /// Terms of U₀ that are total time derivatives, `q^n*qd`: their variation integrates to zero, so that no data can
     /// determine them. They are kept to be reported.
     pub potential: Vec<Term>,
-    /// The user's own effects, each with the values of its inner parameters; [`Term::Expression`] counts them. One that no term
-    /// names is a candidate.
+    /// The user's own effects, each with the values of its inner parameters; [`Term::Expression`] counts them. One that
+    /// no term names is a candidate.
     pub expressions: Vec<Expression>,
 }
 
@@ -115,8 +116,8 @@ impl Model {
         Model { name: name.into(), hold: None, columns, units, terms, potential, expressions }
     }
 
-    /// The model with only the named terms, each "fit", as the FMU parameter `terms` asks. A term that the model has keeps its
-    /// inner parameters.
+    /// The model with only the named terms, each "fit", as the FMU parameter `terms` asks. A term that the model has
+    /// keeps its inner parameters.
     ///
     /// # Errors
     /// [`ModelError::Term`] for a text that is no term; what [`Model::check`] refuses.
@@ -157,8 +158,9 @@ impl Model {
     /// The first term that cannot be identified sample by sample.
     ///
     /// # Errors
-    /// [`ModelError::Open`] where it has an inner parameter that is to be fitted, [`ModelError::Time`] where it depends on time, [`ModelError::Memory`] where its force is no function of the
-    /// present state and excitation, [`ModelError::ExcitationAlone`] where it is the excitation and nothing gives that a scale.
+    /// [`ModelError::Open`] where it has an inner parameter that is to be fitted, [`ModelError::Time`] where it depends
+    /// on time, [`ModelError::Memory`] where its force is no function of the present state and excitation,
+    /// [`ModelError::ExcitationAlone`] where it is the excitation and nothing gives that a scale.
     pub fn check_streaming(&self) -> Result<(), ModelError> {
         self.check_scale()?;
         for entry in &self.terms {
@@ -251,7 +253,8 @@ impl Model {
         }
     }
 
-    /// Refuses the excitation as a term where no known coefficient gives forces a scale: F = F then solves every equation.
+    /// Refuses the excitation as a term where no known coefficient gives forces a scale: F = F then solves every
+    /// equation.
     fn check_scale(&self) -> Result<(), ModelError> {
         let scales = |entry: &ModelTerm| matches!(entry.given, Given::Known(value) if value != 0.0);
         let alone = |entry: &&ModelTerm| entry.term == Term::EXCITATION && entry.given.is_free();

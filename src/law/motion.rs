@@ -1,7 +1,8 @@
 //! Integration in time of a law whose coefficients are known.
 //!
-//! `Σ θ_j f_j = F` solved for the acceleration, `q̈ = (F − Σ θ_j force_j(q, q̇, F)) ÷ Σ θ_j mass_j(q)`, and one step of the
-//! classical Runge–Kutta method (order 4) under an excitation that is held or runs on a straight line over the step.
+//! `Σ θ_j f_j = F` solved for the acceleration, `q̈ = (F − Σ θ_j force_j(q, q̇, F)) ÷ Σ θ_j mass_j(q)`, and one step of
+//! the classical Runge–Kutta method (order 4) under an excitation that is held or runs on a straight line over the
+//! step.
 
 use super::expression::Expression;
 use super::term::Term;

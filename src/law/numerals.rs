@@ -1,4 +1,5 @@
-//! Numbers as every message gives them: as many digits as they deserve, without exponents where they are of everyday size.
+//! Numbers as every message gives them: as many digits as they deserve, without exponents where they are of everyday
+//! size.
 
 /// Most decimals that a value is given: what is left of 16 digits for a value of some thousands.
 const MOST: i32 = 12;

@@ -25,7 +25,8 @@ impl Own {
     /// The most inner parameters: more than a record determines beside the coefficients.
     pub const MAX_INNER: usize = 6;
 
-    /// The expression at that place, from 0, with these inner parameters; of a longer name the first [`Own::LONGEST`] letters.
+    /// The expression at that place, from 0, with these inner parameters; of a longer name the first [`Own::LONGEST`]
+    /// letters.
     pub fn new(place: usize, name: &str, uses_excitation: bool, inner: &[f64]) -> Own {
         let place = place.min(usize::from(u8::MAX)) as u8;
         let none = [Inner::new(0.0); Own::MAX_INNER];

@@ -4,8 +4,8 @@ use super::effect::Effect;
 use super::term::raised;
 
 impl Effect {
-    /// The part of the effect that does not multiply q̈, at (q, q̇, F) in m, m/s and N, for a coefficient of 1; NaN for an effect with memory, whose feature
-    /// these do not determine.
+    /// The part of the effect that does not multiply q̈, at (q, q̇, F) in m, m/s and N, for a coefficient of 1; NaN for
+    /// an effect with memory, whose feature these do not determine.
     #[inline]
     pub fn force(self, q: f64, qd: f64, excitation: f64) -> f64 {
         match self {
@@ -27,7 +27,8 @@ impl Effect {
         }
     }
 
-    /// (∂/∂q, ∂/∂q̇) of [`Effect::force`]; one-sided where it has a kink, 0 at the jump of a sign, NaN for an effect with memory.
+    /// (∂/∂q, ∂/∂q̇) of [`Effect::force`]; one-sided where it has a kink, 0 at the jump of a sign, NaN for an effect
+    /// with memory.
     #[inline]
     pub fn gradient(self, q: f64, qd: f64) -> (f64, f64) {
         match self {

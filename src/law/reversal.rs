@@ -1,8 +1,9 @@
 //! Where a step of integration must be cut because dry friction reverses.
 //!
-//! Under friction the acceleration jumps where q̇ passes zero. A step is cut there: it slides in one direction, as if friction kept its sign,
-//! up to the root of q̇; at rest the forces beside friction decide whether it slides back or sticks until they exceed it (Leine and
-//! Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, Springer 2004, ch. 4 and 7).
+//! Under friction the acceleration jumps where q̇ passes zero. A step is cut there: it slides in one direction, as if
+//! friction kept its sign, up to the root of q̇; at rest the forces beside friction decide whether it slides back or
+//! sticks until they exceed it (Leine and Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems,
+//! Springer 2004, ch. 4 and 7).
 
 use super::effect::Effect;
 use super::motion::State;
@@ -10,7 +11,8 @@ use super::motion::State;
 /// Pieces into which a step may be cut; the last one goes through to its end.
 pub(super) const MOST_CUTS: usize = 12;
 
-/// Newton's steps towards the instant of rest: each squares the error, so that four lead from 0.1 of the step to rounding.
+/// Newton's steps towards the instant of rest: each squares the error, so that four lead from 0.1 of the step to
+/// rounding.
 pub(super) const REFINEMENTS: usize = 4;
 
 /// Share of a step within which the instant of rest is known: rounding of the state leaves some 10⁻¹⁴ of it.
@@ -37,7 +39,8 @@ impl Effect {
         )
     }
 
-    /// Dry friction of a motion that slides in a direction (+1, −1), continued smoothly past its reversal; none of another effect.
+    /// Dry friction of a motion that slides in a direction (+1, −1), continued smoothly past its reversal; none of
+    /// another effect.
     #[inline]
     pub(super) fn sliding(self, state: State, excitation: f64, direction: f64) -> Option<f64> {
         match self {
@@ -50,7 +53,8 @@ impl Effect {
     }
 }
 
-/// The direction in which a body at rest begins to slide, given q̈ if it slid forward and if it slid backward; 0 where it sticks.
+/// The direction in which a body at rest begins to slide, given q̈ if it slid forward and if it slid backward; 0 where
+/// it sticks.
 #[inline]
 pub(super) fn direction_from_rest(forward: f64, backward: f64) -> f64 {
     if forward > 0.0 {
@@ -62,8 +66,8 @@ pub(super) fn direction_from_rest(forward: f64, backward: f64) -> f64 {
     }
 }
 
-/// The share of a step at which a motion that slides in `direction` first comes to rest: the root of the cubic with these q̇ at the
-/// step's ends and these q̈ times its length.
+/// The share of a step at which a motion that slides in `direction` first comes to rest: the root of the cubic with
+/// these q̇ at the step's ends and these q̈ times its length.
 #[inline]
 pub(super) fn rest_within(direction: f64, qd: [f64; 2], rates: [f64; 2]) -> Option<f64> {
     let [from, to] = qd.map(|qd| direction * qd);
@@ -83,8 +87,8 @@ pub(super) fn rest_within(direction: f64, qd: [f64; 2], rates: [f64; 2]) -> Opti
     Some(root([begin, end], speed))
 }
 
-/// The first share of a step from `from` on at which a body that sticks begins to slide, and its direction; q̈ if it slid forward
-/// and backward is a function of the share.
+/// The first share of a step from `from` on at which a body that sticks begins to slide, and its direction; q̈ if it
+/// slid forward and backward is a function of the share.
 pub(super) fn release(from: f64, accelerations: impl Fn(f64) -> [f64; 2]) -> Option<(f64, f64)> {
     let at = |share: f64| {
         let [forward, backward] = accelerations(share);
@@ -115,8 +119,8 @@ fn roots(a: f64, b: f64, c: f64) -> [Option<f64>; 2] {
     [(a != 0.0).then(|| larger / a), (larger != 0.0).then(|| c / larger)]
 }
 
-/// A root of a function that is positive (or 0) at the first end and negative at the second, by the Illinois method (Dowell and
-/// Jarratt, BIT 11 (1971), 168); the end of the bracket where it is negative or 0.
+/// A root of a function that is positive (or 0) at the first end and negative at the second, by the Illinois method
+/// (Dowell and Jarratt, BIT 11 (1971), 168); the end of the bracket where it is negative or 0.
 fn root([mut low, mut high]: [f64; 2], value: impl Fn(f64) -> f64) -> f64 {
     let width = RESOLUTION * (high - low);
     let (mut above, mut below) = (value(low), value(high));

@@ -34,8 +34,8 @@ impl<'a> Trajectory<'a> {
         State { q: self.q[index], qd: self.qd[index] }
     }
 
-    /// The state at a share of the way from a sample to the next: q by the cubic that has both displacements and velocities, q̇ on a
-    /// straight line, so that noise of q does not enter it.
+    /// The state at a share of the way from a sample to the next: q by the cubic that has both displacements and
+    /// velocities, q̇ on a straight line, so that noise of q does not enter it.
     fn between(&self, index: usize, share: f64) -> State {
         let (from, to) = (self.state(index), self.state(index + 1));
         let width = self.t[index + 1] - self.t[index];
@@ -48,10 +48,12 @@ impl<'a> Trajectory<'a> {
 
 /// The force of a term, per unit of its coefficient, at every sample of a motion.
 ///
-/// The part of a term that multiplies q̈ is left out, so that the inertia's series is 0. Internal states start with nothing stored
-/// (z = 0; the hidden mass moving with the coordinate) and are integrated along the motion, of order 2 in the sample interval. The
-/// series of an actuator's lag takes the excitation on straight lines between samples, from rest under the first; that of a delay of a held excitation is the mean over each sample's cell (half an interval to either side), whose
-/// trapezoidal integral is that of the jumps. An expression that `expressions` do not have gives NaN.
+/// The part of a term that multiplies q̈ is left out, so that the inertia's series is 0. Internal states start with
+/// nothing stored (z = 0; the hidden mass moving with the coordinate) and are integrated along the motion, of order 2
+/// in the sample interval. The series of an actuator's lag takes the excitation on straight lines between samples, from
+/// rest under the first; that of a delay of a held excitation is the mean over each sample's cell (half an interval to
+/// either side), whose trapezoidal integral is that of the jumps. An expression that `expressions` do not have gives
+/// NaN.
 pub fn term_series(term: Term, expressions: &[Expression], trajectory: &Trajectory) -> Vec<f64> {
     let n = trajectory.t.len();
     match term {

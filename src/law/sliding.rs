@@ -1,8 +1,8 @@
 //! A step under dry friction, cut where the velocity reverses.
 //!
-//! Between two cuts the motion slides in one direction, or sticks. Where it reverses, small changes of the state jump by the saltation matrix
-//! I + (f⁺ − f⁻) hᵀ ÷ (h · f⁻) of the surface q̇ = 0 (Leine and Nijmeijer 2004, sec. 7.3): with f = (q̇, q̈) that is
-//! diag(1, q̈⁺ ÷ q̈⁻), and diag(1, 0) where it comes to stick.
+//! Between two cuts the motion slides in one direction, or sticks. Where it reverses, small changes of the state jump
+//! by the saltation matrix I + (f⁺ − f⁻) hᵀ ÷ (h · f⁻) of the surface q̇ = 0 (Leine and Nijmeijer 2004, sec. 7.3): with
+//! f = (q̇, q̈) that is diag(1, q̈⁺ ÷ q̈⁻), and diag(1, 0) where it comes to stick.
 
 use super::compiled::Compiled;
 use super::compiled::Table;
@@ -10,13 +10,14 @@ use super::linearized::Linearized;
 use super::motion::State;
 use super::reversal::{MOST_CUTS, NEGLIGIBLE, REFINEMENTS, direction_from_rest, release, rest_within};
 
-/// Largest factor by which a reversal may change δq̇. Friction makes it smaller, so that 10 bounds only what no friction does:
-/// a force that pushes could make it anything.
+/// Largest factor by which a reversal may change δq̇. Friction makes it smaller, so that 10 bounds only what no
+/// friction does: a force that pushes could make it anything.
 const LARGEST_RATIO: f64 = 10.0;
 
 impl Compiled {
-    /// The step `dt` long under an excitation with these values at its start, middle and end, cut where dry friction reverses. `take` gets
-    /// every smooth piece, its duration, s, and ∂q̈/∂θ of the free terms, which are as many as `slopes`.
+    /// The step `dt` long under an excitation with these values at its start, middle and end, cut where dry friction
+    /// reverses. `take` gets every smooth piece, its duration, s, and ∂q̈/∂θ of the free terms, which are as many as
+    /// `slopes`.
     #[inline]
     pub fn steps(
         &self,

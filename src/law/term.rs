@@ -148,8 +148,8 @@ impl Term {
         }
     }
 
-    /// The part of the term that does not multiply q̈, at (q, q̇, F) in m, m/s and N, for a coefficient of 1; 0 for the inertia, NaN for an effect with memory
-    /// and for an expression, which the term alone does not determine.
+    /// The part of the term that does not multiply q̈, at (q, q̇, F) in m, m/s and N, for a coefficient of 1; 0 for the
+    /// inertia, NaN for an effect with memory and for an expression, which the term alone does not determine.
     #[inline]
     pub fn force(self, q: f64, qd: f64, excitation: f64) -> f64 {
         match self {

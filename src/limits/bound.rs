@@ -23,13 +23,16 @@ const TOUCHED: f64 = 1e-3;
 /// What any method could reach on a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
-    /// Smallest std of each sought coefficient, in the order of [`Law::sought`]; `None` where the record does not determine it.
+    /// Smallest std of each sought coefficient, in the order of [`Law::sought`]; `None` where the record does not
+    /// determine it.
     pub std: Vec<Option<f64>>,
-    /// Trace of the inverse information ÷ Σθ²: the smallest mean of e, eq. (8); `None` where a coefficient is not determined.
+    /// Trace of the inverse information ÷ Σθ²: the smallest mean of e, eq. (8); `None` where a coefficient is not
+    /// determined.
     pub relative_error: Option<f64>,
     /// Terms that nothing on this record tells apart, one list per open direction.
     pub open: Vec<Vec<Term>>,
-    /// Length of the shortest record from the start whose limit of e is below [`SETTLED_ERROR`], s; `None` where none is.
+    /// Length of the shortest record from the start whose limit of e is below [`SETTLED_ERROR`], s; `None` where none
+    /// is.
     pub shortest_record: Option<f64>,
 }
 

@@ -3,7 +3,8 @@
 use super::error::LimitsError;
 use crate::law::{Drive, Motion, State};
 
-/// Angle, rad, by which the motion may turn in a step of integration: one of order 4 then errs by 0.2⁵ ÷ 120, 3e-6 of it.
+/// Angle, rad, by which the motion may turn in a step of integration: one of order 4 then errs by 0.2⁵ ÷ 120, 3e-6 of
+/// it.
 pub const TURN: f64 = 0.2;
 
 /// Most steps of integration between two samples: 51 rad at [`TURN`], eight periods, which no record resolves.

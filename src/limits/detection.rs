@@ -1,8 +1,9 @@
 //! How soon a known change of the law can be seen.
 //!
-//! From the switch on, the state there known, the motion under the new law leaves that under the old one. The log-likelihood ratio of the
-//! two laws is on average Σ|old − new|²/(2σ²) over the readings since; it decides once it passes ln(false alarm interval ÷ sample time)
-//! (Lorden, *Annals of Mathematical Statistics* 42 (1971), 1897, for the delay that no procedure beats).
+//! From the switch on, the state there known, the motion under the new law leaves that under the old one. The
+//! log-likelihood ratio of the two laws is on average Σ|old − new|²/(2σ²) over the readings since; it decides once it
+//! passes ln(false alarm interval ÷ sample time) (Lorden, *Annals of Mathematical Statistics* 42 (1971), 1897, for the
+//! delay that no procedure beats).
 
 use super::course::{Course, Sensors};
 use super::error::LimitsError;

@@ -13,10 +13,12 @@ pub struct Law {
 }
 
 impl Law {
-    /// A law of terms with their coefficients; `sought` are the positions of those that are to be estimated, the others are known.
+    /// A law of terms with their coefficients; `sought` are the positions of those that are to be estimated, the others
+    /// are known.
     ///
     /// # Errors
-    /// [`LimitsError`] for a term that is no function of (q, q̇, F) at one instant, and for a coefficient that is no number.
+    /// [`LimitsError`] for a term that is no function of (q, q̇, F) at one instant, and for a coefficient that is no
+    /// number.
     pub fn new(pairs: &[(Term, f64)], sought: &[usize]) -> Result<Law, LimitsError> {
         for (term, value) in pairs {
             if !term.is_pointwise() {

@@ -1,10 +1,10 @@
 //! The information of coefficients along a motion, its initial state unknown and marginalised.
 //!
-//! A Kalman filter of the state without process noise: its innovations are independent, so their information adds up. Its covariance is
-//! kept as a square root P = L Lᵀ and updated by Potter's formula (Bierman, *Factorization Methods for Discrete Sequential Estimation*,
-//! 1977, II.3). The filter's gain keeps L and the sensitivities Ψ of the filtered state bounded where the motion is unstable or
-//! chaotic, and L may shrink to nothing where it is damped: neither overflows on long records, as the sensitivities to the initial
-//! state would.
+//! A Kalman filter of the state without process noise: its innovations are independent, so their information adds up.
+//! Its covariance is kept as a square root P = L Lᵀ and updated by Potter's formula (Bierman, *Factorization Methods
+//! for Discrete Sequential Estimation*, 1977, II.3). The filter's gain keeps L and the sensitivities Ψ of the filtered
+//! state bounded where the motion is unstable or chaotic, and L may shrink to nothing where it is damped: neither
+//! overflows on long records, as the sensitivities to the initial state would.
 
 use super::course::{Course, Sensors};
 use super::law::Law;

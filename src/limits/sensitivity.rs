@@ -1,10 +1,11 @@
 //! The variational equations: how a small change of the state or of a coefficient grows along a motion.
 //!
-//! A column c = (δq, δq̇) obeys ċ = (δq̇, ∂q̈/∂q δq + ∂q̈/∂q̇ δq̇ + ∂q̈/∂θ), the last for the column of a coefficient alone. Columns
-//! are integrated with the motion by the classical Runge–Kutta method (order 4).
+//! A column c = (δq, δq̇) obeys ċ = (δq̇, ∂q̈/∂q δq + ∂q̈/∂q̇ δq̇ + ∂q̈/∂θ), the last for the column of a coefficient
+//! alone. Columns are integrated with the motion by the classical Runge–Kutta method (order 4).
 //!
-//! Where dry friction changes sign the acceleration jumps from a⁻ to a⁺, and δq̇ with it, by the factor a⁺/a⁻ (the saltation matrix,
-//! Aizerman and Gantmakher 1958; Leine and Nijmeijer 2004, 7.3). Where both sides push back the mass sticks: δq̇ = 0.
+//! Where dry friction changes sign the acceleration jumps from a⁻ to a⁺, and δq̇ with it, by the factor a⁺/a⁻ (the
+//! saltation matrix, Aizerman and Gantmakher 1958; Leine and Nijmeijer 2004, 7.3). Where both sides push back the mass
+//! sticks: δq̇ = 0.
 
 use super::course::{Course, parts};
 use crate::law::{Drive, Motion, State};
@@ -122,8 +123,8 @@ impl<'a> Variation<'a> {
     }
 }
 
-/// What a jump of the acceleration from `before` to `after` makes of δq̇ where q̇ comes through 0 from `velocity`; 1 where a motion that is
-/// known only nearly does not come through.
+/// What a jump of the acceleration from `before` to `after` makes of δq̇ where q̇ comes through 0 from `velocity`; 1
+/// where a motion that is known only nearly does not come through.
 fn jump(velocity: f64, before: f64, after: f64) -> f64 {
     let through = velocity * before < 0.0 && before * after > 0.0;
     if through { after / before } else { 1.0 }

@@ -1,4 +1,5 @@
-//! What a figure shows, in data coordinates. Its JSON form, which `figure.js` draws, has the same names: `docs/figure-description.md`.
+//! What a figure shows, in data coordinates. Its JSON form, which `figure.js` draws, has the same names:
+//! `docs/figure-description.md`.
 
 use super::thin;
 use serde::{Serialize, Serializer};

@@ -1,4 +1,5 @@
-//! Figures as parts of a page: each panel's description, which `figure.js` draws with plotly, whose JavaScript the page holds.
+//! Figures as parts of a page: each panel's description, which `figure.js` draws with plotly, whose JavaScript the page
+//! holds.
 
 use super::figure::{Figure, Layer, Panel};
 use plotly::Plot;
@@ -22,8 +23,9 @@ addEventListener("DOMContentLoaded", () => {
 });
 "#;
 
-/// The figure's panels as parts of a page, each a plot of its own; `id` tells the figures of a page apart. What a plot shows stands
-/// beside its place; the page's [`script`] draws it once it comes into view, so that a long page is at hand as soon as a short one.
+/// The figure's panels as parts of a page, each a plot of its own; `id` tells the figures of a page apart. What a plot
+/// shows stands beside its place; the page's [`script`] draws it once it comes into view, so that a long page is at
+/// hand as soon as a short one.
 pub fn html(figure: &Figure, id: &str) -> String {
     let panels = figure.panels.iter().enumerate().map(|(index, panel)| {
         // a name that ends the element would end it

@@ -1,7 +1,7 @@
 //! Figures: described once, drawn as SVG, PNG or HTML.
 //!
-//! A [`Figure`] is panels of layers in data coordinates; who draws knows nothing of laws, who describes nothing of pixels. SVG is
-//! drawn by plotters, PNG by resvg from it, HTML by plotly with its JavaScript in the page.
+//! A [`Figure`] is panels of layers in data coordinates; who draws knows nothing of laws, who describes nothing of
+//! pixels. SVG is drawn by plotters, PNG by resvg from it, HTML by plotly with its JavaScript in the page.
 
 #[cfg(feature = "pictures")]
 mod bars;

@@ -3,8 +3,8 @@
 /// Most points of a series that are drawn as they are.
 pub const MOST: usize = 4000;
 
-/// The series itself, or its first point, the smallest and the largest value of each of half as many bins, in the order in which
-/// they come, and its last point. Gaps stay gaps.
+/// The series itself, or its first point, the smallest and the largest value of each of half as many bins, in the order
+/// in which they come, and its last point. Gaps stay gaps.
 pub(super) fn envelope(x: &[f64], y: &[f64]) -> Vec<[f64; 2]> {
     envelope_of(x, y, MOST)
 }

@@ -2,8 +2,8 @@
 //!
 //! The publication shows its stages in figures that are not at hand; the values here are plausible ones, chosen around
 //! its Duffing plant (m = 1, c = 0.3, k₁ = 4, k₃ = 2, P = 2, ω = 1.5) and around a van der Pol circuit with L = C = 1,
-//! α between 0.3 and 1.2, a = 1 (limit cycle) or −0.5 (focus), V = 1.2 sin 1.1t. Every coefficient changes by at least a tenth
-//! at every switch, the sine's amplitude and frequency too.
+//! α between 0.3 and 1.2, a = 1 (limit cycle) or −0.5 (focus), V = 1.2 sin 1.1t. Every coefficient changes by at least
+//! a tenth at every switch, the sine's amplitude and frequency too.
 
 use super::excitation::ExcitationKind;
 use super::plants::{duffing, van_der_pol};
@@ -96,8 +96,8 @@ impl Builtin {
         self.assemble(stages, duration)
     }
 
-    /// A scenario with stages drawn from the seed, which also seeds excitation and sensor noise. The two noise cases keep their
-    /// law; only their noise is drawn anew.
+    /// A scenario with stages drawn from the seed, which also seeds excitation and sensor noise. The two noise cases
+    /// keep their law; only their noise is drawn anew.
     pub fn random(self, seed: u64) -> Scenario {
         match self {
             Builtin::DuffingNoise | Builtin::VanDerPolNoise => self.scenario().with_seed(seed),

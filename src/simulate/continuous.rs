@@ -1,7 +1,7 @@
 //! A plant that somebody else integrates: q̇ and q̈ for a state and a time, and the times at which they jump.
 //!
-//! The law switches at the start of a stage and the excitation is held on its grid, as in [`Plant`], so that both show the same
-//! motion as far as the integration is exact.
+//! The law switches at the start of a stage and the excitation is held on its grid, as in [`Plant`], so that both show
+//! the same motion as far as the integration is exact.
 
 use super::error::ScenarioError;
 use super::excitation::ExcitationKind;
@@ -57,14 +57,16 @@ impl ContinuousPlant {
         self.state = state;
     }
 
-    /// q̈, m/s²; under that excitation, where it is driven and this is a finite number, else under the one of the last event.
+    /// q̈, m/s²; under that excitation, where it is driven and this is a finite number, else under the one of the last
+    /// event.
     pub fn acceleration(&self, excitation: f64) -> f64 {
         let from_outside = self.driven && excitation.is_finite();
         let excitation = if from_outside { excitation } else { self.excitation };
         self.plant.law.motion(&self.plant.scenario, self.stage).acceleration(self.state, excitation)
     }
 
-    /// An event: law, excitation and noise of the present time, and when the next one is, s. `excitation` is the one from outside.
+    /// An event: law, excitation and noise of the present time, and when the next one is, s. `excitation` is the one
+    /// from outside.
     pub fn settle(&mut self, excitation: f64) -> Option<f64> {
         let scenario = &self.plant.scenario;
         self.interval = interval(scenario, self.t);

@@ -1,7 +1,8 @@
-//! A plant whose excitation comes from outside, one value for each step: behind a controller, in a simulation of others.
+//! A plant whose excitation comes from outside, one value for each step: behind a controller, in a simulation of
+//! others.
 //!
-//! The integration goes from one communication point to the next, in equal steps no longer than the scenario's inner one, cut
-//! where the law switches. So what it shows depends on the steps as far as the excitation does.
+//! The integration goes from one communication point to the next, in equal steps no longer than the scenario's inner
+//! one, cut where the law switches. So what it shows depends on the steps as far as the excitation does.
 
 use super::error::ScenarioError;
 use super::plant::{Law, PlantError, Truth, diverged, sensor_noise, too_far};
@@ -67,8 +68,8 @@ impl History for Past {
 }
 
 impl DrivenPlant {
-    /// A plant at t = 0, on which nothing acts yet; of the scenario's excitation only `sample_time` counts, over which a
-    /// reading's noise stays.
+    /// A plant at t = 0, on which nothing acts yet; of the scenario's excitation only `sample_time` counts, over which
+    /// a reading's noise stays.
     ///
     /// # Errors
     /// What [`Scenario::check`] refuses, and a law without inertia, which moves nothing.

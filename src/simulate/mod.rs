@@ -2,10 +2,10 @@
 //!
 //! A [`Scenario`] says everything about a plant; [`Plant`] integrates it. The law switches at the start of each
 //! [`Stage`], exactly at the instant given; the excitation is evaluated on a grid `t_k = k · sample_time` and held from
-//! `t_k` to `t_{k+1}`, as in a sampled actuator. What a plant shows at time t is a function of t alone: it does not depend on
-//! the communication steps that led there, unless its excitation comes from outside ([`DrivenPlant`]).
-//! What is smooth between its events can be integrated by others ([`ContinuousPlant`]). Measured values
-//! ([`Reading`]) and truth ([`Truth`]) are apart.
+//! `t_k` to `t_{k+1}`, as in a sampled actuator. What a plant shows at time t is a function of t alone: it does not
+//! depend on the communication steps that led there, unless its excitation comes from outside ([`DrivenPlant`]). What
+//! is smooth between its events can be integrated by others ([`ContinuousPlant`]). Measured values ([`Reading`]) and
+//! truth ([`Truth`]) are apart.
 
 mod builtin;
 mod check;

@@ -1,7 +1,8 @@
 //! Gaussian numbers by index.
 //!
 //! Number k of a stream is a function of (seed, stream, k) alone: ChaCha is a counter cipher, so that any place of its
-//! key stream is reached directly. A plant therefore carries no generator, and its noise cannot depend on how often it is asked.
+//! key stream is reached directly. A plant therefore carries no generator, and its noise cannot depend on how often it
+//! is asked.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -1,7 +1,7 @@
 //! Laws whose coefficients are products of named parameters: `q/C`, `−α a q̇`.
 //!
-//! Plants speak the language of their drawing (mass, capacitance), laws that of their terms. A [`ParametricLaw`] is read from
-//! TOML, the form in which a plant FMU carries its law:
+//! Plants speak the language of their drawing (mass, capacitance), laws that of their terms. A [`ParametricLaw`] is
+//! read from TOML, the form in which a plant FMU carries its law:
 //!
 //! ```toml
 //! name = "VanDerPol"

@@ -1,8 +1,8 @@
 //! A plant in motion.
 //!
-//! The inner integration runs on its own grid, the excitation's grid refined by a whole number of RK4 steps, and cuts a step
-//! in two where the law switches within it. A value between two points of the inner grid comes from a shortened step
-//! that is then thrown away, so that what a plant shows at t does not depend on the way there.
+//! The inner integration runs on its own grid, the excitation's grid refined by a whole number of RK4 steps, and cuts a
+//! step in two where the law switches within it. A value between two points of the inner grid comes from a shortened
+//! step that is then thrown away, so that what a plant shows at t does not depend on the way there.
 
 use super::error::ScenarioError;
 use super::excitation::ExcitationKind;

@@ -1,7 +1,7 @@
 //! Stages drawn from a seed.
 //!
-//! Each number is uniform in its range, drawn again until it differs from the last stage's by at least [`CHANGE`]. Duffing:
-//! m 0.7–1.4, c 0.15–0.6, k₁ 2.5–6, k₃ 1–4, P 1.4–3, ω 1.1–1.9. Van der Pol: L 0.7–1.4, α 0.3–1.2, a 0.7–1.3
+//! Each number is uniform in its range, drawn again until it differs from the last stage's by at least [`CHANGE`].
+//! Duffing: m 0.7–1.4, c 0.15–0.6, k₁ 2.5–6, k₃ 1–4, P 1.4–3, ω 1.1–1.9. Van der Pol: L 0.7–1.4, α 0.3–1.2, a 0.7–1.3
 //! (limit cycle) or −0.8 to −0.3 (focus) by turns, C 0.7–1.4, P 0.8–1.8, ω 0.8–1.4. Five to seven stages of 12 to 25 s,
 //! switches at multiples of 0.1 ms, so that most fall between two samples.
 

@@ -79,8 +79,8 @@ impl Scenario {
     /// oscillations up to 1 Hz, by less than 1e-8 up to 10 Hz.
     pub const INNER_STEP: f64 = 5e-4;
 
-    /// Share of a grid interval by which a time may miss a grid point and still mean it: hosts jitter in the last bits, and no
-    /// grid is finer than a millionth of the communication step.
+    /// Share of a grid interval by which a time may miss a grid point and still mean it: hosts jitter in the last bits,
+    /// and no grid is finer than a millionth of the communication step.
     pub(super) const TIME_JITTER: f64 = 1e-3;
 
     /// Share of a grid interval that rounding of a quotient of two decimal times may leave.

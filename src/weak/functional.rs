@@ -1,10 +1,11 @@
 //! The law in weak form against variations that end at the newest sample: Poisson moment functionals.
 //!
-//! φ(τ) = a (aτ)⁴ e^(−aτ) ÷ 4!, τ back from now, vanishes with its first three derivatives at τ = 0 and fades behind. ∫ f φ dτ is f through five
-//! equal low-pass stages, so that every sample gives the integrals of all terms at a cost that does not depend on how long the variation
-//! is, and derivatives go over to φ as in any weak form: the first two stages take u, u̇ and ü alike. Every signal passes the same
-//! stages, trapezoidal in time, and therefore a law that holds at the samples holds between the integrals. (Saha and Rao, *Identification of
-//! Continuous Dynamical Systems: the Poisson Moment Functional Approach*, 1983; Garnier, Mensler and Richard, Int. J. Control 76, 2003.)
+//! φ(τ) = a (aτ)⁴ e^(−aτ) ÷ 4!, τ back from now, vanishes with its first three derivatives at τ = 0 and fades behind. ∫
+//! f φ dτ is f through five equal low-pass stages, so that every sample gives the integrals of all terms at a cost that
+//! does not depend on how long the variation is, and derivatives go over to φ as in any weak form: the first two stages
+//! take u, u̇ and ü alike. Every signal passes the same stages, trapezoidal in time, and therefore a law that holds at
+//! the samples holds between the integrals. (Saha and Rao, *Identification of Continuous Dynamical Systems: the Poisson
+//! Moment Functional Approach*, 1983; Garnier, Mensler and Richard, Int. J. Control 76, 2003.)
 
 use crate::law::{Expression, Monomial, State, Term, raised};
 use serde::{Deserialize, Serialize};
@@ -61,8 +62,8 @@ impl Functional {
         self.stages[STAGES]
     }
 
-    /// What white noise of variance 1 in the samples of u₀, u₁ or u₂ (`order` 0, 1, 2) adds to the integral's variance, for a = 1 and
-    /// samples `dt` apart; for another a times a^(2 order).
+    /// What white noise of variance 1 in the samples of u₀, u₁ or u₂ (`order` 0, 1, 2) adds to the integral's variance,
+    /// for a = 1 and samples `dt` apart; for another a times a^(2 order).
     pub fn noise_gain(order: usize, dt: f64) -> f64 {
         let pole = Pole::new(1.0, dt);
         let mut functional = Functional::default();
@@ -76,8 +77,8 @@ impl Functional {
     }
 }
 
-/// A term as [u₀, u₁, u₂] with f = u₀ + u̇₁ + ü₂: as many derivatives as can be are φ's. Without a measured displacement (`by_parts` false) q̇
-/// itself is the signal.
+/// A term as [u₀, u₁, u₂] with f = u₀ + u̇₁ + ü₂: as many derivatives as can be are φ's. Without a measured
+/// displacement (`by_parts` false) q̇ itself is the signal.
 pub fn signal(term: Term, own: &[Expression], state: State, excitation: f64, by_parts: bool) -> [f64; 3] {
     let State { q, qd } = state;
     match term {

@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 /// the factor leaves 10⁻¹⁴, readings of 16 bits 10⁻⁵ of a direction.
 const RANK_TOLERANCE: f64 = 1e-9;
 
-/// Square of an unknown's share in open directions below which the rows determine it: its value then moves by 10⁻³ of them.
+/// Square of an unknown's share in open directions below which the rows determine it: its value then moves by 10⁻³ of
+/// them.
 const OPEN: f64 = 1e-6;
 
 /// Share in an open direction from which an unknown is named as part of it: the root of [`OPEN`].
@@ -56,8 +57,8 @@ pub struct Fit {
     pub condition: f64,
     /// Whether the rows determine the unknown, n.
     pub determined: Vec<bool>,
-    /// Length of the right side ÷ length of the unknown's column, n: the value at which its term alone would be as large as the
-    /// right side; infinite for a column of zeros.
+    /// Length of the right side ÷ length of the unknown's column, n: the value at which its term alone would be as
+    /// large as the right side; infinite for a column of zeros.
     pub reach: Vec<f64>,
     /// RMS of the residual over the rows, in their unit.
     pub residual: f64,

@@ -55,9 +55,9 @@ impl Row {
         }
     }
 
-    /// Integrates over the section. Trapezoidal in the terms, which for an integrand that vanishes smoothly at both ends is of
-    /// second order where the excitation jumps at samples and far better where it is smooth; exact in a held or linear
-    /// excitation, trapezoidal (spectrally accurate) in a band-limited one.
+    /// Integrates over the section. Trapezoidal in the terms, which for an integrand that vanishes smoothly at both
+    /// ends is of second order where the excitation jumps at samples and far better where it is smooth; exact in a held
+    /// or linear excitation, trapezoidal (spectrally accurate) in a band-limited one.
     ///
     /// Where the law has coefficients, also the noise of its residual.
     pub fn integrate(&mut self, section: &Section, variation: Variation, law: &Motion) {
@@ -176,7 +176,8 @@ mod tests {
     const TERMS: [Term; 4] = [Term::Inertia, Term::power(0, 1), Term::power(1, 0), Term::power(2, 0)];
     const COEFFICIENTS: [f64; 4] = [1.3, 0.4, 3.0, 0.8];
 
-    /// The largest violation of the law's weak form over two variations, for `n` samples in 2 s of an asymmetric motion.
+    /// The largest violation of the law's weak form over two variations, for `n` samples in 2 s of an asymmetric
+    /// motion.
     fn violation(n: usize, hold: Hold) -> f64 {
         let dt = 2.0 / n as f64;
         let force = |k: usize| (1.7 * k as f64 * dt + 0.3).sin() + 0.5 * (k as f64 * dt).powi(2);

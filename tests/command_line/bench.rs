@@ -59,7 +59,8 @@ impl Drop for Bench {
     }
 }
 
-/// A record of `count` samples under this header; `change` may alter the cells of a line (counted from 1, header included).
+/// A record of `count` samples under this header; `change` may alter the cells of a line (counted from 1, header
+/// included).
 pub fn csv(header: &str, count: usize, change: impl Fn(usize, &mut Vec<String>)) -> String {
     let columns = header.split(',').count();
     let mut text = format!("{header}\n");

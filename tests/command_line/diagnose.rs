@@ -72,8 +72,8 @@ fn a_complete_model_is_adequate_and_leaves_what_its_sensors_would() {
     }
 }
 
-/// Reversals under dry friction are kinks that no smoothed motion has: what they leave is the floor of a complete law, and hides no force
-/// that is missing.
+/// Reversals under dry friction are kinks that no smoothed motion has: what they leave is the floor of a complete law,
+/// and hides no force that is missing.
 #[test]
 fn the_kinks_of_dry_friction_are_no_missing_effect() {
     let bench = Bench::new("kinks");

@@ -1,4 +1,5 @@
-//! What `diagnose` and `improve` make of sensors that keep other times than the motion, of lost samples, and of records that show little.
+//! What `diagnose` and `improve` make of sensors that keep other times than the motion, of lost samples, and of records
+//! that show little.
 
 use super::bench::Bench;
 use serde_json::Value;

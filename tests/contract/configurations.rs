@@ -56,8 +56,8 @@ pub fn duffing() -> Model {
     Model::of("Duffing", Builtin::DuffingSine.terms().into_iter().map(|term: Term| (term, Given::Fit)))
 }
 
-/// A Duffing record of 12 s with sensor noise: the law switches at 8 s. Free where no excitation is measured; `absent` stands
-/// in every channel that is not measured.
+/// A Duffing record of 12 s with sensor noise: the law switches at 8 s. Free where no excitation is measured; `absent`
+/// stands in every channel that is not measured.
 pub fn samples_with(channels: Channels, absent: f64) -> Vec<Sample> {
     let kind = if channels.excitation { ExcitationKind::Sine } else { ExcitationKind::None };
     let or_absent = |measured: bool, value: f64| if measured { value } else { absent };

@@ -1,8 +1,9 @@
-//! What every identifier must hold, whatever its method, channels, hold and model: it is a function of its samples alone.
+//! What every identifier must hold, whatever its method, channels, hold and model: it is a function of its samples
+//! alone.
 //!
-//! New equals fresh, a block equals sample by sample, clone-and-go-on and save-restore-and-go-on equal going on, the same
-//! samples give the same bytes, no sample whatsoever gives a NaN or a panic, and library, command line and FMU give the
-//! same bits.
+//! New equals fresh, a block equals sample by sample, clone-and-go-on and save-restore-and-go-on equal going on, the
+//! same samples give the same bytes, no sample whatsoever gives a NaN or a panic, and library, command line and FMU
+//! give the same bits.
 
 mod configurations;
 mod hostile;
@@ -70,7 +71,8 @@ fn a_new_one_fed_the_same_samples_gives_the_same_bytes() {
     });
 }
 
-/// Velocity alone is left out: its weak rows know the displacement up to a constant only, and not every motion gives a first law.
+/// Velocity alone is left out: its weak rows know the displacement up to a constant only, and not every motion gives a
+/// first law.
 #[test]
 fn every_configuration_that_measures_displacement_finds_a_law() {
     let silent = Mutex::new(Vec::new());

@@ -166,17 +166,17 @@ fn child(module: &[String], name: &str) -> Module {
     below
 }
 
-/// The arrows that run from a file to the file of a module around it. That file composes what stands below it, so that what
-/// it defines stands above.
+/// The arrows that run from a file to the file of a module around it. That file composes what stands below it, so that
+/// what it defines stands above.
 pub fn upward(arrows: &BTreeSet<Arrow>) -> Vec<&Arrow> {
     arrows.iter().filter(|arrow| arrow.from.starts_with(&arrow.to)).collect()
 }
 
-/// The circles among the children of each folder, a child being a file or a folder with all that is in it: the folder and
-/// the children's names on the way round.
+/// The circles among the children of each folder, a child being a file or a folder with all that is in it: the folder
+/// and the children's names on the way round.
 ///
-/// A circle of files anywhere is one of these, or takes an [`upward`] arrow: among the children of the innermost folder that
-/// holds all its files, or over that folder's own file.
+/// A circle of files anywhere is one of these, or takes an [`upward`] arrow: among the children of the innermost folder
+/// that holds all its files, or over that folder's own file.
 pub fn circles(arrows: &BTreeSet<Arrow>) -> Vec<(Module, Vec<String>)> {
     let mut folders: BTreeMap<Module, BTreeMap<&str, BTreeSet<&str>>> = BTreeMap::new();
     for Arrow { from, to, .. } in arrows {

@@ -76,7 +76,8 @@ fn a_mass_under_a_constant_force_has_the_std_of_a_parabola() {
     assert_near(found, acceleration * mass * mass / force, 1e-3, "std of the mass");
 }
 
-/// The motion's slopes by differences: (initial state, coefficients) → every reading; the Schur complement by one inverse.
+/// The motion's slopes by differences: (initial state, coefficients) → every reading; the Schur complement by one
+/// inverse.
 fn by_differences(unknowns: &[f64], std: [f64; 2], motion: impl Fn(&[f64]) -> Vec<State>) -> Vec<f64> {
     let slope = |index: usize| {
         let moved = |by: f64| {

@@ -1,5 +1,5 @@
-//! Recordings as engineers bring them: the same motion written in more than forty shapes, each read right or refused in one
-//! sentence that says what mends it.
+//! Recordings as engineers bring them: the same motion written in more than forty shapes, each read right or refused in
+//! one sentence that says what mends it.
 
 mod table;
 

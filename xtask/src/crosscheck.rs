@@ -10,7 +10,8 @@ use std::process::Command;
 /// Builds the FMUs and the command line, makes the Python environment and runs the harness with the user's arguments.
 ///
 /// # Errors
-/// [`Error::Usage`] before anything is built; whatever step fails; a gate that fails is [`Error::Failed`] after the table was printed.
+/// [`Error::Usage`] before anything is built; whatever step fails; a gate that fails is [`Error::Failed`] after the
+/// table was printed.
 pub fn crosscheck(arguments: &[String]) -> Result<(), Error> {
     check(arguments)?;
     let mut steps = Steps::new(4);

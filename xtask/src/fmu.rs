@@ -15,9 +15,9 @@ const IDENTIFIER: &str = "SwitchedIdentifier";
 /// The crates of the two binaries.
 pub const BINARIES: [&str; 2] = ["switchid-fmu-identifier", "switchid-fmu-plant"];
 
-/// `cargo xtask fmu`: the default identifier's `modelDescription.xml` at the root and the list of licences made anew, and the FMUs,
-/// for this machine or for every platform. No other chore writes those files: the tests that find them stale must see them as they
-/// were checked in.
+/// `cargo xtask fmu`: the default identifier's `modelDescription.xml` at the root and the list of licences made anew,
+/// and the FMUs, for this machine or for every platform. No other chore writes those files: the tests that find them
+/// stale must see them as they were checked in.
 ///
 /// # Errors
 /// What cargo or the packaging says.
@@ -27,8 +27,8 @@ pub fn renew(every_platform: bool) -> Result<(), Error> {
     if every_platform { build_everywhere() } else { build() }
 }
 
-/// Builds the binaries for this machine, apart from the rest so that no feature of the command line gets in, and writes the
-/// three FMUs into `target/fmu`.
+/// Builds the binaries for this machine, apart from the rest so that no feature of the command line gets in, and writes
+/// the three FMUs into `target/fmu`.
 ///
 /// # Errors
 /// What cargo or the packaging says.
@@ -65,8 +65,8 @@ fn pack(fmu: Fmu) -> Result<(), Error> {
     write(&directory.join(format!("{}.fmu", fmu.name())), &fmu.to_bytes()?)
 }
 
-/// The harness's command line, `target/release/switchid-harness`: without MAT, Parquet and pictures, which would take longer to
-/// build than the cross-check takes to run.
+/// The harness's command line, `target/release/switchid-harness`: without MAT, Parquet and pictures, which would take
+/// longer to build than the cross-check takes to run.
 ///
 /// # Errors
 /// What cargo says.
@@ -83,7 +83,8 @@ fn build_binary(package: &str) -> Result<Vec<u8>, Error> {
     std::fs::read(&path).map_err(file("read", &path))
 }
 
-/// Builds one package apart from the others, so that it gets the features that it asks for and no more; where its binary lies.
+/// Builds one package apart from the others, so that it gets the features that it asks for and no more; where its
+/// binary lies.
 fn build_package(package: &str) -> Result<PathBuf, Error> {
     let target = root().join("target");
     let mut command = cargo(&["build", "--quiet", "--release", "--package", package, "--target-dir"]);

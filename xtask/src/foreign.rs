@@ -38,8 +38,8 @@ const QEMU: Emulator = Emulator {
     remedy: "install QEMU and ARM's C library (Debian: `apt-get install qemu-user libc6-arm64-cross`)",
 };
 
-/// Largest relative difference of an output: sine, cosine and exponential come from two C libraries and differ in the last
-/// bits; filters pass that on.
+/// Largest relative difference of an output: sine, cosine and exponential come from two C libraries and differ in the
+/// last bits; filters pass that on.
 const ROUNDING: f64 = 1e-6;
 
 /// Steps taken: with the settings below the identifier has a law by then.
@@ -79,8 +79,8 @@ pub fn compare() -> Result<(), Error> {
     Ok(())
 }
 
-/// The same of the identifier under Wine alone, built with little optimisation, which changes no number: three minutes, not ten.
-/// The Linux one is that of `cargo xtask fmu`. Without Wine nothing is done, unless in CI.
+/// The same of the identifier under Wine alone, built with little optimisation, which changes no number: three minutes,
+/// not ten. The Linux one is that of `cargo xtask fmu`. Without Wine nothing is done, unless in CI.
 ///
 /// # Errors
 /// As [`compare`].

@@ -1,5 +1,5 @@
-//! What a platform's binary must be: the standard's functions and no others, nothing of the building machine, no newer C library than
-//! promised.
+//! What a platform's binary must be: the standard's functions and no others, nothing of the building machine, no newer
+//! C library than promised.
 
 use crate::command::root;
 use crate::error::Error;
@@ -7,7 +7,8 @@ use object::Object;
 use std::path::Path;
 use switchid_fmu_slave::host::{ExchangeFunctions, Functions};
 
-/// Refuses a binary that is not as it must be; `glibc` is the newest minor version of the C library, 2.x, that it may need.
+/// Refuses a binary that is not as it must be; `glibc` is the newest minor version of the C library, 2.x, that it may
+/// need.
 ///
 /// # Errors
 /// [`Error::Binary`] says what is wrong.

@@ -72,8 +72,8 @@ fn by_id(metadata: &Value) -> BTreeMap<&str, &Value> {
     packages.filter_map(|package| Some((package["id"].as_str()?, package))).collect()
 }
 
-/// The crates of others that end up in the binaries, by name: what the shipped ones need when they run, directly or not. The
-/// command line's features are not theirs.
+/// The crates of others that end up in the binaries, by name: what the shipped ones need when they run, directly or
+/// not. The command line's features are not theirs.
 fn shipped(metadata: &Value, packages: &BTreeMap<&str, &Value>) -> Vec<String> {
     let nodes: BTreeMap<&str, &Value> = metadata["resolve"]["nodes"]
         .as_array()

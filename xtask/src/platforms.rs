@@ -1,6 +1,7 @@
 //! The FMUs' binaries for every platform that can be built from Linux, by zig's C compiler and linker.
 //!
-//! They need a C library no newer than [`GLIBC`], hold no path of the building machine and no symbol but the standard's.
+//! They need a C library no newer than [`GLIBC`], hold no path of the building machine and no symbol but the
+//! standard's.
 
 use crate::command::{root, run};
 use crate::error::Error;

@@ -138,7 +138,8 @@ mod tests {
         let directory = std::env::temp_dir().join(format!("switchid-xtask-{name}-{}", std::process::id()));
         std::fs::create_dir_all(directory.join("environment/bin")).unwrap();
         let program = directory.join("python");
-        // written by a process of its own: what another test starts meanwhile would inherit the open file, and keep it from being run
+        // written by a process of its own: what another test starts meanwhile would inherit the open file, and keep it
+        // from being run
         let write = r#"printf '#!/bin/sh\n%s\n' "$2" > "$1" && chmod 755 "$1""#;
         let written = Command::new("/bin/sh").args(["-c", write, "sh"]).arg(&program).arg(script).status().unwrap();
         assert!(written.success());

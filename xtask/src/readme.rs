@@ -10,8 +10,8 @@ const DOCUMENTS: [&str; 2] = ["README.md", "docs/command-line.md"];
 /// Where their commands write.
 const FOLDER: &str = "target/readme";
 
-/// Runs every ```` ```sh ```` block of a document in the workspace's root, in order, one document after the other; lines
-/// that call `cargo xtask` are left out, since CI runs those itself.
+/// Runs every ```` ```sh ```` block of a document in the workspace's root, in order, one document after the other;
+/// lines that call `cargo xtask` are left out, since CI runs those itself.
 ///
 /// # Errors
 /// [`Error::Document`] where a document has no such block, [`Error::Failed`] when a command fails.

@@ -1,7 +1,7 @@
 //! Every exported function has the type of `fmi2FunctionTypes.h`: a mismatch does not compile.
 //!
-//! `fmi2Instantiate` and `fmi2NewDiscreteStates` are left out: callbacks and event info are structs of their own on either side; that
-//! they work is shown by every instance that the other tests make.
+//! `fmi2Instantiate` and `fmi2NewDiscreteStates` are left out: callbacks and event info are structs of their own on
+//! either side; that they work is shown by every instance that the other tests make.
 
 use fmi_sys::fmi2::*;
 use switchid_fmu_identifier::functions;

@@ -15,7 +15,8 @@ const MODEL_FILE: &str = "model.toml";
 /// The known laws' file in the resources, where there is one.
 const LAWS_FILE: &str = "laws.toml";
 
-/// How much more memory an identifier's record takes than its samples alone, with as much again for the host; a test measures it.
+/// How much more memory an identifier's record takes than its samples alone, with as much again for the host; a test
+/// measures it.
 const RECORD: f64 = 3.0;
 
 /// Why the resources are refused.

@@ -1,13 +1,13 @@
-//! What is to be said of the stream of samples that a host feeds: one warning when a condition begins, with its time, and the
-//! condition as an output as long as it lasts.
+//! What is to be said of the stream of samples that a host feeds: one warning when a condition begins, with its time,
+//! and the condition as an output as long as it lasts.
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use switchid::identify::{Sample, Skipped};
 use switchid_fmu_slave::{Log, seconds};
 
-/// A condition lasts until this many samples came without it; what shows only by its absence (motion, a connection) has to be
-/// absent for as many: at the publication's step its interval T.
+/// A condition lasts until this many samples came without it; what shows only by its absence (motion, a connection) has
+/// to be absent for as many: at the publication's step its interval T.
 const SPAN: u64 = 500;
 
 /// Samples below which a mean says nothing of a period.

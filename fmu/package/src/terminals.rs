@@ -9,8 +9,8 @@ use switchid_fmu_slave::{Causality, Description};
 /// What measures, or is measured: displacement, velocity, excitation.
 const SIGNALS: [&str; 3] = ["q", "qd", "F"];
 
-/// The XML. Inputs among q, q̇ and F make a terminal on the left, outputs among them one on the right, an excitation from outside
-/// one below.
+/// The XML. Inputs among q, q̇ and F make a terminal on the left, outputs among them one on the right, an excitation
+/// from outside one below.
 ///
 /// # Errors
 /// Only what writing to memory can raise.

@@ -251,8 +251,8 @@ fn nominal(start: f64) -> Option<f64> {
     Some(start.abs()).filter(|size| *size > 0.0 && *size < 1e20 && *size != 1.0)
 }
 
-/// No output depends on an input at the same instant; indices count from 1. That outputs depend on the time must be said: FMI Library
-/// takes a list in which nothing depends on anything for one that says nothing.
+/// No output depends on an input at the same instant; indices count from 1. That outputs depend on the time must be
+/// said: FMI Library takes a list in which nothing depends on anything for one that says nothing.
 fn write_structure(xml: &mut Xml, description: &Description) -> io::Result<()> {
     let time = description.time().map(|place| description.variables[place].name.clone());
     let now = |variable: &Variable| variable.follows.clone();
@@ -265,7 +265,8 @@ fn write_structure(xml: &mut Xml, description: &Description) -> io::Result<()> {
     write_unknowns(xml, description, "InitialUnknowns", |own| is_output(own) || is_derivative(own), at_first)
 }
 
-/// A list of those variables that belong to it, each with the variables that it depends on; none where it would be empty.
+/// A list of those variables that belong to it, each with the variables that it depends on; none where it would be
+/// empty.
 fn write_unknowns(
     xml: &mut Xml,
     description: &Description,

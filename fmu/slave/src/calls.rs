@@ -78,9 +78,9 @@ pub enum Call {
 }
 
 impl Call {
-    /// The columns: instantiated, initialization, step (co-simulation), event, continuous (model exchange), terminated, failed.
-    /// Reading is allowed in "instantiated", more than the standard asks: some simulators read every variable as soon as there is an
-    /// instance.
+    /// The columns: instantiated, initialization, step (co-simulation), event, continuous (model exchange), terminated,
+    /// failed. Reading is allowed in "instantiated", more than the standard asks: some simulators read every variable
+    /// as soon as there is an instance.
     #[rustfmt::skip]
     const fn row(self) -> [bool; 7] {
         const YES: bool = true;

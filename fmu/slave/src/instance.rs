@@ -13,7 +13,8 @@ use crate::values::{Value, ValueError, Values};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// A state as it is used ÷ as it is written, at most, with the bytes themselves: a small number takes one byte of eight.
+/// A state as it is used ÷ as it is written, at most, with the bytes themselves: a small number takes one byte of
+/// eight.
 const UNPACKED: usize = 9;
 
 /// Why a call is refused.

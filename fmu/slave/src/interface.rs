@@ -2,8 +2,8 @@
 //!
 //! # Safety
 //! All of them trust the host as far as FMI 2.0 asks for: a component is one that `fmi2Instantiate` returned and that
-//! was not freed, arrays are as long as said, texts end with a zero byte. Null pointers are refused, and so are states that
-//! the instance does not hold: a state's handle is never followed. No panic leaves them.
+//! was not freed, arrays are as long as said, texts end with a zero byte. Null pointers are refused, and so are states
+//! that the instance does not hold: a state's handle is never followed. No panic leaves them.
 
 use crate::calls::Call;
 use crate::creation::{Request, read};

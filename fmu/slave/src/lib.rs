@@ -1,10 +1,9 @@
-//! The FMI 2.0 C interface of a co-simulation slave, once, for any slave written in Rust; of one that can be integrated from
-//! outside, that of model exchange too.
+//! The FMI 2.0 C interface of a co-simulation slave, once, for any slave written in Rust; of one that can be integrated
+//! from outside, that of model exchange too.
 //!
-//! A dynamic library implements [`Slave`] and calls [`export!`], and [`export_exchange!`] where it is a [`Continuous`] too;
-//! variables, names and GUID come from
-//! `resources/interface.json` ([`description`]), so that one binary serves every model. All `unsafe` of the project is
-//! here. What the slave promises its hosts:
+//! A dynamic library implements [`Slave`] and calls [`export!`], and [`export_exchange!`] where it is a [`Continuous`]
+//! too; variables, names and GUID come from `resources/interface.json` ([`description`]), so that one binary serves
+//! every model. All `unsafe` of the project is here. What the slave promises its hosts:
 //!
 //! - no panic crosses the interface, `fmi2Discard` is never returned, no threads, no thread-locals, no globals;
 //! - a refused call changes nothing and says in the log why;

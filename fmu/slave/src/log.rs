@@ -39,8 +39,8 @@ impl Category {
 /// Beginnings of the same that are all said.
 const ONSETS: u64 = 10;
 
-/// The way to the host's log, with what it wants to hear. A recurring warning is said the 1st, 10th, 100th … time, one that
-/// tells of something that began the first ten times too.
+/// The way to the host's log, with what it wants to hear. A recurring warning is said the 1st, 10th, 100th … time, one
+/// that tells of something that began the first ten times too.
 pub struct Log {
     callbacks: CallbackFunctions,
     instance: CString,
@@ -54,8 +54,8 @@ impl Log {
         Log { callbacks, instance, enabled: [logging_on, true, true], recurring: Vec::new() }
     }
 
-    /// `fmi2SetDebugLogging`: on with names turns on these alone, off with names turns these off; without a name, or with
-    /// `logAll`, all are meant, but warnings and errors stay on.
+    /// `fmi2SetDebugLogging`: on with names turns on these alone, off with names turns these off; without a name, or
+    /// with `logAll`, all are meant, but warnings and errors stay on.
     pub fn enable(&mut self, on: bool, categories: &[String]) {
         if categories.is_empty() || categories.iter().any(|name| name == "logAll") {
             self.enabled = [on, true, true];

@@ -1,7 +1,7 @@
 //! Memory that is asked for as a whole.
 //!
-//! Rust ends the process where a small allocation fails, and with it the host's simulation. So a slave first asks for all that it
-//! may need, gives it back, and then builds: where there is not so much, the call is refused instead.
+//! Rust ends the process where a small allocation fails, and with it the host's simulation. So a slave first asks for
+//! all that it may need, gives it back, and then builds: where there is not so much, the call is refused instead.
 
 use std::hint::black_box;
 use thiserror::Error;

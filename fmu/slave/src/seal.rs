@@ -1,7 +1,8 @@
 //! A serialised state: a head that says what the bytes are, then the state, compressed.
 //!
-//! head: 8 bytes that name us, format number (u32), CRC-32 of all that follows (u32), length of the GUID (u16), the GUID; numbers
-//! little-endian. The CRC finds every change of up to 32 bits in a row, and every truncation with odds of 2³² to 1.
+//! head: 8 bytes that name us, format number (u32), CRC-32 of all that follows (u32), length of the GUID (u16), the
+//! GUID; numbers little-endian. The CRC finds every change of up to 32 bits in a row, and every truncation with odds of
+//! 2³² to 1.
 
 use thiserror::Error;
 

@@ -13,8 +13,8 @@ pub type SlaveError = Box<dyn std::error::Error>;
 ///
 /// No threads, no thread-locals, no globals; what it reads from its resources it reads in `instantiate`.
 pub trait Slave: Clone + Serialize + DeserializeOwned + 'static {
-    /// Bytes that one instance takes at most until its first step, with its variables and what building it takes on the way, but for
-    /// what [`Slave::start`] asks for itself; a test measures them.
+    /// Bytes that one instance takes at most until its first step, with its variables and what building it takes on the
+    /// way, but for what [`Slave::start`] asks for itself; a test measures them.
     const ROOM: usize;
 
     /// Reads the resources.

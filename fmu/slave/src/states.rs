@@ -1,7 +1,7 @@
 //! The states that a host holds, each behind a handle that is compared and never followed.
 //!
-//! A handle is the address of the state, so that no two living ones are the same; one that was freed, that another instance
-//! gave out, or that is no handle at all is simply not found.
+//! A handle is the address of the state, so that no two living ones are the same; one that was freed, that another
+//! instance gave out, or that is no handle at all is simply not found.
 
 /// One state, with its bytes between `fmi2SerializedFMUstateSize` and `fmi2SerializeFMUstate`.
 struct Held<T> {

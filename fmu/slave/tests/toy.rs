@@ -10,8 +10,8 @@ use switchid_fmu_slave::{
     Variability, Variable,
 };
 
-/// y(t + h) = y(t) + gain · u(t), in model exchange ẏ = gain · u and y(t₀) = t₀ with an event at every full second; panics where u is 13,
-/// refuses a gain of 7.
+/// y(t + h) = y(t) + gain · u(t), in model exchange ẏ = gain · u and y(t₀) = t₀ with an event at every full second;
+/// panics where u is 13, refuses a gain of 7.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Toy {
     sum: f64,
@@ -184,7 +184,8 @@ fn last_message(instance: &Instance) -> String {
     instance.messages().last().unwrap().2.clone()
 }
 
-/// A fresh instance in that state: i instantiated, n initialization, s step, e event, c continuous, t terminated, f failed.
+/// A fresh instance in that state: i instantiated, n initialization, s step, e event, c continuous, t terminated, f
+/// failed.
 fn in_phase(phase: char, instance: Instance) -> Instance {
     let start = || assert_eq!(instance.initialize(0.0), OK);
     match phase {

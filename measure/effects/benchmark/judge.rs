@@ -22,7 +22,8 @@ const NEAR: f64 = 1.0;
 /// What a diagnosis came to, against the truth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// The hidden effects by name; nothing where nothing is hidden; unexplained, or its share told, where the catalogue does not have it.
+    /// The hidden effects by name; nothing where nothing is hidden; unexplained, or its share told, where the catalogue
+    /// does not have it.
     Right,
     /// Another effect first, the hidden one in a stated tie with it.
     Tied,
@@ -45,8 +46,8 @@ pub struct Outcome {
     pub visible: bool,
     /// Whether the answer was a tie with the truth in it.
     pub tie: bool,
-    /// Whether the law's switch, and no other, was found; none where it has none, or where this record cannot show it: the true laws of the
-    /// stages cut the held-out error of the true form by a tenth.
+    /// Whether the law's switch, and no other, was found; none where it has none, or where this record cannot show it:
+    /// the true laws of the stages cut the held-out error of the true form by a tenth.
     pub switch: Option<bool>,
     /// Held-out error with the right effect ÷ that of the true form.
     pub ratio: Option<f64>,
@@ -58,7 +59,8 @@ pub struct Outcome {
 
 /// Diagnoses the record under the model, then looks at the truth.
 ///
-/// Where the sensors are a usual rig's, nobody knows the hold, and a complete law leaves what they are: it is right to name nothing.
+/// Where the sensors are a usual rig's, nobody knows the hold, and a complete law leaves what they are: it is right to
+/// name nothing.
 pub fn judge(setting: &Setting, problem: &Problem) -> Outcome {
     let model = Model::of("draw", problem.model.iter().map(|term| (*term, Given::Fit)));
     let hold = (setting.sensors == Sensors::Ideal).then_some(problem.hold);
@@ -138,7 +140,8 @@ fn judge_one(
     Outcome { answer, visible, tie, switch: None, ratio, seconds, words }
 }
 
-/// Of a record that switches, the hidden effect is to be named in one stage at least, and none that is not there in another.
+/// Of a record that switches, the hidden effect is to be named in one stage at least, and none that is not there in
+/// another.
 fn judge_stages(
     model: &Model,
     hold: Option<Hold>,
@@ -195,8 +198,8 @@ impl Part {
         Some(Part { model: error(&problem.model)?, complete, target: posed.law()?.0.target, samples })
     }
 
-    /// Whether two laws of the true form leave a tenth less than one of it. Errors of other targets are not compared: the switch counts as
-    /// shown.
+    /// Whether two laws of the true form leave a tenth less than one of it. Errors of other targets are not compared:
+    /// the switch counts as shown.
     fn switches(&self, before: &Part, after: &Part) -> bool {
         let energy = |part: &Part| part.samples * part.complete.powi(2);
         let comparable = before.target == self.target && after.target == self.target;
@@ -209,7 +212,8 @@ fn index(problem: &Problem, t: f64) -> usize {
     problem.recording.t().partition_point(|own| *own < t)
 }
 
-/// Whether the share that an answer claims to explain is no more than what it would be of the whole error, within a tenth.
+/// Whether the share that an answer claims to explain is no more than what it would be of the whole error, within a
+/// tenth.
 fn is_honest(found: &Diagnosis, base: f64, true_error: f64) -> bool {
     let left = principal(&found.errors);
     let share = (base.powi(2) - left.powi(2)) / (base.powi(2) - true_error.powi(2));

@@ -43,7 +43,8 @@ pub struct Rig {
     /// A force at samples that nothing measures, ÷ [`Rig::amplitude`]; empty where there is none. Only a plant that
     /// runs straight has it.
     pub disturbance: Vec<f64>,
-    /// The sample from which on the linear stiffness is that many times as large. Only a plant that runs straight has it.
+    /// The sample from which on the linear stiffness is that many times as large. Only a plant that runs straight has
+    /// it.
     pub switch: Option<(usize, f64)>,
 }
 

@@ -1,7 +1,7 @@
 //! e ÷ limit, and whether the stated std are honest.
 //!
-//! Normalised errors (θ − θ*)² ÷ std² of a coefficient over N seeds are χ² with N degrees of freedom: their mean must lie in an interval
-//! that all coefficients of a case together leave once in a hundred times.
+//! Normalised errors (θ − θ*)² ÷ std² of a coefficient over N seeds are χ² with N degrees of freedom: their mean must
+//! lie in an interval that all coefficients of a case together leave once in a hundred times.
 
 use super::Asked;
 use super::recorded::{Library, Recorded, law, sensors};

@@ -1,8 +1,8 @@
 //! Figures beside what any method could reach:
 //! `cargo xtask figures --against-limits [FIRST..END] [ROW] [--only TEXT] [--threads N]`.
 //!
-//! Every row draws its scenarios and its noise from the seeds FIRST to END − 1, so that a row can be measured piece by piece;
-//! with `--only TEXT` those of its cases alone whose label holds the text.
+//! Every row draws its scenarios and its noise from the seeds FIRST to END − 1, so that a row can be measured piece by
+//! piece; with `--only TEXT` those of its cases alone whose label holds the text.
 //!
 //! | row | what it prints |
 //! |---|---|

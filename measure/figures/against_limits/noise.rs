@@ -15,7 +15,8 @@ const PLANTS: [Builtin; 4] =
 
 const NOISES: [f64; 5] = [1e-4, 1e-3, 0.01, 0.1, 0.2];
 
-/// Prints relative errors by plant, disturbance and σ, q and q̇ together; an estimate that is not there counts as infinitely wrong.
+/// Prints relative errors by plant, disturbance and σ, q and q̇ together; an estimate that is not there counts as
+/// infinitely wrong.
 pub fn run(asked: &Asked) -> Result<(), Failure> {
     println!("| record | disturbed | σ | relative error of std after {SECONDS} s, %, median | worst | alarms |");
     println!("|---|---|---|---|---|---|");

@@ -76,7 +76,8 @@ pub fn section(measured: &[(Point, Outcome)]) -> Section {
     Section { title: "Rapid switching", text, pictures, claims: vec![half_a_period(measured)] }
 }
 
-/// Where ours fails, and how: by plant and noise the spacing from which it identifies nearly all laws, against the possible one.
+/// Where ours fails, and how: by plant and noise the spacing from which it identifies nearly all laws, against the
+/// possible one.
 fn fails(measured: &[(Point, Outcome)]) -> String {
     let from = |plant: Plant, noise: f64, value: &dyn Fn(&Group, f64) -> f64| {
         let nearly_all = |spacing: &&f64| {

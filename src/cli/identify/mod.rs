@@ -170,8 +170,8 @@ fn run_over(arguments: &Arguments, trace: Option<Target>) -> Result<(Run, Course
     Ok((Run { opened, file, settings, hold_from, gives_force, inner, found, limits }, course))
 }
 
-/// The model with numbers for the inner parameters that it leaves open, which a stream cannot estimate: those that suit the recording as a
-/// whole best, and their names and values.
+/// The model with numbers for the inner parameters that it leaves open, which a stream cannot estimate: those that suit
+/// the recording as a whole best, and their names and values.
 fn with_inner(arguments: &Arguments, model: Model, recording: &Recording) -> (Model, Vec<(String, f64)>) {
     let is_open = |entry: &ModelTerm| entry.open.contains(&true);
     let closed = |entry: &ModelTerm| ModelTerm { open: vec![false; entry.open.len()], ..entry.clone() };

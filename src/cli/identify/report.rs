@@ -43,7 +43,8 @@ struct StageReport {
     law: Option<String>,
     coefficients: Pairs,
     std: Pairs,
-    /// Further seconds of such motion by term, of those that are not known well enough, where something can be said of them.
+    /// Further seconds of such motion by term, of those that are not known well enough, where something can be said of
+    /// them.
     needed: Pairs,
     /// By term, where known.
     units: BTreeMap<String, String>,

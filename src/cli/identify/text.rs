@@ -166,7 +166,8 @@ fn explained(stage: &Stage) -> String {
     stage.explained.map_or_else(String::new, line)
 }
 
-/// `q^3: not known yet, about 1.4 s more of such motion`, a line for each coefficient that a validated law needs better.
+/// `q^3: not known yet, about 1.4 s more of such motion`, a line for each coefficient that a validated law needs
+/// better.
 fn lacking(stage: &Stage) -> String {
     let last = stage.lacking().map(|(_, seconds)| seconds).fold(0.0, f64::max);
     let line = |(term, seconds): (Term, f64)| {

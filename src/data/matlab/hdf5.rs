@@ -1,8 +1,8 @@
 //! MAT files of version 7.3, which are HDF5 behind a header of 512 bytes; plain HDF5 is read alike.
 //!
 //! Variables are datasets of the root group, structures are groups with one dataset per field. MATLAB says what a
-//! dataset means in its attribute `MATLAB_class`; its row and column vectors are 1 × n and n × 1 here too. What cells hold
-//! is in a group of its own, to which they refer by address.
+//! dataset means in its attribute `MATLAB_class`; its row and column vectors are 1 × n and n × 1 here too. What cells
+//! hold is in a group of its own, to which they refer by address.
 
 use super::super::arrays::Unfit;
 use super::objects::Objects;

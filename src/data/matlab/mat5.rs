@@ -1,7 +1,8 @@
 //! MAT files of version 5 (MATLAB 5 to 7.2, `save -v6` and `-v7`), read after MathWorks' "MAT-File Format".
 //!
-//! After a header of 128 bytes the file is a row of elements: type, size, content. A variable is an element of type matrix whose
-//! content is again a row of elements (flags, extents, name, numbers), or a compressed one that holds such an element.
+//! After a header of 128 bytes the file is a row of elements: type, size, content. A variable is an element of type
+//! matrix whose content is again a row of elements (flags, extents, name, numbers), or a compressed one that holds such
+//! an element.
 
 use super::objects::Objects;
 use super::value::Value;

@@ -1,8 +1,9 @@
 //! The objects of MATLAB's classes in a file: their properties, which the file keeps apart from the variables.
 //!
-//! MathWorks does not document that part. Its layout has been worked out from files by several people, and is: a cell array
-//! whose first cell holds bytes (names, classes, objects and which property is which value), whose cells from the third on
-//! are the properties' values, and whose last one holds what properties of each class are where an object says nothing.
+//! MathWorks does not document that part. Its layout has been worked out from files by several people, and is: a cell
+//! array whose first cell holds bytes (names, classes, objects and which property is which value), whose cells from the
+//! third on are the properties' values, and whose last one holds what properties of each class are where an object says
+//! nothing.
 
 use super::value::Value;
 

@@ -5,15 +5,15 @@ use crate::diagnose::judge::{Column, Equation, Folds, HeldOut, PRINCIPAL, Record
 use crate::diagnose::scale::Scale;
 use crate::law::{Catalogue, Effect, Term};
 
-/// Rounds in which the grid of inner parameters is narrowed, a third of the spacing at a time: from a half of a value to a thousandth or two.
-/// After three a dead zone in the law was 1 % off, and what that left had a name.
+/// Rounds in which the grid of inner parameters is narrowed, a third of the spacing at a time: from a half of a value
+/// to a thousandth or two. After three a dead zone in the law was 1 % off, and what that left had a name.
 const ROUNDS: usize = 5;
 
 /// Effects whose grid is narrowed and whose errors are taken robustly: those that come nearest to being the best.
 const CONTENDERS: usize = 8;
 
-/// Share of a candidate that the law's own terms are, from which it cannot be told from them: what little error its readings have is then
-/// ten times as large in its coefficient.
+/// Share of a candidate that the law's own terms are, from which it cannot be told from them: what little error its
+/// readings have is then ten times as large in its coefficient.
 pub(in crate::diagnose) const TRAP: f64 = 0.99;
 
 /// A candidate beside a law.
@@ -45,8 +45,8 @@ struct Arena<'a> {
 
 /// All candidates beside a law, the best first, and how many were tried, inner parameters counted apart.
 ///
-/// A candidate that holds q̈ itself has the target's own noise, which would pass for physics: it is tried on the even readings' motion while the
-/// target is that of the odd ones.
+/// A candidate that holds q̈ itself has the target's own noise, which would pass for physics: it is tried on the even
+/// readings' motion while the target is that of the odd ones.
 pub(in crate::diagnose) fn contest(
     record: &Record,
     folds: &Folds,
@@ -188,7 +188,8 @@ fn scale(record: &Record) -> Scale {
     Scale { frequency: [scale.frequency[0], std::f64::consts::TAU / record.period], ..scale }
 }
 
-/// The candidates that make sense beside this law: a delay has its own test, and what depends on the excitation cannot predict it.
+/// The candidates that make sense beside this law: a delay has its own test, and what depends on the excitation cannot
+/// predict it.
 fn eligible(record: &Record, equation: &Equation) -> Vec<Term> {
     let is_output = !equation.terms.contains(&Term::Inertia) || !record.forced;
     let is_delay =

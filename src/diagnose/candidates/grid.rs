@@ -1,6 +1,7 @@
 //! Every candidate of the catalogue, its inner parameters on a grid in the record's own units.
 //!
-//! The grid is coarse: a screen of it finds the neighbourhood, then [`Variant::neighbours`] narrows it, a third of the spacing at a time.
+//! The grid is coarse: a screen of it finds the neighbourhood, then [`Variant::neighbours`] narrows it, a third of the
+//! spacing at a time.
 
 use crate::diagnose::scale::Scale;
 use crate::law::{Catalogue, Effect, Expression, InnerRange, Term};
@@ -43,7 +44,8 @@ impl Scale {
         }
     }
 
-    /// Wave numbers of one to [`RIPPLES`] ripples over the way, half a ripple apart: ripples half a ripple apart are as good as orthogonal.
+    /// Wave numbers of one to [`RIPPLES`] ripples over the way, half a ripple apart: ripples half a ripple apart are as
+    /// good as orthogonal.
     fn ripples(&self) -> Vec<f64> {
         (2..=2 * RIPPLES).map(|halves| 0.5 * PI * f64::from(halves) / self.excursion).collect()
     }

@@ -31,7 +31,8 @@ pub struct Estimate {
 }
 
 impl Held {
-    /// Numbers as the model gives them. Free motion (`forced` false) has no scale: its inertia is the model's number, else 1.
+    /// Numbers as the model gives them. Free motion (`forced` false) has no scale: its inertia is the model's number,
+    /// else 1.
     pub fn as_given(model: &Model, forced: bool) -> Held {
         Held::by(model, |term, given| match (term, given) {
             (_, Given::Known(value)) => Some(value),
@@ -90,8 +91,9 @@ fn spread_out(held: &Held, free: &[usize], fit: &Fit, rows: &[Rows]) -> Estimate
     Estimate { terms: held.terms.clone(), coefficients, std, undetermined }
 }
 
-/// Variances of these coefficients, residuals of windows that overlap or follow each other being correlated: A⁻¹ M A⁻¹ with A = Σ aaᵀ and M the
-/// covariance of the scores a r, Bartlett-weighted over lags (Newey and West, Econometrica 55 (1987), 703).
+/// Variances of these coefficients, residuals of windows that overlap or follow each other being correlated: A⁻¹ M A⁻¹
+/// with A = Σ aaᵀ and M the covariance of the scores a r, Bartlett-weighted over lags (Newey and West, Econometrica 55
+/// (1987), 703).
 fn variances(indices: &[usize], rows: &[Rows], coefficients: &[f64]) -> Vec<f64> {
     let n = indices.len();
     let (mut information, mut spread) = (DMatrix::<f64>::zeros(n, n), DMatrix::<f64>::zeros(n, n));

@@ -1,8 +1,8 @@
 //! A model against measurements: how wrong it is, and how wrong it could at best be.
 //!
-//! Two laws stand side by side: the model *as given*, its numbers held, and the *best of this form*, every coefficient sought. Where the
-//! first errs much more than the second, the form is right and the numbers are off. Beside both stands the noise floor, what the residual
-//! would be were the law right.
+//! Two laws stand side by side: the model *as given*, its numbers held, and the *best of this form*, every coefficient
+//! sought. Where the first errs much more than the second, the form is right and the numbers are off. Beside both
+//! stands the noise floor, what the residual would be were the law right.
 
 use super::coefficients::{Estimate, Held, best_coefficients};
 use super::force::{Left, left_over};
@@ -51,8 +51,8 @@ pub struct Error {
     pub force_residual: f64,
     /// What `force_residual` would be were the law right.
     pub noise_floor: f64,
-    /// RMSE of the free run of q (of q̇ where q is not measured) ÷ std of the measurement; none where it diverges, or where the law
-    /// has memory, a delay or an expression, whose state at the start no reading gives.
+    /// RMSE of the free run of q (of q̇ where q is not measured) ÷ std of the measurement; none where it diverges, or
+    /// where the law has memory, a delay or an expression, whose state at the start no reading gives.
     pub free_run_nrmse: Option<f64>,
     /// The same of q̇ where both are measured.
     pub free_run_nrmse_velocity: Option<f64>,
@@ -172,15 +172,16 @@ impl Comparison {
     }
 }
 
-/// Compares a model with recordings, each with what its excitation did between samples. `recordings` holds at least one.
+/// Compares a model with recordings, each with what its excitation did between samples. `recordings` holds at least
+/// one.
 pub fn compare(model: &Model, recordings: &[(&Recording, Hold)], options: &Options) -> Comparison {
     let all: Vec<&Recording> = recordings.iter().map(|(recording, _)| *recording).collect();
     let posed = Posed::new(&model.freed(), &all, recordings.first().map(|(_, hold)| *hold));
     compare_posed(model, recordings, posed.as_ref(), options)
 }
 
-/// The same where the best of the model's form, [`Model::freed`], has been put to the recordings already; without it the judge says
-/// nothing.
+/// The same where the best of the model's form, [`Model::freed`], has been put to the recordings already; without it
+/// the judge says nothing.
 pub fn compare_posed(
     model: &Model,
     recordings: &[(&Recording, Hold)],
@@ -263,7 +264,8 @@ fn side(law: Estimate, records: &[Record], expressions: &[Expression], [window, 
 }
 
 impl Totals {
-    /// Of one recording; `lengths` are those of the weak windows, of the stretch that gives the initial state, of the horizon, s.
+    /// Of one recording; `lengths` are those of the weak windows, of the stretch that gives the initial state, of the
+    /// horizon, s.
     fn of(record: &Record, law: &Estimate, expressions: &[Expression], [window, stretch, horizon]: [f64; 3]) -> Totals {
         let mut totals = Totals {
             balance: record.balance(record.windows(window), &law.terms, &law.coefficients),

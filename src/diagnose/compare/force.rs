@@ -1,7 +1,7 @@
 //! The force that a law leaves over, along the motion.
 //!
-//! Over a short window the weak residual ÷ ∫ φ dt is the mean of `Σ θ_j f_j − F` about the window's middle. The window is the shortest whose
-//! share of noise is small, so that a place can be told from its neighbour.
+//! Over a short window the weak residual ÷ ∫ φ dt is the mean of `Σ θ_j f_j − F` about the window's middle. The window
+//! is the shortest whose share of noise is small, so that a place can be told from its neighbour.
 
 use super::record::Record;
 use super::rows::{Prepared, Windows};
@@ -43,8 +43,8 @@ pub struct Left {
     pub places: Vec<Place>,
 }
 
-/// What the law leaves over along every piece; windows are at most `window` s long. `inertia` is its position among the coefficients, where
-/// the law has one.
+/// What the law leaves over along every piece; windows are at most `window` s long. `inertia` is its position among the
+/// coefficients, where the law has one.
 pub fn left_over(records: &[Record], coefficients: &[f64], inertia: Option<usize>, window: f64) -> Vec<Left> {
     let of = |(index, record): (usize, &Record)| {
         let windows = choose(record, coefficients, window);

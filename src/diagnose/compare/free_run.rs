@@ -1,7 +1,8 @@
 //! Open-loop prediction: the law integrated from an estimated state, the excitation as its only input.
 //!
-//! The state at the start is sought by Gauss–Newton steps on the distance between motion and readings, first over a stretch of a period
-//! or two, then over all. Shorter windows, each from the state that the readings give at its start, show how fast a law errs.
+//! The state at the start is sought by Gauss–Newton steps on the distance between motion and readings, first over a
+//! stretch of a period or two, then over all. Shorter windows, each from the state that the readings give at its start,
+//! show how fast a law errs.
 
 use super::memory_run::MemoryRun;
 use super::rows::Prepared;
@@ -187,7 +188,8 @@ impl<'a> FreeRun<'a> {
         }
     }
 
-    /// Compares a motion from `start` on; `advance` gives the state after an interval, and its sensitivity to the one at the start.
+    /// Compares a motion from `start` on; `advance` gives the state after an interval, and its sensitivity to the one
+    /// at the start.
     fn follow(
         &self,
         start: State,

@@ -1,8 +1,8 @@
 //! Where a law fails: in time, in the phase plane, over displacement, amplitude, speed and frequency.
 //!
-//! The energy of what is left over, its noise taken off, is laid out over bins that the motion visits equally long. The interval of bins that
-//! stands out most is a place of failure where it holds much more of the energy than of the time, more than chance and the heavy tails of the
-//! energy explain.
+//! The energy of what is left over, its noise taken off, is laid out over bins that the motion visits equally long. The
+//! interval of bins that stands out most is a place of failure where it holds much more of the energy than of the time,
+//! more than chance and the heavy tails of the energy explain.
 
 use super::force::{Left, Place};
 use super::scan::{Bins, Peak, divergence};
@@ -30,7 +30,8 @@ const TWO_SIDED: f64 = 1.3;
 /// What the evidence of an interval with two ends counts: it was sought among many more than one that is open.
 const CLOSED: f64 = 0.6;
 
-/// Part of the energy per time of the interval that stands out most down to which the error still lasts: the motion shows it more and less.
+/// Part of the energy per time of the interval that stands out most down to which the error still lasts: the motion
+/// shows it more and less.
 const LASTING: f64 = 0.05;
 
 /// What the evidence of a band of frequencies counts: the force is a poorer measure of what to expect than time.
@@ -245,8 +246,8 @@ fn peak(rows: &[Bins], [from, to, low, high]: [usize; 4]) -> Peak {
     Peak { from, to, share, baseline, divergence: divergence(share, baseline) }
 }
 
-/// How many places count as independent: their number, less for what is left over being correlated from one to the next (energies of a
-/// Gaussian series correlate as the square of it, and scatter with a variance of 2), less for noise.
+/// How many places count as independent: their number, less for what is left over being correlated from one to the next
+/// (energies of a Gaussian series correlate as the square of it, and scatter with a variance of 2), less for noise.
 fn independent(left: &[Left]) -> f64 {
     let residuals: Vec<Vec<f64>> =
         left.iter().map(|left| left.places.iter().map(|place| place.residual).collect()).collect();

@@ -1,7 +1,7 @@
 //! The free motion of a law with memory, delay or a user's expression.
 //!
-//! Where the memory stands at an instant within the record is told by the motion up to there: it is carried along the smoothed states, from rest
-//! at the first. Sensitivities to the state at the start are differences of two motions.
+//! Where the memory stands at an instant within the record is told by the motion up to there: it is carried along the
+//! smoothed states, from rest at the first. Sensitivities to the state at the start are differences of two motions.
 
 use super::rows::Prepared;
 use crate::law::{Dynamics, Expression, MAX_MEMORY, Motion, Phase, Samples, State};

@@ -1,8 +1,8 @@
 //! The law in weak form over windows of one length.
 //!
-//! Over a window the residual of the law is `∫ (Σ θ_j f_j − F) φ dt`; q̈ and what is linear in q̇ are integrated by parts, as
-//! [`crate::weak`] says. Every term is therefore a set of series, one value per sample, against φ, φ' or φ''. Sensor noise of std
-//! (σ_q, σ_q̇) gives the residual the variance Σ_k (∂/∂q_k)² σ_q² + (∂/∂q̇_k)² σ_q̇².
+//! Over a window the residual of the law is `∫ (Σ θ_j f_j − F) φ dt`; q̈ and what is linear in q̇ are integrated by
+//! parts, as [`crate::weak`] says. Every term is therefore a set of series, one value per sample, against φ, φ' or φ''.
+//! Sensor noise of std (σ_q, σ_q̇) gives the residual the variance Σ_k (∂/∂q_k)² σ_q² + (∂/∂q̇_k)² σ_q̇².
 
 use super::series::{Series, doubt, jumped, series};
 use super::trajectory::Trajectory;
@@ -24,7 +24,8 @@ pub struct Prepared {
     /// Its motion.
     pub motion: Trajectory,
     terms: Vec<Vec<Series>>,
-    /// By term, half the jump of its force where the velocity may have either sign; empty for a force that does not jump.
+    /// By term, half the jump of its force where the velocity may have either sign; empty for a force that does not
+    /// jump.
     doubt: Vec<Vec<f64>>,
 }
 

@@ -1,7 +1,9 @@
-//! Where an energy is concentrated: the interval of bins that stands out most against what it would hold were the energy spread evenly.
+//! Where an energy is concentrated: the interval of bins that stands out most against what it would hold were the
+//! energy spread evenly.
 //!
-//! A scan statistic (Kulldorff, Communications in Statistics 26 (1997), 1481): with the share p of the energy in a region and the share b of
-//! the time spent there, its score is N (p ln(p/b) + (1 − p) ln((1 − p)/(1 − b))), N the number of independent places.
+//! A scan statistic (Kulldorff, Communications in Statistics 26 (1997), 1481): with the share p of the energy in a
+//! region and the share b of the time spent there, its score is N (p ln(p/b) + (1 − p) ln((1 − p)/(1 − b))), N the
+//! number of independent places.
 
 /// Bins with less energy across which a region goes on.
 const BRIDGED: usize = 2;
@@ -35,8 +37,8 @@ pub struct Peak {
 }
 
 impl Peak {
-    /// Whether it holds much of the energy, and much more of it than of the baseline. The widest region of much evidence may not, where one
-    /// within it does.
+    /// Whether it holds much of the energy, and much more of it than of the baseline. The widest region of much
+    /// evidence may not, where one within it does.
     pub fn stands_out(&self) -> bool {
         self.share > SHARE && self.share > CONTRAST * self.baseline
     }
@@ -65,8 +67,8 @@ impl Bins {
         }
     }
 
-    /// The interval of bins that stands out most; none where all is even. An interval that is closed at both ends was sought among many more
-    /// than one that is open: its divergence counts `closed` times.
+    /// The interval of bins that stands out most; none where all is even. An interval that is closed at both ends was
+    /// sought among many more than one that is open: its divergence counts `closed` times.
     pub fn peak(&self, closed: f64) -> Option<Peak> {
         let (sums, count) = (Sums::of(self), self.energy.len());
         if sums.whole.iter().any(|whole| *whole <= 0.0) {
@@ -82,7 +84,8 @@ impl Bins {
         best.filter(|peak| peak.divergence > 0.0)
     }
 
-    /// The region with the bins beside it that hold that part of its energy per baseline, and more of it than the rest does; its evidence stays.
+    /// The region with the bins beside it that hold that part of its energy per baseline, and more of it than the rest
+    /// does; its evidence stays.
     pub fn widened(&self, peak: &Peak, part: f64) -> Peak {
         let sums = Sums::of(self);
         let ([all, whole], count) = (sums.whole, self.energy.len());

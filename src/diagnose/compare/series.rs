@@ -18,13 +18,15 @@ pub struct Series {
     pub slopes: [Option<Vec<f64>>; 2],
 }
 
-/// The force of a term at every sample, without what multiplies q̈: the one place that knows how a term follows from a motion.
+/// The force of a term at every sample, without what multiplies q̈: the one place that knows how a term follows from a
+/// motion.
 fn force_series(term: Term, q: &[f64], qd: &[f64], excitation: &[f64]) -> Vec<f64> {
     q.iter().zip(qd).zip(excitation).map(|((q, qd), excitation)| term.force(*q, *qd, *excitation)).collect()
 }
 
-/// Half the jump of a term's force at every sample whose velocity is no further from 0 than √3 std of what is known of it: then the instant
-/// of a reversal is uncertain by as much as a uniform distribution over those samples says. Empty for a force that does not jump.
+/// Half the jump of a term's force at every sample whose velocity is no further from 0 than √3 std of what is known of
+/// it: then the instant of a reversal is uncertain by as much as a uniform distribution over those samples says. Empty
+/// for a force that does not jump.
 pub(super) fn doubt(term: Term, motion: &Trajectory) -> Vec<f64> {
     if !matches!(term, Term::Effect(effect) if effect.is_pointwise()) {
         return Vec::new();
@@ -50,8 +52,8 @@ pub(super) fn jumped(phi: &[f64], doubt: &[f64]) -> f64 {
     variance + run * run / 3.0
 }
 
-/// A term as series against φ and its derivatives. Products of powers take the readings themselves, whose noise is known; effects, which
-/// may jump, the smoothed motion.
+/// A term as series against φ and its derivatives. Products of powers take the readings themselves, whose noise is
+/// known; effects, which may jump, the smoothed motion.
 pub(super) fn series(term: Term, expressions: &[Expression], piece: &Piece, motion: &Trajectory) -> Vec<Series> {
     let q = piece.q.as_ref().unwrap_or(&motion.q);
     let qd = piece.qd.as_ref().unwrap_or(&motion.qd);
@@ -82,8 +84,8 @@ pub(super) fn series(term: Term, expressions: &[Expression], piece: &Piece, moti
     }
 }
 
-/// The force of an effect at every sample; where the velocity reverses next to a sample, so that a force may jump there, its mean between the
-/// middles of the intervals on both sides.
+/// The force of an effect at every sample; where the velocity reverses next to a sample, so that a force may jump
+/// there, its mean between the middles of the intervals on both sides.
 fn reversed_series(term: Term, piece: &Piece, motion: &Trajectory) -> Vec<f64> {
     let (q, qd, excitation) = (&motion.q, &motion.qd, &piece.excitation);
     let mut series = force_series(term, q, qd, excitation);

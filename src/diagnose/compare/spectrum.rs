@@ -1,6 +1,7 @@
 //! Energy over frequency of what is left over, beside that of the force that drives the motion.
 //!
-//! The mean of periodograms of overlapping segments under Hann's window (Welch, IEEE Transactions on Audio and Electroacoustics 15 (1967), 70).
+//! The mean of periodograms of overlapping segments under Hann's window (Welch, IEEE Transactions on Audio and
+//! Electroacoustics 15 (1967), 70).
 
 use super::force::{Left, Place};
 use super::scan::Bins;

@@ -1,8 +1,8 @@
 //! The motion at every sample: displacement, velocity and acceleration from local polynomials.
 //!
-//! About every sample a polynomial of degree 3 is fitted to the readings of q and q̇ within ± `reach` samples, each weighed by its noise
-//! (Savitzky and Golay, Analytical Chemistry 36 (1964), 1627, with both channels). The reach is the longest at which the readings still
-//! lie about the polynomial as far as their noise explains.
+//! About every sample a polynomial of degree 3 is fitted to the readings of q and q̇ within ± `reach` samples, each
+//! weighed by its noise (Savitzky and Golay, Analytical Chemistry 36 (1964), 1627, with both channels). The reach is
+//! the longest at which the readings still lie about the polynomial as far as their noise explains.
 
 use crate::diagnose::piece::Piece;
 use nalgebra::{Matrix4, Vector4};
@@ -143,7 +143,8 @@ fn spacing(piece: &Piece) -> f64 {
     (piece.t[piece.len() - 1] - piece.t[0]) / (piece.len() - 1) as f64
 }
 
-/// The longest reach at which the readings scatter about the polynomial no more than at the shortest, as far as their noise explains.
+/// The longest reach at which the readings scatter about the polynomial no more than at the shortest, as far as their
+/// noise explains.
 fn reach(pieces: &[Piece], noise: [f64; 2]) -> usize {
     let shortest = scatter(pieces, noise, REACHES[0]);
     let count = pieces.iter().map(Piece::len).sum::<usize>() as f64;

@@ -1,8 +1,9 @@
 //! How long a window of the weak residual is.
 //!
-//! Two periods measure a motion: that of its displacement, T_q = 2π rms(q) ÷ rms(q̇), and that of its velocity, T_q̇ = 2π rms(q̇) ÷ rms(q̈),
-//! which is the shorter one where forces act in bursts. A window is a quarter of the shorter one, so that it averages over none of
-//! what the law must explain, at least 40 samples, and longer, up to four tenths of T_q, where the sensors' noise would fill it.
+//! Two periods measure a motion: that of its displacement, T_q = 2π rms(q) ÷ rms(q̇), and that of its velocity, T_q̇ =
+//! 2π rms(q̇) ÷ rms(q̈), which is the shorter one where forces act in bursts. A window is a quarter of the shorter one,
+//! so that it averages over none of what the law must explain, at least 40 samples, and longer, up to four tenths of
+//! T_q, where the sensors' noise would fill it.
 
 use super::coefficients::{Held, best_coefficients};
 use super::record::{Balance, Record};

@@ -51,7 +51,8 @@ const DAMPING: [f64; 2] = [1e-3, 1e3];
 /// Factor by which damping grows and falls.
 const DAMPING_RATIO: f64 = 10.0;
 
-/// Std of the prior of a delayed excitation's coefficient about 1: for short delays only its product with the delay can be told.
+/// Std of the prior of a delayed excitation's coefficient about 1: for short delays only its product with the delay can
+/// be told.
 const DELAYED: f64 = 0.2;
 
 /// A step, and what the record says without its damping.
@@ -61,8 +62,8 @@ struct Solved {
 }
 
 impl Solved {
-    /// The Gauss–Newton step with that part of each unknown's information added to it; unknowns that the record leaves open stay. None where
-    /// a run left no numbers.
+    /// The Gauss–Newton step with that part of each unknown's information added to it; unknowns that the record leaves
+    /// open stay. None where a run left no numbers.
     fn of(information: &Information, damping: f64) -> Option<Solved> {
         let solve = |information: &Information| {
             let mut solution = Solution::none(information.n);
@@ -120,8 +121,9 @@ impl<'a> Descent<'a> {
 
     /// Passes until coefficients and noise stay; leaves them where they are best.
     ///
-    /// A pass that is worse than the last one is taken back, and looked at again under the noise that it had; the next step is shorter
-    /// (Marquardt, SIAM Journal 11 (1963), 431). So a step is judged apart from the noise that moves with it.
+    /// A pass that is worse than the last one is taken back, and looked at again under the noise that it had; the next
+    /// step is shorter (Marquardt, SIAM Journal 11 (1963), 431). So a step is judged apart from the noise that moves
+    /// with it.
     pub(super) fn descend(&mut self, pass: &mut Pass) -> Option<Fit> {
         let mut best: Option<(Fit, Descent<'a>, Vec<Outcome>)> = None;
         let mut last: Option<Descent<'a>> = None;
@@ -206,8 +208,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Log-likelihood under no process noise, the sensors' noise taking all error, coefficients moving along; ends where it is largest.
-    /// Gives up where it will not come near `loud`.
+    /// Log-likelihood under no process noise, the sensors' noise taking all error, coefficients moving along; ends
+    /// where it is largest. Gives up where it will not come near `loud`.
     pub(super) fn fit_output_error(&mut self, pass: &mut Pass, loud: f64) -> f64 {
         let mut best: Option<(f64, Descent<'a>)> = None;
         self.ratios = RIVALS;
@@ -269,8 +271,8 @@ impl<'a> Descent<'a> {
         !self.parts.series.is_empty() || !self.inner.is_empty()
     }
 
-    /// Renews the series along a motion that the measurements hold: one that the law alone carries from end to end would follow its own errors,
-    /// growing from pass to pass where a memory resonates.
+    /// Renews the series along a motion that the measurements hold: one that the law alone carries from end to end
+    /// would follow its own errors, growing from pass to pass where a memory resonates.
     pub(super) fn follow(&mut self, outcomes: &[Outcome], pass: &mut Pass) {
         if self.parts.series.is_empty() || outcomes.iter().all(|outcome| outcome.smoothed.is_some()) {
             return self.take_series(outcomes);
@@ -332,8 +334,8 @@ impl<'a> Descent<'a> {
         }
     }
 
-    /// Takes the Gauss–Newton step as far as it goes: the inertia becomes at most [`LARGEST_RATIO`] times larger or smaller (as it grows without
-    /// bounds, the law forgets its excitation), an inner parameter by a third.
+    /// Takes the Gauss–Newton step as far as it goes: the inertia becomes at most [`LARGEST_RATIO`] times larger or
+    /// smaller (as it grows without bounds, the law forgets its excitation), an inner parameter by a third.
     pub(super) fn take(&mut self, step: &[f64]) {
         let (coefficients, others) = step.split_at(self.parts.unknowns.len());
         let inner = &others[..self.inner.len()];
@@ -356,7 +358,8 @@ impl<'a> Descent<'a> {
         })
     }
 
-    /// Adds what is known before the record speaks: where memories begin, and that a delayed excitation takes the place of the excitation.
+    /// Adds what is known before the record speaks: where memories begin, and that a delayed excitation takes the place
+    /// of the excitation.
     pub(super) fn add_priors(&self, information: &mut Information) {
         for (row, value) in self.delays() {
             information.add_prior(row, DELAYED.powi(-2), (1.0 - value) * DELAYED.powi(-2));

@@ -1,8 +1,9 @@
 //! The forces that a run takes from outside: terms that no state gives, along a smoothed motion.
 //!
-//! Each is a straight line over every interval. Where its memory stood when the record began nobody knows: how far from rest is an unknown of its
-//! own, for each piece, beside the coefficients. It has a prior as wide as the motion lets one expect; its price, the logarithm of how
-//! much the record narrows it, is taken off the likelihood (Laplace's approximation of what is left when it is integrated out).
+//! Each is a straight line over every interval. Where its memory stood when the record began nobody knows: how far from
+//! rest is an unknown of its own, for each piece, beside the coefficients. It has a prior as wide as the motion lets
+//! one expect; its price, the logarithm of how much the record narrows it, is taken off the likelihood (Laplace's
+//! approximation of what is left when it is integrated out).
 
 use super::course::Course;
 use super::form::{Form, Parts};
@@ -20,8 +21,8 @@ const NUDGE: f64 = 1e-3;
 /// The series of a form over all pieces.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Exogenous {
-    /// By piece and interval: the force of every series per unit of its coefficient, of every inner parameter that is sought per unit of its
-    /// logarithm, then of every beginning of the piece per unit of it.
+    /// By piece and interval: the force of every series per unit of its coefficient, of every inner parameter that is
+    /// sought per unit of its logarithm, then of every beginning of the piece per unit of it.
     pub(super) rows: Rc<Vec<Vec<Vec<Line>>>>,
     /// By piece and interval: how the series of a hysteresis changes where the motion leaves the smoothed one.
     pub(super) tangents: Rc<Vec<Vec<Tangent>>>,

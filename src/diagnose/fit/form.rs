@@ -86,8 +86,8 @@ impl Form {
 }
 
 impl Fit {
-    /// By how much the record speaks for an error of the law, nats: what the likelihood gains from a white acceleration that the law does
-    /// not have.
+    /// By how much the record speaks for an error of the law, nats: what the likelihood gains from a white acceleration
+    /// that the law does not have.
     pub fn lack(&self) -> f64 {
         (self.log_likelihood - self.log_likelihood_if_right).max(0.0)
     }

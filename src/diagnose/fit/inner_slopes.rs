@@ -52,8 +52,8 @@ pub(super) struct Along<'a> {
     pub(super) begin: &'a [f64],
 }
 
-/// Change of the law's force over every interval with the logarithm of an inner parameter, along a smoothed motion, its memory beginning
-/// there.
+/// Change of the law's force over every interval with the logarithm of an inner parameter, along a smoothed motion, its
+/// memory beginning there.
 pub(super) fn slope(
     (form, coefficients): (&Form, &[f64]),
     one: Sought,

@@ -1,9 +1,10 @@
 //! One run of the filter over a piece under a law with a hysteresis, whose internal state is a third beside q and q̇.
 //!
-//! The hysteresis is a series along the smoothed motion q̂ of the pass before, and the filter's motion leaves it: z = ẑ + w. Over an interval
-//! w⁺ = μ w + κ (δq⁺ − δq) with δq = q − q̂, κ = dz/dq of the loop and μ what a path leaves of a difference in z. The filter carries
-//! (q, q̇, w) with its 3 × 3 covariance, the unknowns' sensitivities alike: the iterated extended Kalman smoother (Bell, SIAM Journal on
-//! Optimization 4 (1994), 626), whose fixed point is the motion of largest likelihood under the law with its memory.
+//! The hysteresis is a series along the smoothed motion q̂ of the pass before; the filter's motion leaves it: z is
+//! ẑ + w. Over an interval w⁺ = μ w + κ (δq⁺ − δq) with δq = q − q̂, κ = dz/dq of the loop and μ what a path leaves of
+//! a difference in z. The filter carries (q, q̇, w) with its 3 × 3 covariance, the unknowns' sensitivities alike: the
+//! iterated extended Kalman smoother (Bell, SIAM Journal on Optimization 4 (1994), 626), whose fixed point is the
+//! motion of largest likelihood under the law with its memory.
 
 use super::outcome::{self, Law, Outcome, Tangent};
 use crate::diagnose::piece::Piece;
@@ -25,7 +26,8 @@ fn with_loop(filter: Filter) -> Filter<3> {
     Filter { mean: [q, qd, 0.0], covariance: [[qq, qv, 0.0], [qv, vv, 0.0], [0.0; 3]] }
 }
 
-/// ∂(q, q̇, w)⁺/∂(q, q̇, w) of the interval that the pass has carried the state over; `pull` is the hysteresis' coefficient ÷ mass.
+/// ∂(q, q̇, w)⁺/∂(q, q̇, w) of the interval that the pass has carried the state over; `pull` is the hysteresis'
+/// coefficient ÷ mass.
 fn transition(pass: &Pass, tangent: &Tangent, pull: f64) -> Matrix<3> {
     let ([[a, b], [c, d]], [to_q, to_qd]) = (pass.map.transition, pass.map.push);
     let held = pull * tangent.slope;

@@ -25,7 +25,8 @@ pub(super) struct Signals {
     pub(super) sample_time: f64,
 }
 
-/// The noise with the scale that the innovations have: the likelihood is that of the best scale, whatever the noise was.
+/// The noise with the scale that the innovations have: the likelihood is that of the best scale, whatever the noise
+/// was.
 pub(super) fn calibrated(noise: &Noise, outcomes: &[Outcome]) -> Noise {
     let [squares, count] = totals(outcomes);
     let scale = scale(outcomes);
@@ -48,9 +49,11 @@ fn totals(outcomes: &[Outcome]) -> [[f64; 2]; 2] {
     ]
 }
 
-/// Sensor noise follows the innovations, process noise the likelihood of rivals at these ratios to it; returns whether both stayed.
+/// Sensor noise follows the innovations, process noise the likelihood of rivals at these ratios to it; returns whether
+/// both stayed.
 ///
-/// Where a sensor's noise would fall below its floor, all noise is lifted with it: the likelihood depends on the ratios alone.
+/// Where a sensor's noise would fall below its floor, all noise is lifted with it: the likelihood depends on the ratios
+/// alone.
 pub(super) fn follow(noise: &mut Noise, ratios: &mut [f64; 2], outcomes: &[Outcome], signals: Signals) -> bool {
     let old = *noise;
     *noise = calibrated(&old, outcomes);
@@ -79,8 +82,8 @@ pub(super) fn follow(noise: &mut Noise, ratios: &mut [f64; 2], outcomes: &[Outco
     settled(0) && settled(1) && (none || near(noise.process, old.process))
 }
 
-/// Factor by which the process noise moves: to the vertex of the parabola through the three levels, or to none. The rivals come near once the
-/// level in use is better than theirs; beyond their reach the vertex is trusted a little.
+/// Factor by which the process noise moves: to the vertex of the parabola through the three levels, or to none. The
+/// rivals come near once the level in use is better than theirs; beyond their reach the vertex is trusted a little.
 fn towards(outcomes: &[Outcome], ratios: &mut [f64; 2]) -> f64 {
     let sum = |value: fn(&Outcome) -> f64| outcomes.iter().map(value).sum::<f64>();
     let present = sum(|outcome| outcome.log_likelihood);
@@ -88,7 +91,8 @@ fn towards(outcomes: &[Outcome], ratios: &mut [f64; 2]) -> f64 {
     let wide = *ratios == RIVALS;
     let flat = less.abs() < GAIN && more < GAIN;
     if flat && wide && less >= more {
-        // where a part of it does as well, it is none: a law that explains its record is not to be approached step by step
+        // where a part of it does as well, it is none: a law that explains its record is not to be approached step by
+        // step
         return 0.0;
     }
     let ends = ratios.map(f64::ln);
@@ -100,8 +104,8 @@ fn towards(outcomes: &[Outcome], ratios: &mut [f64; 2]) -> f64 {
     if wide && best { 1.0 } else { vertex.clamp(reach[0], reach[1]).exp() }
 }
 
-/// Where the parabola through 0 at 0 and these values at the ends, on either side of it, is largest; 0 where that is no gain, and beyond the
-/// better end where it opens upward.
+/// Where the parabola through 0 at 0 and these values at the ends, on either side of it, is largest; 0 where that is no
+/// gain, and beyond the better end where it opens upward.
 fn vertex([from, to]: [f64; 2], [less, more]: [f64; 2]) -> f64 {
     let determinant = from * to * (from - to);
     let curvature = (less * to - more * from) / determinant;

@@ -1,8 +1,9 @@
 //! The best coefficients that a form of law can have, over any number of pieces.
 //!
-//! The prediction-error method of the streaming identifier, with the whole record at hand: Gauss–Newton steps on the innovations'
-//! likelihood, sensor noise from the innovations, process noise from two rival filters, from much of it down to what the data want.
-//! Terms that no state gives (memory, delay, expressions of time) are series along the smoothed motion, renewed with it.
+//! The prediction-error method of the streaming identifier, with the whole record at hand: Gauss–Newton steps on the
+//! innovations' likelihood, sensor noise from the innovations, process noise from two rival filters, from much of it
+//! down to what the data want. Terms that no state gives (memory, delay, expressions of time) are series along the
+//! smoothed motion, renewed with it.
 
 use super::descent::Descent;
 use super::form::{Fit, Form};
@@ -16,10 +17,11 @@ const STARTS: usize = 4;
 /// Factor by which the inertia has grown in a fit that forgets its excitation.
 const FORGETFUL: f64 = 30.0;
 
-/// Fits the form to the pieces; none where nothing can be made of them: no motion, or coefficients that no row determines.
+/// Fits the form to the pieces; none where nothing can be made of them: no motion, or coefficients that no row
+/// determines.
 ///
-/// The likelihood has another maximum where the inertia grows without bounds: the excitation is forgotten, and process noise drives the
-/// motion. A descent that runs there begins again from the next guess.
+/// The likelihood has another maximum where the inertia grows without bounds: the excitation is forgotten, and process
+/// noise drives the motion. A descent that runs there begins again from the next guess.
 pub fn fit(form: &Form, pieces: &[Piece]) -> Option<Fit> {
     let mut best: Option<Fit> = None;
     for begin in start::starts(form, pieces).into_iter().take(STARTS) {
@@ -38,8 +40,8 @@ pub fn fit(form: &Form, pieces: &[Piece]) -> Option<Fit> {
     best
 }
 
-/// Fits the form from coefficients and noise that are near already. The likelihood may have two maxima, one that leaves error to the law
-/// and one that leaves it all to the sensors: both are tried.
+/// Fits the form from coefficients and noise that are near already. The likelihood may have two maxima, one that leaves
+/// error to the law and one that leaves it all to the sensors: both are tried.
 pub fn refit(form: &Form, pieces: &[Piece], coefficients: &[f64], noise: Noise) -> Option<Fit> {
     let mut descent = Descent::new(form, pieces, coefficients, noise)?;
     let mut pass = descent.pass();

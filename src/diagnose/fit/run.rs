@@ -1,8 +1,9 @@
 //! One run of the filter over a piece, with forces given as series beside the law's own terms.
 //!
-//! A term whose force cannot be computed from the state alone (it remembers, it looks back) enters as a series: the line that stands for it over
-//! every interval between samples, along the smoothed motion. Its sensitivity is carried through the filter like that of any term, so that
-//! its coefficient and its information are those of the likelihood, with the noise of all samples accounted for.
+//! A term whose force cannot be computed from the state alone (it remembers, it looks back) enters as a series: the
+//! line that stands for it over every interval between samples, along the smoothed motion. Its sensitivity is carried
+//! through the filter like that of any term, so that its coefficient and its information are those of the likelihood,
+//! with the noise of all samples accounted for.
 
 use super::loop_run;
 use super::outcome::{Law, Outcome, first_state, relieved};

@@ -24,8 +24,8 @@ struct Guess {
     intensity: f64,
 }
 
-/// Guesses from rows of every length, the best first: those of positive inertia, then by the predicted error of the law's force. None
-/// without rows enough.
+/// Guesses from rows of every length, the best first: those of positive inertia, then by the predicted error of the
+/// law's force. None without rows enough.
 pub(super) fn starts(form: &Form, pieces: &[Piece]) -> Vec<Start> {
     let sensor = sensor_noise(pieces).map(|std| std * std + f64::MIN_POSITIVE);
     let motions: Vec<[Vec<f64>; 2]> = pieces.iter().map(|piece| [displacement(piece), velocity(piece)]).collect();

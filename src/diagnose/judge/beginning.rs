@@ -1,19 +1,20 @@
 //! What a hidden mass did before the record began: its free response, which the recorded motion does not give.
 //!
-//! The memory of an effect runs through the whole record from rest. A hidden mass that was moving when the record began adds
-//! e^(−ζωt) (a cos ω_d t + b sin ω_d t) in every piece, which is linear in a and b: they are fitted beside the law once, and its column is then
-//! that of the mass as it moved.
+//! The memory of an effect runs through the whole record from rest. A hidden mass that was moving when the record began
+//! adds e^(−ζωt) (a cos ω_d t + b sin ω_d t) in every piece, which is linear in a and b: they are fitted beside the law
+//! once, and its column is then that of the mass as it moved.
 
 use super::record::{Column, Record, Timing};
 use super::regression::{self, Normal};
 use super::windows::PRINCIPAL;
 use crate::law::{Effect, Term};
 
-/// Amplitude of a free response, in RMS of what the record drives the mass to, beyond which it is no hidden mass's: it moved no more before
-/// the record than in it, and one in 10⁴ Gaussian amplitudes is larger.
+/// Amplitude of a free response, in RMS of what the record drives the mass to, beyond which it is no hidden mass's: it
+/// moved no more before the record than in it, and one in 10⁴ Gaussian amplitudes is larger.
 const LARGEST: f64 = 4.3;
 
-/// The column of a hidden resonator, at that place among a law's, with what it did before the record began; none of another term.
+/// The column of a hidden resonator, at that place among a law's, with what it did before the record began; none of
+/// another term.
 pub(super) fn begun(
     record: &Record,
     (term, timing): (Term, Timing),

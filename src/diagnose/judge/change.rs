@@ -1,8 +1,10 @@
-//! Where a record may have changed its law: at the instant that leaves least when each side has coefficients of its own.
+//! Where a record may have changed its law: at the instant that leaves least when each side has coefficients of its
+//! own.
 //!
-//! Binary segmentation (Vostrikova, Soviet Mathematics Doklady 24, 1981) of the weak equations: the best cut of a stretch, then the best of
-//! either part. An effect that the law lacks leaves its share on both sides, so that it hides no change and is none. The rival of all cuts
-//! of a stretch is one law whose coefficients drift, each on a straight line over time: where it leaves less, nothing switches.
+//! Binary segmentation (Vostrikova, Soviet Mathematics Doklady 24, 1981) of the weak equations: the best cut of a
+//! stretch, then the best of either part. An effect that the law lacks leaves its share on both sides, so that it hides
+//! no change and is none. The rival of all cuts of a stretch is one law whose coefficients drift, each on a straight
+//! line over time: where it leaves less, nothing switches.
 
 use super::equation::Equation;
 use super::record::Record;
@@ -13,8 +15,8 @@ use nalgebra::{DMatrix, DVector};
 /// T₀ that a stage is long at least: a law's coefficients need some periods of motion.
 const LEAST: f64 = 5.0;
 
-/// Part of a stretch's residual energy that two laws in place of one must leave at most: a change takes a third of it or more, as an effect
-/// that is large does.
+/// Part of a stretch's residual energy that two laws in place of one must leave at most: a change takes a third of it
+/// or more, as an effect that is large does.
 const LEFT: f64 = 2.0 / 3.0;
 
 /// Sums over the equations of all windows up to each; every column once as it is and once times its window's time.
@@ -41,8 +43,8 @@ pub(in crate::diagnose) fn changes(record: &Record, equation: &Equation) -> Vec<
     cuts.into_iter().map(|cut| 0.5 * (centres[cut - 1] + centres[cut])).collect()
 }
 
-/// The instant, on the same axis, at which two laws in place of one leave least, however little that takes. None where the record is too
-/// short for two.
+/// The instant, on the same axis, at which two laws in place of one leave least, however little that takes. None where
+/// the record is too short for two.
 pub(in crate::diagnose) fn best_change(record: &Record, equation: &Equation) -> Option<f64> {
     let windows = &record.windows[PRINCIPAL];
     let centres = &windows.centres;

@@ -1,7 +1,7 @@
 //! Drift of the displacement's sensor: what it would leave of a law, and how large it is.
 //!
-//! A displacement that reads d(t) too much, d slow, leaves Σ θ_j ∂f_j/∂q d(t) of a law Σ θ_j f_j. No effect looks like that, for none knows the
-//! time. d is a polynomial in the time of a recording.
+//! A displacement that reads d(t) too much, d slow, leaves Σ θ_j ∂f_j/∂q d(t) of a law Σ θ_j f_j. No effect looks like
+//! that, for none knows the time. d is a polynomial in the time of a recording.
 
 use super::equation::{Equation, Target};
 use super::record::{Column, Record};
@@ -12,11 +12,12 @@ use crate::law::Term;
 /// Powers of the time: with six a wave as long as the record is followed to a few per cent.
 const POWERS: usize = 6;
 
-/// What the displacement of one recording reads too much: coefficients of 1, τ, τ², …, m, τ from −1 at its beginning to 1 at its end.
+/// What the displacement of one recording reads too much: coefficients of 1, τ, τ², …, m, τ from −1 at its beginning to
+/// 1 at its end.
 pub(in crate::diagnose) type Drift = [f64; POWERS];
 
-/// What each recording's displacement reads too much under a law with these coefficients, and by what factor the residual falls without
-/// it; none where nothing tells.
+/// What each recording's displacement reads too much under a law with these coefficients, and by what factor the
+/// residual falls without it; none where nothing tells.
 pub(in crate::diagnose) fn drift(
     record: &Record,
     equation: &Equation,

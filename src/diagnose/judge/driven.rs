@@ -1,8 +1,9 @@
 //! The motion that a law makes of the recorded excitation, drawn along the recorded one.
 //!
-//! A law that is right makes every reversal, stop and step of the force that its record has, where a smoothed motion has none. What it
-//! lacks is added as a force that changes slowly and is known: an observer (Luenberger, IEEE Trans. Aut. Control 16 (1971), 596) whose
-//! eigenvalues are those of one critically damped oscillator of the motion's own period.
+//! A law that is right makes every reversal, stop and step of the force that its record has, where a smoothed motion
+//! has none. What it lacks is added as a force that changes slowly and is known: an observer (Luenberger, IEEE Trans.
+//! Aut. Control 16 (1971), 596) whose eigenvalues are those of one critically damped oscillator of the motion's own
+//! period.
 
 use super::equation::delay_of;
 use super::record::{Column, Record, Timing};
@@ -11,7 +12,8 @@ use crate::diagnose::piece::Piece;
 use crate::law::{self, Dynamics, Effect, History, Hold, Samples, State, Term, Trajectory, term_series};
 use std::f64::consts::TAU;
 
-/// Steps of integration in an interval between two samples: 50 of these make a period of the fastest motion that samples show.
+/// Steps of integration in an interval between two samples: 50 of these make a period of the fastest motion that
+/// samples show.
 const STEPS: usize = 4;
 
 /// A record whose motion a law has made.
@@ -94,7 +96,8 @@ fn led(law: law::Motion, record: &Record, timing: Timing, piece: &Piece, followe
     Some(led)
 }
 
-/// The excitation behind an actuator's lag at the instants at which it acts, which then runs straight between them; without lag as recorded.
+/// The excitation behind an actuator's lag at the instants at which it acts, which then runs straight between them;
+/// without lag as recorded.
 fn acting(piece: &Piece, t: &[f64], timing: Timing) -> (Vec<f64>, Hold) {
     let force = &piece.excitation;
     let Some(lag) = Effect::lag(timing.lag) else { return (force.clone(), timing.hold) };

@@ -1,8 +1,8 @@
 //! A law as a regression: which column is the target, which ones explain it.
 //!
-//! `m q̈ + Σ θ_j f_j = F` is solved for the column that carries the most propagated noise, so that it stands alone on one side: as a rule
-//! q̈ = F/m − Σ (θ_j/m) f_j; F = m q̈ + Σ θ_j f_j where F is the output, or is the noisier. A column ∫ φ' F dt beside them takes what a
-//! little delay of the excitation would explain.
+//! `m q̈ + Σ θ_j f_j = F` is solved for the column that carries the most propagated noise, so that it stands alone on
+//! one side: as a rule q̈ = F/m − Σ (θ_j/m) f_j; F = m q̈ + Σ θ_j f_j where F is the output, or is the noisier. A
+//! column ∫ φ' F dt beside them takes what a little delay of the excitation would explain.
 
 use super::beginning;
 use super::record::{Column, Record, Timing};
@@ -36,7 +36,8 @@ pub(in crate::diagnose) struct Equation {
     pub(in crate::diagnose) tells: [bool; COUNT],
     /// Whether the force's slope is among the columns.
     takes_delay: bool,
-    /// What explains it: the force where it is not the target, the terms but the inertia where that is, the force's slope last.
+    /// What explains it: the force where it is not the target, the terms but the inertia where that is, the force's
+    /// slope last.
     pub(in crate::diagnose) left: Vec<Column>,
 }
 
@@ -136,8 +137,8 @@ impl Equation {
         if variance > 0.0 { 1.0 - mean / variance } else { 1.0 }
     }
 
-    /// How much later than the timing the excitation acted, s, and what a change of the last entry of the solution changes in it; none
-    /// without the column that takes it.
+    /// How much later than the timing the excitation acted, s, and what a change of the last entry of the solution
+    /// changes in it; none without the column that takes it.
     pub(in crate::diagnose) fn delay(&self, solution: &[f64]) -> Option<(f64, f64)> {
         let last = solution.last().filter(|_| self.takes_delay)?;
         match self.target {
@@ -146,8 +147,8 @@ impl Equation {
         }
     }
 
-    /// Coefficients of the law's terms, the last entries those of candidates, from a solution of the regression, with the matrix that takes
-    /// the solution's small changes to theirs. `inertia` is the inertia of a free motion.
+    /// Coefficients of the law's terms, the last entries those of candidates, from a solution of the regression, with
+    /// the matrix that takes the solution's small changes to theirs. `inertia` is the inertia of a free motion.
     pub(in crate::diagnose) fn coefficients(
         &self,
         solution: &[f64],
@@ -200,8 +201,8 @@ impl Equation {
     }
 }
 
-/// Whether a term has a column among those that explain: the inertia has none where it is the target, a delay or a lag none as it is in the
-/// excitation's own.
+/// Whether a term has a column among those that explain: the inertia has none where it is the target, a delay or a lag
+/// none as it is in the excitation's own.
 fn has_column(term: Term, target: Target) -> bool {
     delay_of(term).is_none() && (target == Target::Force || term != Term::Inertia)
 }

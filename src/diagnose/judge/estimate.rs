@@ -1,7 +1,7 @@
 //! Coefficients of a law with a covariance that holds whatever the error is like.
 //!
-//! The robust regression's covariance is the sandwich A⁻¹ B A⁻¹ with B summed over blocks that are longer than the residual is correlated
-//! (Liang and Zeger, Biometrika 73 (1986), 13).
+//! The robust regression's covariance is the sandwich A⁻¹ B A⁻¹ with B summed over blocks that are longer than the
+//! residual is correlated (Liang and Zeger, Biometrika 73 (1986), 13).
 
 use super::equation::Equation;
 use super::record::Record;
@@ -19,11 +19,13 @@ pub(in crate::diagnose) struct Estimate {
     pub(in crate::diagnose) std: Vec<f64>,
     /// The regression's solution, by window length.
     pub(in crate::diagnose) solutions: [Vec<f64>; COUNT],
-    /// How much later than the equation has it the excitation acted, s, and its std; none without the column that takes it.
+    /// How much later than the equation has it the excitation acted, s, and its std; none without the column that takes
+    /// it.
     pub(in crate::diagnose) delay: Option<[f64; 2]>,
 }
 
-/// Estimates from the windows of the principal length. `inertia` is that of a free motion. None where the record has too few equations.
+/// Estimates from the windows of the principal length. `inertia` is that of a free motion. None where the record has
+/// too few equations.
 pub(in crate::diagnose) fn estimate(
     record: &Record,
     equation: &Equation,

@@ -17,9 +17,9 @@ const FAR: f64 = 0.5;
 /// Times that noise is drawn.
 const DRAWS: u64 = 2;
 
-/// A record whose true motion is known: the smoothed one, read without noise, and read by the sensors again and again (a parametric
-/// bootstrap: Efron and Tibshirani, *An Introduction to the Bootstrap*, 1993, sect. 6.5). What smoothing takes of a motion, it takes of
-/// this one too.
+/// A record whose true motion is known: the smoothed one, read without noise, and read by the sensors again and again
+/// (a parametric bootstrap: Efron and Tibshirani, *An Introduction to the Bootstrap*, 1993, sect. 6.5). What smoothing
+/// takes of a motion, it takes of this one too.
 #[derive(Clone, Debug)]
 pub(in crate::diagnose) struct Bootstrap<T> {
     /// Without noise.
@@ -81,16 +81,16 @@ pub(in crate::diagnose) struct Trial<'a> {
 
 /// What the sensors alone would leave of a law, by window length, were it right.
 ///
-/// No sensor leaves more than is left: a floor above an error is that error. Where it is far above, the noise was taken for louder than it is
-/// (a coarsely sampled motion looks so), and all of it is lowered. NaN where there is no error.
+/// No sensor leaves more than is left: a floor above an error is that error. Where it is far above, the noise was taken
+/// for louder than it is (a coarsely sampled motion looks so), and all of it is lowered. NaN where there is no error.
 pub(in crate::diagnose) fn floor(trial: &Trial, bootstrap: &Bootstrap<Record>) -> [f64; COUNT] {
     let Bootstrap { truth, draws } = bootstrap.map(|record| trial.on(record));
     let truth = trial.residuals(&truth);
     trial.lowered(draws.iter().map(|draw| less(trial.residuals(draw), &truth)).collect(), [0.0; COUNT])
 }
 
-/// The same where the law itself makes the motion: its reversals, stops and steps, which no smoother follows, leave their share too. `force` is
-/// the std of the excitation's readings. None where the law does not follow the record.
+/// The same where the law itself makes the motion: its reversals, stops and steps, which no smoother follows, leave
+/// their share too. `force` is the std of the excitation's readings. None where the law does not follow the record.
 pub(in crate::diagnose) fn floor_of_law(trial: &Trial, record: &Record, force: f64) -> Option<[f64; COUNT]> {
     let equation = trial.equation;
     let late = equation.delay(&trial.solutions[PRINCIPAL]).map_or(0.0, |(late, _)| late);
@@ -137,7 +137,8 @@ impl Trial<'_> {
         })
     }
 
-    /// What is left of residuals, RMS ÷ std of the target: what a fit to the other parts makes of them belongs to the error of a right law.
+    /// What is left of residuals, RMS ÷ std of the target: what a fit to the other parts makes of them belongs to the
+    /// error of a right law.
     fn left(&self, draws: &[Column]) -> [f64; COUNT] {
         let mut squares = [0.0; COUNT];
         for draw in draws {

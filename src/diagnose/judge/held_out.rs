@@ -1,7 +1,8 @@
 //! Errors on what a law has not been fitted to.
 //!
-//! The record is cut into five contiguous parts; the law is fitted to the windows of four, those nearer than half a window to the fifth left
-//! out, and judged by the windows of the fifth. Inner parameters are chosen by the training windows alone.
+//! The record is cut into five contiguous parts; the law is fitted to the windows of four, those nearer than half a
+//! window to the fifth left out, and judged by the windows of the fifth. Inner parameters are chosen by the training
+//! windows alone.
 
 use super::equation::Equation;
 use super::record::{Column, Record};
@@ -129,7 +130,8 @@ impl HeldOut {
     }
 }
 
-/// Sums that every candidate beside a law shares, so that one more column costs little: the weights are those of the law without it.
+/// Sums that every candidate beside a law shares, so that one more column costs little: the weights are those of the
+/// law without it.
 pub(in crate::diagnose) struct Screen<'a> {
     folds: &'a Folds,
     equation: &'a Equation,

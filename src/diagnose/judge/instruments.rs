@@ -1,8 +1,9 @@
 //! Whether noise in the readings biases the coefficients: even and odd readings as each other's instruments.
 //!
-//! Least squares with noise in its columns errs by the square of noise ÷ signal (errors in variables). Columns from the odd readings hold the
-//! same motion and other noise, so that Zᵀ(y − X θ) = 0 with X and y of the even ones, Z of the odd ones, has no such bias (Söderström and
-//! Stoica, Instrumental Variable Methods for System Identification, Springer 1983, ch. 3).
+//! Least squares with noise in its columns errs by the square of noise ÷ signal (errors in variables). Columns from the
+//! odd readings hold the same motion and other noise, so that Zᵀ(y − X θ) = 0 with X and y of the even ones, Z of the
+//! odd ones, has no such bias (Söderström and Stoica, Instrumental Variable Methods for System Identification, Springer
+//! 1983, ch. 3).
 
 use super::equation::Equation;
 use super::record::Record;
@@ -20,8 +21,8 @@ pub(in crate::diagnose) struct Instrumented {
     pub(in crate::diagnose) std: Vec<f64>,
 }
 
-/// The law's equation solved with instruments: `halves` are the same law's on the even and on the odd readings. None where they do not
-/// determine it.
+/// The law's equation solved with instruments: `halves` are the same law's on the even and on the odd readings. None
+/// where they do not determine it.
 pub(in crate::diagnose) fn instrumented(
     record: &Record,
     halves: &[Equation; 2],

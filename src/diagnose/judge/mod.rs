@@ -1,8 +1,9 @@
 //! The one judge: how well a law predicts what it has not seen, in weak form, whatever the error is like.
 //!
-//! A law is a set of weak equations over windows of three lengths ([`windows`], [`record`]), solved for its noisiest column
-//! ([`equation`]) by a robust regression ([`regression`]). Its error is that of equations it was not fitted to ([`held_out`]); beside it
-//! stand what the sensors alone would leave ([`floor`]) and how likely a gain is by chance ([`significance`]).
+//! A law is a set of weak equations over windows of three lengths ([`windows`], [`record`]), solved for its noisiest
+//! column ([`equation`]) by a robust regression ([`regression`]). Its error is that of equations it was not fitted to
+//! ([`held_out`]); beside it stand what the sensors alone would leave ([`floor`]) and how likely a gain is by chance
+//! ([`significance`]).
 
 mod beginning;
 mod change;

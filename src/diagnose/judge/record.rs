@@ -35,7 +35,8 @@ pub(in crate::diagnose) struct Record {
     pub(in crate::diagnose) duration: f64,
     /// Whether there is an excitation.
     pub(in crate::diagnose) forced: bool,
-    /// Whether F is the output: an inertia is then a term that explains, in which the readings' noise would make its coefficient too small.
+    /// Whether F is the output: an inertia is then a term that explains, in which the readings' noise would make its
+    /// coefficient too small.
     pub(in crate::diagnose) is_output: bool,
     /// The user's effects.
     pub(in crate::diagnose) expressions: Vec<Expression>,
@@ -98,8 +99,8 @@ impl Record {
         Some(Record { is_output: self.is_output, ..record })
     }
 
-    /// The same record as every second reading of each channel shows it: the even ones, and the odd ones. What noise the two have is not
-    /// the same.
+    /// The same record as every second reading of each channel shows it: the even ones, and the odd ones. What noise
+    /// the two have is not the same.
     pub(in crate::diagnose) fn halves(&self) -> Option<[Record; 2]> {
         let half = |first: usize| self.moved(self.motions.iter().map(|motion| motion.half(first)).collect());
         Some([half(0)?, half(1)?])
@@ -115,8 +116,8 @@ impl Record {
         self.windows.iter().zip(column).for_each(|(windows, rows)| windows.add(order, cells, factor, rows));
     }
 
-    /// ∫ φ q̈ dt = −∫ φ' q̇ dt = ∫ φ'' q dt of the readings: of q̇ where it is measured, else of q. Under a force that is held q̇ is a straight
-    /// line between readings, which no smoothed motion is.
+    /// ∫ φ q̈ dt = −∫ φ' q̇ dt = ∫ φ'' q dt of the readings: of q̇ where it is measured, else of q. Under a force that
+    /// is held q̇ is a straight line between readings, which no smoothed motion is.
     pub(in crate::diagnose) fn measured_inertia(&self, hold: Hold) -> Column {
         let reads = |(index, number, _): &(usize, usize, Nodes)| self.motions[*index].tracks[*number].read[1];
         let is_straight = |piece: &(usize, usize, Nodes)| hold == Hold::Zero && reads(piece);
@@ -204,8 +205,8 @@ impl Record {
         column
     }
 
-    /// What a law of these terms and coefficients gains by a displacement of τ to that power in one recording, τ from −1 at its beginning to 1
-    /// at its end: Σ θ ∂f ÷ ∂q τ^power. Terms with a memory gain nothing.
+    /// What a law of these terms and coefficients gains by a displacement of τ to that power in one recording, τ from
+    /// −1 at its beginning to 1 at its end: Σ θ ∂f ÷ ∂q τ^power. Terms with a memory gain nothing.
     pub(super) fn leaning(&self, law: &[(Term, f64)], motion: usize, power: usize) -> Column {
         let own = |(index, _, nodes): &(usize, usize, Nodes)| {
             if *index != motion {
@@ -250,8 +251,8 @@ impl Record {
         series
     }
 
-    /// Std of the noise of the excitation's readings: what it is rounded to where it drives the motion, for a drive may be as rough as it
-    /// likes; where it is the motion's answer, also what its differences show.
+    /// Std of the noise of the excitation's readings: what it is rounded to where it drives the motion, for a drive may
+    /// be as rough as it likes; where it is the motion's answer, also what its differences show.
     pub(in crate::diagnose) fn force_noise(&self, is_output: bool) -> f64 {
         let as_position = |motion: &Motion| {
             let pieces = motion.pieces.iter().map(|piece| {

@@ -1,9 +1,10 @@
-//! Huber's regression by reweighting (Huber, Robust Statistics, Wiley 1981, ch. 7): a bad stretch of the record pulls no harder than a
-//! good one.
+//! Huber's regression by reweighting (Huber, Robust Statistics, Wiley 1981, ch. 7): a bad stretch of the record pulls
+//! no harder than a good one.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Residual ÷ robust std beyond which an equation's pull stays: 95 % of the efficiency of least squares under Gaussian noise.
+/// Residual ÷ robust std beyond which an equation's pull stays: 95 % of the efficiency of least squares under Gaussian
+/// noise.
 const THRESHOLD: f64 = 1.345;
 
 /// Median of |x| ÷ std of Gaussian x.
@@ -88,8 +89,8 @@ pub(super) fn huber(residuals: &[f64], counted: &[f64]) -> Vec<f64> {
     pairs().map(|(left, counted)| counted * (THRESHOLD * scale / left.abs()).min(1.0)).collect()
 }
 
-/// A robust solution and the weights that it ends with; `counted` is 1 for an equation that is used and 0 for one that is not. None with
-/// fewer equations than twice the unknowns.
+/// A robust solution and the weights that it ends with; `counted` is 1 for an equation that is used and 0 for one that
+/// is not. None with fewer equations than twice the unknowns.
 pub(super) fn fit(columns: &[&[f64]], target: &[f64], counted: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
     let used = counted.iter().filter(|counted| **counted > 0.0).count();
     if used < 2 * columns.len() + 2 {

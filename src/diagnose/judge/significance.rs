@@ -1,9 +1,10 @@
 //! Whether an improvement could be chance, whatever the error is like.
 //!
-//! The record is cut into blocks of at least one correlation length of the residual. Were an effect not there, its gain in each block would
-//! as likely have the other sign: random signs over the blocks, the same for all candidates, tell how large the largest total gain of any
-//! candidate would be by chance (a randomisation test: Fisher, The Design of Experiments, 1935, sect. 21; the maximum over candidates:
-//! Westfall and Young, Resampling-Based Multiple Testing, Wiley 1993).
+//! The record is cut into blocks of at least one correlation length of the residual. Were an effect not there, its gain
+//! in each block would as likely have the other sign: random signs over the blocks, the same for all candidates, tell
+//! how large the largest total gain of any candidate would be by chance (a randomisation test: Fisher, The Design of
+//! Experiments, 1935, sect. 21; the maximum over candidates: Westfall and Young, Resampling-Based Multiple Testing,
+//! Wiley 1993).
 
 use super::held_out::HeldOut;
 use super::record::Record;
@@ -48,8 +49,9 @@ impl Blocks {
         self.count.unwrap_or(BLOCKS[BLOCKS.len() - 1])
     }
 
-    /// ½ ln(loss before ÷ loss after) in every block, the mean over window lengths and their test functions: each function sees a band of
-    /// frequencies, and where the error is small a little less of it says as much as a lot less where it is large.
+    /// ½ ln(loss before ÷ loss after) in every block, the mean over window lengths and their test functions: each
+    /// function sees a band of frequencies, and where the error is small a little less of it says as much as a lot less
+    /// where it is large.
     pub(in crate::diagnose) fn gains(&self, record: &Record, before: &HeldOut, after: &HeldOut) -> Vec<f64> {
         let mut gains = vec![0.0; self.len()];
         for (which, windows) in record.windows.iter().enumerate() {
@@ -74,7 +76,8 @@ impl Blocks {
         losses
     }
 
-    /// Probability of each candidate's total gain by chance, all of them having been tried. None where there are too few blocks.
+    /// Probability of each candidate's total gain by chance, all of them having been tried. None where there are too
+    /// few blocks.
     pub(in crate::diagnose) fn p_values(&self, gains: &[Vec<f64>]) -> Option<Vec<f64>> {
         let count = self.count?;
         let mut random = ChaCha8Rng::seed_from_u64(count as u64);
@@ -95,9 +98,9 @@ impl Blocks {
     }
 }
 
-/// ln(before ÷ after) of every block's loss, which is its own and the usual one's mean: what a few readings of slow motion say of the error's
-/// size is little, and one bad stretch does not decide either (the log loss of a Student distribution, whose variance has the record's as its
-/// prior: Gelman et al., Bayesian Data Analysis, 2013, sect. 2.6).
+/// ln(before ÷ after) of every block's loss, which is its own and the usual one's mean: what a few readings of slow
+/// motion say of the error's size is little, and one bad stretch does not decide either (the log loss of a Student
+/// distribution, whose variance has the record's as its prior: Gelman et al., Bayesian Data Analysis, 2013, sect. 2.6).
 fn log_ratios(before: &[f64], after: &[f64]) -> Vec<f64> {
     let usual = after.iter().sum::<f64>() / after.len() as f64;
     let ratio = |(before, after): (&f64, &f64)| ((before + usual) / (after + usual)).ln();

@@ -1,7 +1,8 @@
 //! Test functions over windows of 0.1, 0.3 and 1 T₀.
 //!
-//! A window carries (1 − s²)⁴ · {1, cos kπs, sin kπs}, −1 < s < 1, with up to four cycles per T₀, and advances by an eighth of its length.
-//! φ and its first three derivatives vanish at both ends, so that derivatives of q may move to it.
+//! A window carries (1 − s²)⁴ · {1, cos kπs, sin kπs}, −1 < s < 1, with up to four cycles per T₀, and advances by an
+//! eighth of its length. φ and its first three derivatives vanish at both ends, so that derivatives of q may move to
+//! it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -23,7 +24,8 @@ const CYCLES: [usize; COUNT] = [0, 1, 4];
 /// By which part of its length a window advances.
 const ADVANCE: usize = 8;
 
-/// Windows of one length, at most: beyond them they advance further. Their equations hardly differ from those between them.
+/// Windows of one length, at most: beyond them they advance further. Their equations hardly differ from those between
+/// them.
 const MOST: usize = 1500;
 
 /// Length of a cell, s.
@@ -92,8 +94,8 @@ impl Windows {
     }
 }
 
-/// φ, φ' and φ'' in `size` cells, each by its mean over the cell and its rise. φ is a straight line in every cell, so that φ' is what it has
-/// there and ∫ φ q̈ dt = −∫ φ' q̇ dt exactly, however rough q̈ is.
+/// φ, φ' and φ'' in `size` cells, each by its mean over the cell and its rise. φ is a straight line in every cell, so
+/// that φ' is what it has there and ∫ φ q̈ dt = −∫ φ' q̇ dt exactly, however rough q̈ is.
 fn tabulated(size: usize, length: f64, cycles: f64, phase: f64) -> [Vec<[f64; 2]>; 3] {
     let at = |edge: usize| test_function(2.0 * edge as f64 / size as f64 - 1.0, cycles, phase);
     let cell = length / size as f64;

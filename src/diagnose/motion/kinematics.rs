@@ -1,8 +1,9 @@
 //! What the readings of q̇ are of the motion that q shows: how late, how large, and whether a measurement of their own.
 //!
-//! q̇ read at t is s ẋ(t − τ) + b: its regression on the smoothed ẋ(t − τ), ẍ(t − τ) and 1 gives s, τ and b. What smoothing takes of the
-//! motion it must take of q̇ too, else s comes out too large: the integral of q̇ goes through the same smoother as q. A q̇ that is computed
-//! from q, by differences and whatever filter, has the noise of q in it: what is left of q̇ is then a linear function of what is left of q.
+//! q̇ read at t is s ẋ(t − τ) + b: its regression on the smoothed ẋ(t − τ), ẍ(t − τ) and 1 gives s, τ and b. What
+//! smoothing takes of the motion it must take of q̇ too, else s comes out too large: the integral of q̇ goes through
+//! the same smoother as q. A q̇ that is computed from q, by differences and whatever filter, has the noise of q in it:
+//! what is left of q̇ is then a linear function of what is left of q.
 
 use super::spline::{Sensors, Spline};
 use super::track::Track;

@@ -1,7 +1,7 @@
 //! The motion that recordings show, their sensors, and how these keep time.
 //!
-//! Everything is estimated from the recording alone, before any law: the sensors' noise ([`noise`]), how late and how large q̇ is
-//! ([`kinematics`]), and the motion itself ([`spline`]), put on a uniform grid ([`nodes`]).
+//! Everything is estimated from the recording alone, before any law: the sensors' noise ([`noise`]), how late and how
+//! large q̇ is ([`kinematics`]), and the motion itself ([`spline`]), put on a uniform grid ([`nodes`]).
 
 mod kinematics;
 mod nodes;

@@ -1,6 +1,7 @@
 //! The motion and the excitation of a piece on a uniform grid, whatever the instants of its readings.
 //!
-//! Nodes are as close as the readings or closer; several make a cell, over which everything is summed before it meets a test function.
+//! Nodes are as close as the readings or closer; several make a cell, over which everything is summed before it meets a
+//! test function.
 
 use super::smoothed::Motion;
 use super::track::{UNREAD, readings};
@@ -81,7 +82,8 @@ impl Nodes {
         edges.map(mean).collect()
     }
 
-    /// Integrals over the cells, and their first moments about the middles, in cells: the test functions are straight lines over a cell.
+    /// Integrals over the cells, and their first moments about the middles, in cells: the test functions are straight
+    /// lines over a cell.
     pub(in crate::diagnose) fn integrals(&self, values: &[f64]) -> Vec<[f64; 2]> {
         let count = self.per_cell as f64;
         let sum = |values: &[f64]| {
@@ -92,8 +94,9 @@ impl Nodes {
         values.chunks_exact(self.per_cell).map(sum).collect()
     }
 
-    /// What the readings of a channel have beyond the smoothed motion, a straight line from reading to reading, integrated over the cells: with it
-    /// the smoothed motion is the measured one again, without what smoothing may take from it.
+    /// What the readings of a channel have beyond the smoothed motion, a straight line from reading to reading,
+    /// integrated over the cells: with it the smoothed motion is the measured one again, without what smoothing may
+    /// take from it.
     pub(in crate::diagnose) fn remainder(&self, motion: &Motion, number: usize, channel: usize) -> Vec<[f64; 2]> {
         let sensors = &motion.sensors;
         let own = |state: &[f64; 4]| sensors.reading(channel, state);
@@ -105,7 +108,8 @@ impl Nodes {
         self.integrals(&self.followed(motion, number, 1, |_| 0.0))
     }
 
-    /// Readings less `than` of the smoothed state, at the nodes, on straight lines from reading to reading that is taken.
+    /// Readings less `than` of the smoothed state, at the nodes, on straight lines from reading to reading that is
+    /// taken.
     fn followed(&self, motion: &Motion, number: usize, channel: usize, than: impl Fn(&[f64; 4]) -> f64) -> Vec<f64> {
         let (piece, track, sensors) = (&motion.pieces[number], &motion.tracks[number], &motion.sensors);
         let Some(values) = readings(piece, track.read)[channel] else { return vec![0.0; self.t.len()] };
@@ -199,7 +203,8 @@ impl Impulse {
     }
 }
 
-/// Position, velocity and acceleration within an interval of length h, a time x after its start: the quintic through both ends.
+/// Position, velocity and acceleration within an interval of length h, a time x after its start: the quintic through
+/// both ends.
 fn between([from, to]: [&[f64; 4]; 2], h: f64, x: f64) -> [f64; 3] {
     let s = x / h;
     let [p, v, a] = [from[0], from[1] * h, from[2] * h * h];

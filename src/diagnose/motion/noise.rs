@@ -1,8 +1,9 @@
 //! The sensors' noise, from the recording itself.
 //!
-//! White noise of variance σ² has d-th differences of variance σ² (2d over d); a motion sampled well leaves almost none. What the
-//! excitation does between samples does not vanish, so the differences of the velocity are taken beside those of Σ F dt, those of the
-//! displacement beside those of ΣΣ F dt². A reading that is rounded to steps of δ errs by δ²/12 at least.
+//! White noise of variance σ² has d-th differences of variance σ² (2d over d); a motion sampled well leaves almost
+//! none. What the excitation does between samples does not vanish, so the differences of the velocity are taken beside
+//! those of Σ F dt, those of the displacement beside those of ΣΣ F dt². A reading that is rounded to steps of δ errs by
+//! δ²/12 at least.
 
 use crate::diagnose::piece::Piece;
 

@@ -13,10 +13,12 @@ use std::f64::consts::{PI, TAU};
 /// Ratio between the cutoffs that are tried.
 const RATIO: f64 = 1.5;
 
-/// Factor by which the likeliest cutoff is raised: one that is too low biases coefficients, one that is too high lets a little more noise in.
+/// Factor by which the likeliest cutoff is raised: one that is too low biases coefficients, one that is too high lets a
+/// little more noise in.
 const MARGIN: f64 = 1.5;
 
-/// −2 ln likelihood by which a q̇ that comes late must be likelier than a punctual one, as most are: chance gives it once in 10⁴.
+/// −2 ln likelihood by which a q̇ that comes late must be likelier than a punctual one, as most are: chance gives it
+/// once in 10⁴.
 const LATE: f64 = 15.0;
 
 /// Samples from which the cutoff is chosen, at most.
@@ -25,7 +27,8 @@ const LOOKED_AT: usize = 4000;
 /// Highest cutoff relative to half the sampling frequency.
 const NYQUIST: f64 = 0.9;
 
-/// Angular frequency up to which the motion counts for its period, in its own: what the shortest window of the judge resolves.
+/// Angular frequency up to which the motion counts for its period, in its own: what the shortest window of the judge
+/// resolves.
 const RESOLVED: f64 = 10.0;
 
 /// Smallest noise std ÷ range of a channel: rounding of the numbers in a file.
@@ -124,8 +127,8 @@ impl Motion {
     }
 }
 
-/// T₀ = 2π rms q̇ ÷ rms q̈, s, of the motion followed up to ten times its own frequency: what lies beyond is no motion that a window of
-/// the judge could see. Not finite where nothing moves.
+/// T₀ = 2π rms q̇ ÷ rms q̈, s, of the motion followed up to ten times its own frequency: what lies beyond is no motion
+/// that a window of the judge could see. Not finite where nothing moves.
 pub(in crate::diagnose) fn period(motions: &[Motion]) -> f64 {
     let highest = motions.iter().map(|motion| motion.sensors.cutoff).fold(0.0, f64::max);
     let (mut cutoff, mut period) = (highest, f64::NAN);

@@ -1,8 +1,9 @@
 //! The motion between and behind the readings: the posterior mean of a displacement whose fourth derivative is white.
 //!
-//! This is the smoothing spline of order 4 (Wahba, Spline Models for Observational Data, SIAM 1990, ch. 1; Kohn and Ansley, Biometrika 74
-//! (1987), 49), computed by a Kalman filter of (x, ẋ, ẍ, x⃛) and a smoother of Bryson and Frazier's kind, so that instants may be anywhere and
-//! either reading of an instant may be absent. A velocity that comes late by τ is read as ẋ − τ ẍ + τ²/2 x⃛.
+//! This is the smoothing spline of order 4 (Wahba, Spline Models for Observational Data, SIAM 1990, ch. 1; Kohn and
+//! Ansley, Biometrika 74 (1987), 49), computed by a Kalman filter of (x, ẋ, ẍ, x⃛) and a smoother of Bryson and
+//! Frazier's kind, so that instants may be anywhere and either reading of an instant may be absent. A velocity that
+//! comes late by τ is read as ẋ − τ ẍ + τ²/2 x⃛.
 
 type Vector = [f64; 4];
 type Matrix = [Vector; 4];
@@ -67,8 +68,8 @@ fn row(channel: usize, lag: f64) -> Vector {
 }
 
 impl Spline {
-    /// The gains at instants `t`, s, at least two; `read` says which channels are read, `doubt` by what factor the variance of a reading
-    /// of each channel is larger than usual (empty: none is).
+    /// The gains at instants `t`, s, at least two; `read` says which channels are read, `doubt` by what factor the
+    /// variance of a reading of each channel is larger than usual (empty: none is).
     pub(crate) fn new(t: &[f64], sensors: Sensors, read: [bool; 2], doubt: [&[f64]; 2]) -> Spline {
         let omega = sensors.cutoff;
         let typical = (t[t.len() - 1] - t[0]) / (t.len() - 1) as f64;
@@ -100,8 +101,8 @@ impl Spline {
         spline
     }
 
-    /// −2 ln likelihood of the readings, a constant apart, under the noise level up to the given one that suits them best: differences of
-    /// the readings hold all of the noise and some of the motion.
+    /// −2 ln likelihood of the readings, a constant apart, under the noise level up to the given one that suits them
+    /// best: differences of the readings hold all of the noise and some of the motion.
     pub(crate) fn deviance(&self, readings: [Option<&[f64]>; 2]) -> f64 {
         let (_, innovations) = self.filter(readings);
         let steps = innovations.iter().zip(&self.steps);

@@ -1,6 +1,8 @@
-//! What is to be said of a recording before it is believed: its clock, its sensors one by one, and whether they fit together.
+//! What is to be said of a recording before it is believed: its clock, its sensors one by one, and whether they fit
+//! together.
 //!
-//! No law is needed for it, and nothing is changed: a remark says what was seen, how much of it, and what it does to a law.
+//! No law is needed for it, and nothing is changed: a remark says what was seen, how much of it, and what it does to a
+//! law.
 
 mod readings;
 mod remark;
@@ -45,7 +47,8 @@ fn looked_at(recording: &Recording) -> Option<Recording> {
     recording.section(start..start + length).ok()
 }
 
-/// The recording with the wild readings of its motion on the line between their neighbours: they have a remark of their own.
+/// The recording with the wild readings of its motion on the line between their neighbours: they have a remark of their
+/// own.
 fn tamed(part: &Recording) -> Option<Recording> {
     let t = part.t();
     let calm = |channel: &str| {

@@ -5,8 +5,8 @@ use crate::identify::Recording;
 use crate::law::numerals::{digits, seconds};
 use std::ops::Range;
 
-/// Robust std by which a reading stands off the middle of its neighbours before it is wild: noise alone never does, and the neighbours'
-/// own differences must show its mirror image.
+/// Robust std by which a reading stands off the middle of its neighbours before it is wild: noise alone never does, and
+/// the neighbours' own differences must show its mirror image.
 const WILD: f64 = 12.0;
 
 /// Least share of a wild reading's height that its neighbours' differences show, of one half, and the most.
@@ -21,8 +21,8 @@ const REPEATED: f64 = 0.1;
 /// Evidence in nats that equal readings are no chance: one in 10¹³.
 const STUCK: f64 = 30.0;
 
-/// Readings at an end of the range ÷ those of the nearest other value or 2 % of the range. A turning point has at most 2.4 times as many,
-/// since the time that a parabola spends within k steps of its top goes as √k.
+/// Readings at an end of the range ÷ those of the nearest other value or 2 % of the range. A turning point has at most
+/// 2.4 times as many, since the time that a parabola spends within k steps of its top goes as √k.
 const CLIPPED: f64 = 5.0;
 
 /// Fewest stretches at an end, and fewest readings of one.
@@ -63,8 +63,9 @@ fn bend(t: &[f64], values: &[f64], at: usize) -> f64 {
     values[at] - (1.0 - part) * values[at - 1] - part * values[at + 1]
 }
 
-/// Readings that stand alone: beside each spike its neighbours' bends show its mirror images. What is no motion may be a blow, as an
-/// excitation may, and is wild only where it leaves the range of all other readings by more than that range.
+/// Readings that stand alone: beside each spike its neighbours' bends show its mirror images. What is no motion may be
+/// a blow, as an excitation may, and is wild only where it leaves the range of all other readings by more than that
+/// range.
 pub(super) fn wild(t: &[f64], values: &[f64], moves: bool) -> Vec<usize> {
     let bend = |at: usize| bend(t, values, at);
     let mut sizes: Vec<f64> = (1..values.len() - 1).map(|at| bend(at).abs()).collect();
@@ -111,8 +112,8 @@ fn runs(values: &[f64]) -> impl Iterator<Item = (usize, usize)> {
     starts.zip(ends)
 }
 
-/// The longest run of equal readings, where chance does not explain it and another channel goes on meanwhile as it does elsewhere. At an
-/// end of the range a sensor is clipped, not stuck.
+/// The longest run of equal readings, where chance does not explain it and another channel goes on meanwhile as it does
+/// elsewhere. At an end of the range a sensor is clipped, not stuck.
 pub(super) fn stuck(values: &[f64], others: &[&[f64]]) -> Option<Range<usize>> {
     let (start, end) = runs(values).max_by_key(|(start, end)| end - start)?;
     let length = end - start;

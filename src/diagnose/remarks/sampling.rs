@@ -4,14 +4,15 @@ use super::remark::Remark;
 use crate::identify::Recording;
 use crate::law::numerals::{digits, seconds};
 
-/// Share of the usual distance of two samples by which distances differ before a clock is called uneven: times that are rounded to a
-/// tenth of it stay below.
+/// Share of the usual distance of two samples by which distances differ before a clock is called uneven: times that are
+/// rounded to a tenth of it stay below.
 const UNEVEN: f64 = 0.1;
 
 /// Distance of two samples in usual ones from which one at least is lost: half a sample beyond the usual.
 const LOST: f64 = 1.5;
 
-/// Fewest samples of a natural period that weak windows of a tenth of it still resolve, and that show how fast the motion is.
+/// Fewest samples of a natural period that weak windows of a tenth of it still resolve, and that show how fast the
+/// motion is.
 pub(super) const FEW: f64 = 10.0;
 
 /// Remarks on the times.
@@ -21,7 +22,8 @@ pub(super) fn remarks(recording: &Recording, period: Option<f64>) -> Vec<Remark>
     let mut said = Vec::new();
     let lost: Vec<(f64, f64)> = distances().filter(|(_, distance)| *distance > LOST * usual).collect();
     let missing: f64 = lost.iter().map(|(_, distance)| (distance / usual).round() - 1.0).sum();
-    // What is lost is missing in the count over the whole record; after a reading that only came late the next one comes the sooner.
+    // What is lost is missing in the count over the whole record; after a reading that only came late the next one
+    // comes the sooner.
     let t = recording.t();
     let in_all = (t[t.len() - 1] - t[0]) / usual + 1.0 - t.len() as f64;
     if let Some((first, _)) = lost.first().filter(|_| missing >= 1.0 && in_all > 0.5 * missing) {

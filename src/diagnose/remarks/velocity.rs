@@ -29,7 +29,8 @@ const NOISY: f64 = 0.3;
 /// Part of q's std that q̇'s integral must run away from q over the record to be said.
 const AWAY: f64 = 0.1;
 
-/// Share by which the square of a motion's frequency, one number for all of its motion, may miss what relates q̇ to an acceleration's slope.
+/// Share by which the square of a motion's frequency, one number for all of its motion, may miss what relates q̇ to an
+/// acceleration's slope.
 const NEAR: f64 = 0.3;
 
 /// A recording beside which q̇ is looked at.

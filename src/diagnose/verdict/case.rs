@@ -23,7 +23,8 @@ const SERIES: f64 = 0.05;
 /// Delay, in sample times, that is not worth another look.
 const SMALL: f64 = 0.02;
 
-/// Noise ÷ signal of the inertia term up to which it may be a regressor: the bias of 1e-4 that it brings is below any other.
+/// Noise ÷ signal of the inertia term up to which it may be a regressor: the bias of 1e-4 that it brings is below any
+/// other.
 const NEGLIGIBLE: f64 = 0.01;
 
 /// Largest delay of the excitation that is sought, in T₀: beyond it a periodic motion repeats itself.
@@ -58,7 +59,8 @@ pub(in crate::diagnose) struct Standing {
 }
 
 impl Case {
-    /// Of recordings, for laws of about these terms; `inertia` is that of a free motion. None where nothing moves or all is too short.
+    /// Of recordings, for laws of about these terms; `inertia` is that of a free motion. None where nothing moves or
+    /// all is too short.
     pub(in crate::diagnose) fn new(
         recordings: &[&Recording],
         terms: &[Term],
@@ -81,21 +83,21 @@ impl Case {
         Some(case)
     }
 
-    /// The inertia term where its propagated noise is worth the word: as a regressor it would bias its own coefficient by the square of
-    /// its noise ÷ signal. Else the force, for there are forces that no term has.
+    /// The inertia term where its propagated noise is worth the word: as a regressor it would bias its own coefficient
+    /// by the square of its noise ÷ signal. Else the force, for there are forces that no term has.
     fn noisier(&self) -> Target {
         let noise = noise_share(&self.bootstrap);
         if noise > NEGLIGIBLE { Target::Inertia } else { Target::Force }
     }
 
-    /// A law of these terms with the hold that suits it, a little delay of the excitation refitted beside it. None where the record is too
-    /// short for it.
+    /// A law of these terms with the hold that suits it, a little delay of the excitation refitted beside it. None
+    /// where the record is too short for it.
     pub(in crate::diagnose) fn stand(&self, terms: &[Term]) -> Option<Standing> {
         self.at(terms, self.timed(terms))
     }
 
-    /// The hold that suits a law best, each with the little delay that suits it: a wrong hold and half a sample's delay look alike, so that of
-    /// equally good ones that with the least delay is taken.
+    /// The hold that suits a law best, each with the little delay that suits it: a wrong hold and half a sample's delay
+    /// look alike, so that of equally good ones that with the least delay is taken.
     fn timed(&self, terms: &[Term]) -> Timing {
         let all: Vec<(f64, f64, Timing)> = self.holds().into_iter().map(|hold| self.held(terms, hold)).collect();
         let least = all.iter().map(|(error, ..)| *error).fold(f64::INFINITY, f64::min);
@@ -104,7 +106,8 @@ impl Case {
         best.map_or_else(|| own_timing(terms, Hold::Linear), |(_, _, timing)| timing)
     }
 
-    /// The error under a hold with the delay that suits it, how far that is from the law's own, s, and when the excitation then acted.
+    /// The error under a hold with the delay that suits it, how far that is from the law's own, s, and when the
+    /// excitation then acted.
     fn held(&self, terms: &[Term], hold: Hold) -> (f64, f64, Timing) {
         let own = own_timing(terms, hold);
         let timing = self.centred(terms, own);
@@ -154,8 +157,8 @@ impl Case {
         if better { Timing { delay, ..timing } } else { timing }
     }
 
-    /// The law with the delay of the excitation, up to three tenths of T₀, under which it explains most; none where its inertia would be
-    /// negative: half a period of delay turns a law round.
+    /// The law with the delay of the excitation, up to three tenths of T₀, under which it explains most; none where its
+    /// inertia would be negative: half a period of delay turns a law round.
     pub(in crate::diagnose) fn delayed(&self, terms: &[Term]) -> Option<f64> {
         let hold = self.timed(terms).hold;
         let at = |delay: f64| Equation::new(&self.record, terms, self.target, Timing { hold, delay, lag: 0.0 }, true);
@@ -173,7 +176,8 @@ impl Case {
         self.is_forward(at(refined)).then_some(refined)
     }
 
-    /// The time constant of an actuator's lag, about as late as a delay of that many s, under which the law explains most.
+    /// The time constant of an actuator's lag, about as late as a delay of that many s, under which the law explains
+    /// most.
     pub(in crate::diagnose) fn lagged(&self, terms: &[Term], late: f64) -> f64 {
         let hold = self.timed(terms).hold;
         let at = |lag: f64| Equation::new(&self.record, terms, self.target, Timing { hold, delay: 0.0, lag }, true);
@@ -215,7 +219,8 @@ impl Case {
         Some(Standing { equation, held, estimate, floor, blocks })
     }
 
-    /// The same standing beside what the sensors leave of the motion that the law itself makes, where more is left than of a smooth one.
+    /// The same standing beside what the sensors leave of the motion that the law itself makes, where more is left than
+    /// of a smooth one.
     pub(in crate::diagnose) fn settled(&self, standing: Standing) -> Standing {
         if are_adequate(&self.errors_of(&standing)) {
             return standing;
@@ -234,7 +239,8 @@ impl Case {
         std::array::from_fn(|which| floor[which].max(own[which]))
     }
 
-    /// Errors of a law whose numbers are held, over all windows, and whether they are what the sensors alone would leave.
+    /// Errors of a law whose numbers are held, over all windows, and whether they are what the sensors alone would
+    /// leave.
     pub(in crate::diagnose) fn errors_as_given(&self, law: &Law) -> Option<([WindowError; COUNT], bool)> {
         let equation = &Equation::new(&self.record, &law.terms, self.target, law.timing, false);
         let solution = equation.solution(&law.coefficients, self.record.forced)?;
@@ -254,8 +260,8 @@ impl Case {
         errors(&self.record, &standing.held, &standing.held, &standing.floor)
     }
 
-    /// A law with its numbers: those of the robust regression, or where even and odd readings as instruments differ from them by more than two
-    /// std, the instruments'.
+    /// A law with its numbers: those of the robust regression, or where even and odd readings as instruments differ
+    /// from them by more than two std, the instruments'.
     pub(in crate::diagnose) fn law(&self, standing: &Standing) -> Law {
         let law = Law::of(&self.record, &standing.equation, &standing.estimate);
         self.unbiased(standing, &law).unwrap_or(law)

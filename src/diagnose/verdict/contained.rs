@@ -1,4 +1,5 @@
-//! The smaller of two effects of which one contains the other: it stands unless the larger is significantly better on what neither has seen.
+//! The smaller of two effects of which one contains the other: it stands unless the larger is significantly better on
+//! what neither has seen.
 
 use super::case::{Case, Standing};
 use super::doubt::{Doubt, LARGE, LEVEL};
@@ -8,7 +9,8 @@ use crate::diagnose::candidates::contender;
 use crate::diagnose::judge::{COUNT, Equation, HeldOut};
 use crate::law::{Catalogue, Term};
 
-/// The smallest effect that the best one contains, link by link, and than which none that contains it is significantly better.
+/// The smallest effect that the best one contains, link by link, and than which none that contains it is significantly
+/// better.
 pub(super) fn smallest(case: &Case, standing: &Standing, entries: &[Entry], best: usize) -> usize {
     let stands = |smaller: usize, larger: usize| {
         let [smaller, larger] = [smaller, larger].map(|index| &entries[index].contender);
@@ -33,15 +35,16 @@ pub(super) fn smallest(case: &Case, standing: &Standing, entries: &[Entry], best
     }
 }
 
-/// Whether a smaller law ties with a larger one, or is worse by no more than chance makes it and not by a third of the energy.
+/// Whether a smaller law ties with a larger one, or is worse by no more than chance makes it and not by a third of the
+/// energy.
 fn is_no_worse(case: &Case, standing: &Standing, smaller: &HeldOut, larger: &HeldOut) -> bool {
     let chance = standing.blocks.p_values(&[standing.blocks.gains(&case.record, smaller, larger)]);
     let difference = larger.score(smaller);
     difference > -TIE * COUNT as f64 || chance.is_none_or(|p| p[0] >= LEVEL) && difference > COUNT as f64 * LARGE.ln()
 }
 
-/// The same on the record taken as punctual, where F is the output: a delay of its sensor and play both let the force come late after a
-/// reversal, and what needs the one for the other is told from neither.
+/// The same on the record taken as punctual, where F is the output: a delay of its sensor and play both let the force
+/// come late after a reversal, and what needs the one for the other is told from neither.
 fn is_no_worse_punctually(case: &Case, standing: &Standing, smaller: Term, larger: Term) -> bool {
     if !case.record.is_output {
         return false;

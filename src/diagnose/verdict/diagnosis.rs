@@ -1,9 +1,9 @@
 //! Which physical effect a law lacks, as the judge sees it.
 //!
-//! Every candidate is fitted beside the law with what time and sensors may explain; the one that lowers the held-out errors most is named
-//! where that is no chance (a sign-flip test over blocks, all candidates counted) and worth the word, or is large in every window. Nothing
-//! that a record cannot tell is claimed: a candidate that the law's own terms nearly are, one whose sign physics forbids, one that its own
-//! std swallows.
+//! Every candidate is fitted beside the law with what time and sensors may explain; the one that lowers the held-out
+//! errors most is named where that is no chance (a sign-flip test over blocks, all candidates counted) and worth the
+//! word, or is large in every window. Nothing that a record cannot tell is claimed: a candidate that the law's own
+//! terms nearly are, one whose sign physics forbids, one that its own std swallows.
 
 use super::case::{Case, Standing};
 use super::contained::smallest;
@@ -42,7 +42,8 @@ pub struct Diagnosis {
     pub candidates: Vec<Candidate>,
     /// Candidates that this record cannot tell apart, the best first.
     pub indistinguishable: Vec<Vec<String>>,
-    /// Share of the error's energy beyond the sensors' that the answer takes away; the best candidate's where none is named.
+    /// Share of the error's energy beyond the sensors' that the answer takes away; the best candidate's where none is
+    /// named.
     pub explained: f64,
     /// What remains, in a sentence.
     pub left: String,
@@ -116,8 +117,8 @@ fn weigh(case: &Case, standing: &Standing, entries: &mut [Entry]) {
     }
 }
 
-/// An excitation that acts later than recorded, at once or gradually, as effects among the others: where the law stands better so than with
-/// any of them. Only where it acts late at all a lag is tried, for to first order the two are one.
+/// An excitation that acts later than recorded, at once or gradually, as effects among the others: where the law stands
+/// better so than with any of them. Only where it acts late at all a lag is tried, for to first order the two are one.
 fn late(case: &Case, terms: &[Term], others: &[Entry]) -> Vec<Entry> {
     let moves = case.record.forced && terms.contains(&Term::Inertia);
     if !moves || terms.iter().any(|term| delay_of(*term).is_some()) {
@@ -153,8 +154,9 @@ fn acting_late(case: &Case, terms: &[Term], before: &HeldOut, effect: Effect) ->
     Some(Entry { standing: Some(standing), ..Entry::new(contender) })
 }
 
-/// Those that are at least as good as the winner, it first, those last that contain it: of them it is a limit. Once something is missing a
-/// tied one need not prove it again; one that the law's own terms nearly are cannot win alone, but may be what is there.
+/// Those that are at least as good as the winner, it first, those last that contain it: of them it is a limit. Once
+/// something is missing a tied one need not prove it again; one that the law's own terms nearly are cannot win alone,
+/// but may be what is there.
 fn ties(case: &Case, entries: &[Entry], winner: usize) -> Vec<Vec<String>> {
     let best = entries[winner].contender.score;
     let near = |entry: &&Entry| entry.may_be(case) && entry.contender.score <= best + TIE * COUNT as f64;

@@ -51,7 +51,8 @@ pub(super) fn doubt_of_gain(
     (!(is_large(before, after, floor) || significant)).then_some(Doubt::Chance)
 }
 
-/// Whether a gain takes a third of the energy that the sensors do not explain in every window that has such, in two at least.
+/// Whether a gain takes a third of the energy that the sensors do not explain in every window that has such, in two at
+/// least.
 pub(super) fn is_large(before: &HeldOut, after: &HeldOut, floor: &[f64; COUNT]) -> bool {
     let errors = before.errors.iter().zip(&after.errors).zip(floor);
     let told = errors.filter(|((before, _), floor)| **before > ADEQUATE * **floor);
@@ -62,8 +63,8 @@ pub(super) fn is_large(before: &HeldOut, after: &HeldOut, floor: &[f64; COUNT]) 
     ratios.len() >= told.min(2) && !ratios.is_empty() && ratios.iter().all(|ratio| *ratio <= LARGE)
 }
 
-/// Whether a candidate may be what is there, as far as only chance or the law's own terms speak against it. One that holds the target and that
-/// the law nearly is, is the target.
+/// Whether a candidate may be what is there, as far as only chance or the law's own terms speak against it. One that
+/// holds the target and that the law nearly is, is the target.
 pub(super) fn may_be(case: &Case, term: Term, doubt: Option<Doubt>) -> bool {
     match doubt {
         None | Some(Doubt::Chance) => true,

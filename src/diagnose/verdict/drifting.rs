@@ -14,8 +14,9 @@ const LOOKS: usize = 4;
 /// T₀ that a record must be long at least: its waves of half the record and longer are then slower than the motion.
 const LONG: f64 = 10.0;
 
-/// The recordings without the drift that a law of these terms sees in them; none where nothing drifts so much, or an effect explains as much.
-/// Where F is the output a drift of q is one of F as well, and none is claimed. `posed` puts recordings under judgement.
+/// The recordings without the drift that a law of these terms sees in them; none where nothing drifts so much, or an
+/// effect explains as much. Where F is the output a drift of q is one of F as well, and none is claimed. `posed` puts
+/// recordings under judgement.
 pub(super) fn steadied(
     case: &Case,
     recordings: &[&Recording],

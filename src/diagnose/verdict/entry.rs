@@ -82,7 +82,8 @@ impl Entry {
         (!is_sure).then_some(Doubt::Uncertain)
     }
 
-    /// Whether it may be what is there though the law's own terms nearly are it: not where it holds the target, for then it is that.
+    /// Whether it may be what is there though the law's own terms nearly are it: not where it holds the target, for
+    /// then it is that.
     pub(super) fn may_be(&self, case: &Case) -> bool {
         may_be(case, self.contender.term, self.doubt)
     }

@@ -22,7 +22,8 @@ pub struct WindowError {
     pub after: f64,
     /// What the sensors alone would leave.
     pub floor: f64,
-    /// Error up to which a law is adequate: a quarter above the floor, or what chance makes of the floor in so few windows.
+    /// Error up to which a law is adequate: a quarter above the floor, or what chance makes of the floor in so few
+    /// windows.
     pub limit: f64,
 }
 
@@ -51,7 +52,8 @@ pub(in crate::diagnose) fn errors(
     })
 }
 
-/// Error ÷ floor up to which a law is adequate, by how many windows there are side by side: the RMS of n values has a std of 1 ÷ √2n of it.
+/// Error ÷ floor up to which a law is adequate, by how many windows there are side by side: the RMS of n values has a
+/// std of 1 ÷ √2n of it.
 fn scatter(windows: f64) -> f64 {
     ADEQUATE.max(1.0 + CHANCE / (2.0 * windows).sqrt())
 }

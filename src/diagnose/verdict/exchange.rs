@@ -1,8 +1,9 @@
 //! Added effects seen anew beside each other: one effect may imitate two, and is then named before them.
 //!
-//! Adding the best effect, then the best beside it, never revises the first. Here each added effect is taken out in turn and what the judge names in
-//! its place put there, as in stepwise selection with exchange (Miller, *Subset Selection in Regression*, 2002, sect. 3.4); and the best
-//! pairs are sought as such, for neither of two may be the best alone.
+//! Adding the best effect, then the best beside it, never revises the first. Here each added effect is taken out in
+//! turn and what the judge names in its place put there, as in stepwise selection with exchange (Miller, *Subset
+//! Selection in Regression*, 2002, sect. 3.4); and the best pairs are sought as such, for neither of two may be the
+//! best alone.
 
 use super::case::{Case, Standing};
 use super::diagnosis::{Diagnosis, Finding, diagnose};
@@ -25,8 +26,8 @@ pub(super) struct Exchange {
 
 /// Added effects, each seen anew beside the others.
 pub(super) struct Seen {
-    /// The law in which one of them is exchanged for what the judge names in its place, or has the inner parameters that suit it beside the
-    /// others; none where all stand.
+    /// The law in which one of them is exchanged for what the judge names in its place, or has the inner parameters
+    /// that suit it beside the others; none where all stand.
     pub(super) exchange: Option<Exchange>,
     /// What each cannot be told from, the others being there.
     pub(super) ties: Vec<(Term, Vec<Vec<String>>)>,
@@ -49,8 +50,8 @@ pub(super) fn seen(case: &Case, original: &[Term], terms: &[Term], standing: &St
     Seen { exchange: exchanges.into_iter().min_by(|a, b| compare(a, b, standing)), ties }
 }
 
-/// Score below which one effect takes another's place: a smaller one need not be better than one that contains it, new inner parameters alone
-/// are worth the word or none.
+/// Score below which one effect takes another's place: a smaller one need not be better than one that contains it, new
+/// inner parameters alone are worth the word or none.
 fn worth(old: Term, new: Term) -> f64 {
     let [contained, containing] = [new, old].map(Catalogue::name_of);
     match (same_effect(old, new), Catalogue::is_contained(&contained, &containing)) {
@@ -60,9 +61,9 @@ fn worth(old: Term, new: Term) -> f64 {
     }
 }
 
-/// The best law with two effects in the place of none, one or two: each of the best single effects is tried with the best beside it. None
-/// where the law has more, or no two are better: beyond chance, all of them counted, than fewer; than two by their errors or, these being
-/// equal, with fewer inner parameters.
+/// The best law with two effects in the place of none, one or two: each of the best single effects is tried with the
+/// best beside it. None where the law has more, or no two are better: beyond chance, all of them counted, than fewer;
+/// than two by their errors or, these being equal, with fewer inner parameters.
 pub(super) fn paired(case: &Case, original: &[Term], terms: &[Term], standing: &Standing) -> Option<Exchange> {
     let own = added(original, terms);
     if own.len() > 2 {
@@ -106,8 +107,8 @@ fn with_named(case: &Case, terms: Vec<Term>) -> Option<Exchange> {
     Some(Exchange { terms, standing, ties: found.indistinguishable })
 }
 
-/// The best candidates, as far as only chance speaks against them, or that the law's own terms nearly are them: beside another effect they
-/// may be told.
+/// The best candidates, as far as only chance speaks against them, or that the law's own terms nearly are them: beside
+/// another effect they may be told.
 fn alternatives(case: &Case, found: &Diagnosis) -> Vec<Term> {
     let candidates = found.candidates.iter().filter(|candidate| may_be(case, candidate.term, candidate.doubt));
     let helps = candidates.filter(|candidate| candidate.score < 0.0);

@@ -41,7 +41,8 @@ pub struct Improvement {
     pub last: Diagnosis,
 }
 
-/// Diagnoses and adds until the law is adequate, or what is left is not in the catalogue. None where the record is too short.
+/// Diagnoses and adds until the law is adequate, or what is left is not in the catalogue. None where the record is too
+/// short.
 pub(in crate::diagnose) fn improve(case: &Case, terms: &[Term]) -> Option<Improvement> {
     let mut search =
         Search { case, original: terms, terms: terms.to_vec(), standing: case.stand(terms)?, ties: Vec::new() };
@@ -101,12 +102,14 @@ impl Search<'_> {
         exchange.is_some_and(|exchange| self.take(exchange, 1))
     }
 
-    /// Takes the best pair of effects; false where none is better, or one of the two makes the other superfluous: alone no diagnosis names it.
+    /// Takes the best pair of effects; false where none is better, or one of the two makes the other superfluous: alone
+    /// no diagnosis names it.
     fn pair(&mut self) -> bool {
         paired(self.case, self.original, &self.terms, &self.standing).is_some_and(|pair| self.take(pair, 2))
     }
 
-    /// Takes a law, less what its newest effect makes superfluous; false where fewer than so many added effects are left.
+    /// Takes a law, less what its newest effect makes superfluous; false where fewer than so many added effects are
+    /// left.
     fn take(&mut self, Exchange { terms, standing, ties }: Exchange, fewest: usize) -> bool {
         let Some(newest) = terms.last().copied() else { return false };
         let Some((terms, standing)) = without_superfluous(self.case, (terms, standing), self.original, newest) else {

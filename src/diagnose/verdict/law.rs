@@ -12,8 +12,8 @@ pub struct Law {
     pub coefficients: Vec<f64>,
     /// Their std; 0 where held.
     pub std: Vec<f64>,
-    /// Terms whose coefficients by least squares are biased by noise in the readings: these are those with even and odd readings as
-    /// instruments.
+    /// Terms whose coefficients by least squares are biased by noise in the readings: these are those with even and odd
+    /// readings as instruments.
     pub biased: Vec<Term>,
     /// What [`Term::Expression`] names.
     pub expressions: Vec<Expression>,

@@ -3,8 +3,8 @@
 use super::law::Law;
 use crate::law::{Catalogue, Given, Model, ModelTerm, Term};
 
-/// The model with a law's numbers: its own terms under the names that the user wrote, then what was added; with the hold under which the law
-/// stands, where there is an excitation.
+/// The model with a law's numbers: its own terms under the names that the user wrote, then what was added; with the
+/// hold under which the law stands, where there is an excitation.
 pub fn improved_model(model: &Model, law: &Law) -> Model {
     let key = |index: usize, term: Term| {
         let own = model.terms.iter().find(|entry| same(entry.term, term)).map(|entry| entry.key.clone());
@@ -19,7 +19,8 @@ pub fn improved_model(model: &Model, law: &Law) -> Model {
     Model { terms: terms.collect(), expressions: law.expressions.clone(), hold, ..model.clone() }
 }
 
-/// The same with its coefficients to be fitted anew, as the streaming identifier wants them; numbers that the model held are kept.
+/// The same with its coefficients to be fitted anew, as the streaming identifier wants them; numbers that the model
+/// held are kept.
 pub fn refitted_model(model: &Model, law: &Law) -> Model {
     let improved = improved_model(model, law).freed();
     let held = |term: Term| {

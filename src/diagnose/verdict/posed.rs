@@ -26,8 +26,8 @@ pub struct Posed {
 }
 
 impl Posed {
-    /// Puts a model to recordings; `hold` where it is known what the excitation did between samples. None where nothing moves, or the
-    /// record is too short for the model's form.
+    /// Puts a model to recordings; `hold` where it is known what the excitation did between samples. None where nothing
+    /// moves, or the record is too short for the model's form.
     pub fn new(model: &Model, recordings: &[&Recording], hold: Option<Hold>) -> Option<Posed> {
         let all: Vec<Term> = model.terms.iter().map(|entry| entry.term).collect();
         let inertia = model.terms.iter().find(|entry| entry.term == Term::Inertia);
@@ -77,7 +77,8 @@ impl Posed {
         self.law.get_or_init(found).clone()
     }
 
-    /// Held-out errors of a law of these terms on the recordings, by window length. None where they are too short for it.
+    /// Held-out errors of a law of these terms on the recordings, by window length. None where they are too short for
+    /// it.
     pub fn errors(&self, terms: &[Term]) -> Option<[WindowError; COUNT]> {
         Some(self.case.errors_of(&self.case.settled(self.case.stand(terms)?)))
     }
@@ -87,7 +88,8 @@ impl Posed {
         self.case.errors_as_given(law)
     }
 
-    /// Instants at which the recordings may have changed a law of these terms, in seconds of recorded time, gaps left out.
+    /// Instants at which the recordings may have changed a law of these terms, in seconds of recorded time, gaps left
+    /// out.
     pub(super) fn changes(&self, terms: &[Term]) -> Vec<f64> {
         self.case.stand(terms).map_or_else(Vec::new, |standing| changes(&self.case.record, &standing.equation))
     }
@@ -107,7 +109,8 @@ impl Posed {
         Clock::of(&self.case, law, &self.wandering)
     }
 
-    /// The model with the inner parameters that the judge found for those it left open; "maybe" terms that explain nothing stay in it.
+    /// The model with the inner parameters that the judge found for those it left open; "maybe" terms that explain
+    /// nothing stay in it.
     pub fn with_inner(&self, model: &Model) -> Model {
         let found = |entry: &ModelTerm| self.terms.iter().find(|term| same_effect(**term, entry.term)).copied();
         let with = |entry: &ModelTerm| match found(entry).filter(|_| entry.open.contains(&true)) {
@@ -141,8 +144,8 @@ fn with_open(case: &Case, terms: Vec<Term>, term: Term) -> Option<Vec<Term>> {
     Some(terms.into_iter().chain([fitted]).collect())
 }
 
-/// The law whose last terms, `count` of them, have the inner parameters that suit them beside the others: each was fitted before those that
-/// came after it.
+/// The law whose last terms, `count` of them, have the inner parameters that suit them beside the others: each was
+/// fitted before those that came after it.
 fn beside_each_other(case: &Case, mut terms: Vec<Term>, count: usize) -> Option<Vec<Term>> {
     for _ in 0..count {
         let first = terms.remove(terms.len() - count);

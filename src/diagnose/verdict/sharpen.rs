@@ -10,8 +10,9 @@ use crate::identify::Recording;
 use crate::law::Term;
 use std::f64::consts::TAU;
 
-/// The law with the coefficients, inner parameters and std of largest likelihood, where the judge sees no difference: they leave what the
-/// sensors alone would, or tie with its own numbers; else as it is. Never for a law without inertia: it has no motion of its own.
+/// The law with the coefficients, inner parameters and std of largest likelihood, where the judge sees no difference:
+/// they leave what the sensors alone would, or tie with its own numbers; else as it is. Never for a law without
+/// inertia: it has no motion of its own.
 pub(in crate::diagnose) fn sharpened(case: &Case, law: &Law, recordings: &[&Recording]) -> Law {
     likelier(case, law, recordings).unwrap_or_else(|| law.clone())
 }

@@ -1,8 +1,8 @@
 //! Records that switch, diagnosed stage by stage.
 //!
-//! The judge's equations say where the law may change. What the model lacks can look like a change, so a cut stays only where the two laws
-//! beside it, each with the effect that it lacks, leave much less than one law with the effect that it lacks: by the judge's held-out
-//! errors, in every window.
+//! The judge's equations say where the law may change. What the model lacks can look like a change, so a cut stays only
+//! where the two laws beside it, each with the effect that it lacks, leave much less than one law with the effect that
+//! it lacks: by the judge's held-out errors, in every window.
 
 use super::diagnosis::{Diagnosis, Finding};
 use super::errors::WindowError;
@@ -14,7 +14,8 @@ use crate::identify::Recording;
 use crate::law::{Hold, Model, Term};
 use std::ops::Range;
 
-/// Part of the energy beyond the sensors' that two laws leave at most, in every window, where two stages have laws of their own.
+/// Part of the energy beyond the sensors' that two laws leave at most, in every window, where two stages have laws of
+/// their own.
 const APART: f64 = 0.5;
 
 /// One stage of a recording, diagnosed alone.
@@ -75,7 +76,8 @@ impl Switched {
         any(Finding::Missing).or(any(Finding::Unexplained)).or(any(Finding::Adequate))
     }
 
-    /// The diagnosis that says most: the whole record's, or that of the stage whose error a missing effect makes good best.
+    /// The diagnosis that says most: the whole record's, or that of the stage whose error a missing effect makes good
+    /// best.
     pub fn principal(&self) -> Option<&Diagnosis> {
         let finding = self.finding();
         let score = |diagnosis: &Diagnosis| diagnosis.candidates.first().map_or(0.0, |candidate| candidate.score);
@@ -102,8 +104,8 @@ struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// The first samples after its law may have changed: by the model, or where that shows none by the law with what one law lacks, for
-    /// what is lacking may be larger than the change.
+    /// The first samples after its law may have changed: by the model, or where that shows none by the law with what
+    /// one law lacks, for what is lacking may be larger than the change.
     fn cuts(&self) -> Vec<usize> {
         let Some(posed) = Posed::new(self.model, &[self.recording], self.hold) else { return Vec::new() };
         let with_effect = || self.known.and_then(|known| known.improved.as_ref()).map(|law| posed.changes(&law.terms));
@@ -140,7 +142,8 @@ impl Course<'_> {
         self.rebordered(edges, stages)
     }
 
-    /// The stages with borders where the laws with the effects that they lack tell them: without those an effect's share blurs the instant.
+    /// The stages with borders where the laws with the effects that they lack tell them: without those an effect's
+    /// share blurs the instant.
     fn rebordered(&self, mut edges: Vec<usize>, mut stages: Vec<StageDiagnosis>) -> Vec<StageDiagnosis> {
         for at in 1..stages.len() {
             let found = self.border(edges[at - 1]..edges[at + 1], &stages[at - 1..=at]);
@@ -192,8 +195,8 @@ fn position(recording: &Recording, elapsed: f64) -> usize {
     recording.count()
 }
 
-/// Energy that the laws of stages leave beyond the sensors', as a part of what one law leaves of all, in the window in which it is
-/// most. A stage too short for a law of its own leaves what the one law does. All where that is adequate.
+/// Energy that the laws of stages leave beyond the sensors', as a part of what one law leaves of all, in the window in
+/// which it is most. A stage too short for a law of its own leaves what the one law does. All where that is adequate.
 fn left(stages: &[&StageDiagnosis], one: &Diagnosis) -> f64 {
     let one = one.errors;
     let length = |stage: &StageDiagnosis| stage.end - stage.start;

@@ -91,8 +91,9 @@ impl Clock {
     }
 }
 
-/// Whether the law's held-out errors are clearly lower with the delay of F refitted than without any but its own. Where F is the output,
-/// a delay τ of c q̇ + k q is c τ q̈ + k τ q̇, a mass and a damping as well: no sensor is blamed for it.
+/// Whether the law's held-out errors are clearly lower with the delay of F refitted than without any but its own. Where
+/// F is the output, a delay τ of c q̇ + k q is c τ q̈ + k τ q̇, a mass and a damping as well: no sensor is blamed for
+/// it.
 fn is_clear(case: &Case, law: &Law) -> bool {
     if !law.terms.contains(&Term::Inertia) {
         return false;

@@ -7,7 +7,8 @@ use crate::diagnose::candidates::contender;
 use crate::diagnose::judge::COUNT;
 use crate::law::{Effect, State, Term};
 
-/// Whether dry friction that changes along the way would push somewhere on it: the law's own friction and it, two std nearer to none.
+/// Whether dry friction that changes along the way would push somewhere on it: the law's own friction and it, two std
+/// nearer to none.
 pub(super) fn drives(case: &Case, standing: &Standing, term: Term, [coefficient, std]: [f64; 2]) -> bool {
     if !matches!(term, Term::Effect(Effect::PositionDependentFriction { .. })) {
         return false;
@@ -25,8 +26,9 @@ pub(super) fn drives(case: &Case, standing: &Standing, term: Term, [coefficient,
     case.record.motions.iter().flat_map(|motion| motion.states()).flatten().map(power).any(|power| power < 0.0)
 }
 
-/// Whether a candidate is the law's own damper with a lag, and the record cannot tell that damper from dry friction: in its place friction, at
-/// once or over a way, leaves as little. At a few speeds any force of the velocity is as good as another.
+/// Whether a candidate is the law's own damper with a lag, and the record cannot tell that damper from dry friction: in
+/// its place friction, at once or over a way, leaves as little. At a few speeds any force of the velocity is as good as
+/// another.
 pub(super) fn is_of_untold_damper(case: &Case, standing: &Standing, term: Term) -> bool {
     let damper = standing.equation.terms.iter().position(|own| *own == Term::power(0, 1));
     let Some(place) = damper.filter(|_| matches!(term, Term::Effect(Effect::Relaxation { .. }))) else { return false };

@@ -57,8 +57,8 @@ impl ExcitationGate {
         Reading { unseen: scatter * dt, ..Reading::from(sample) }
     }
 
-    /// Intensity of the white force, N² s, that F was over the interval before, if it was a glitch of its sensor; 0 where F
-    /// kept its course.
+    /// Intensity of the white force, N² s, that F was over the interval before, if it was a glitch of its sensor; 0
+    /// where F kept its course.
     pub fn glitch(&self) -> f64 {
         self.glitch
     }

@@ -1,8 +1,8 @@
 //! One hypothesis of what happened: a filter of (q, q̇) and two unknowns under the law in use.
 //!
 //! x = (q, q̇, u₀, u₁). Under "the law changed" q̈ is the law's + u₀ + u₁ F ÷ m: over the few readings that decide, a
-//! change of any coefficient is one of these two; u₀ then moves as the motion does, as a random walk that is as large as
-//! it is after a radian of the motion. Under "a channel has an offset" u₀ is the offset.
+//! change of any coefficient is one of these two; u₀ then moves as the motion does, as a random walk that is as large
+//! as it is after a radian of the motion. Under "a channel has an offset" u₀ is the offset.
 
 use super::price::{Burst, faulty, working};
 use crate::estimation::{Channel, Filter, Noise};
@@ -14,7 +14,8 @@ use serde::{Deserialize, Serialize};
 pub enum Kind {
     /// Nothing but readings that are wide draws, if any.
     Readings,
-    /// The law changed so many samples before the first reading that is held, and q̈ by so many times what a switch usually adds.
+    /// The law changed so many samples before the first reading that is held, and q̈ by so many times what a switch
+    /// usually adds.
     Law { before: u8, times: u8 },
     /// Something moved q̇, and q follows.
     Kick,
@@ -259,8 +260,8 @@ impl Hypothesis {
         }
     }
 
-    /// Intensity of the white acceleration that an event adds in its own interval, for when in it that was nobody knows,
-    /// and what u₀ moves by in a second, as a variance.
+    /// Intensity of the white acceleration that an event adds in its own interval, for when in it that was nobody
+    /// knows, and what u₀ moves by in a second, as a variance.
     fn unknown(&self, law: &Expected, inputs: [f64; 2], dt: f64) -> [f64; 2] {
         let [acceleration, gain] = law.switch;
         let first = self.age == 0;

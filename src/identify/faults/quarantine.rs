@@ -29,7 +29,8 @@ const DECIDED: u32 = 200;
 /// An offset is known once its std is below this part of the sensor's noise.
 const OFFSET_KNOWN: f64 = 0.5;
 
-/// … and is taken off for good at these log-odds: a motion that was kicked is told from it by q alone, which takes time.
+/// … and is taken off for good at these log-odds: a motion that was kicked is told from it by q alone, which takes
+/// time.
 const CERTAIN: f64 = 10.0;
 
 /// Samples that the size of the motion is known from.
@@ -313,7 +314,8 @@ impl Quarantine {
         }
     }
 
-    /// What had no name for so long is decided: from here on the other hypotheses begin anew, with what speaks for them.
+    /// What had no name for so long is decided: from here on the other hypotheses begin anew, with what speaks for
+    /// them.
     fn decide_on(&mut self, best: usize, arrival: &Arrival, law: &Expected) {
         let decided = self.weighing.hypothesis(best);
         if self.stance == Stance::Named(best) && matches!(decided.kind, Kind::Readings | Kind::Kick) {

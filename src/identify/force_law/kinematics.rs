@@ -1,8 +1,8 @@
 //! A motion that nothing is known of but its smoothness: (q, q̇, q̈) driven by a white jerk.
 //!
 //! q̈ is a Wiener process of intensity Q, (m/s³)² s (Bar-Shalom, Li and Kirubarajan, *Estimation with Applications to
-//! Tracking and Navigation*, 2001, 6.2.3); readings of q and q̇ have white noise of variance R. The filter's innovations
-//! e with variance s give the likelihood of Q and R.
+//! Tracking and Navigation*, 2001, 6.2.3); readings of q and q̇ have white noise of variance R. The filter's
+//! innovations e with variance s give the likelihood of Q and R.
 
 use crate::estimation::{Channel, Filter, Matrix};
 

@@ -1,7 +1,8 @@
 //! What a machine's motion was, a few samples ago: (q, q̇) given all readings up to now, with its covariance.
 //!
 //! Fixed-lag smoothing by the covariance of each past state with the present one, M = Cov(x_j, x_k): it travels with
-//! the motion, M ← M Aᵀ, and every reading corrects x_j by M h e/s (Anderson and Moore, *Optimal Filtering*, 1979, 7.3).
+//! the motion, M ← M Aᵀ, and every reading corrects x_j by M h e/s (Anderson and Moore, *Optimal Filtering*, 1979,
+//! 7.3).
 
 use super::kinematics::{Kinematics, advance, begin, carried};
 use super::noise::Smoothness;

@@ -1,4 +1,5 @@
-//! Moments of weak rows by blocks of time: what a regression and the scatter of its coefficients from block to block need.
+//! Moments of weak rows by blocks of time: what a regression and the scatter of its coefficients from block to block
+//! need.
 
 use serde::{Deserialize, Serialize};
 

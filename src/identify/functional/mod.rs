@@ -1,13 +1,15 @@
 //! The law in weak form beside the filter: what a record tells where its errors are not those of white sensors.
 //!
-//! A likelihood with white noise puts lag, quantisation and unmodelled forces into sensors or process noise, and ends in absurd maxima. Weak
-//! rows take them for what they are, errors of the equation. The rows here are Poisson moment functionals ([`crate::weak::Functional`]) of
-//! ten lengths, an octave apart, over samples that are averaged pair by pair: a sample costs as much as two octaves, whatever the
-//! longest is, and the whole segment counts though no sample is kept.
+//! A likelihood with white noise puts lag, quantisation and unmodelled forces into sensors or process noise, and ends
+//! in absurd maxima. Weak rows take them for what they are, errors of the equation. The rows here are Poisson moment
+//! functionals ([`crate::weak::Functional`]) of ten lengths, an octave apart, over samples that are averaged pair by
+//! pair: a sample costs as much as two octaves, whatever the longest is, and the whole segment counts though no sample
+//! is kept.
 //!
-//! The octave in use has its rate a near ten times rms q̈ ÷ rms q̇ of the motion, so that φ passes some four times the motion's frequency,
-//! as windows of 0.3 T₀ do. The std is that of the scatter between blocks of time ([`regression`]), and of how far the estimate moves when
-//! the variation is half or twice as long: what a coefficient owes to the scale is not known of it.
+//! The octave in use has its rate a near ten times rms q̈ ÷ rms q̇ of the motion, so that φ passes some four times the
+//! motion's frequency, as windows of 0.3 T₀ do. The std is that of the scatter between blocks of time ([`regression`]),
+//! and of how far the estimate moves when the variation is half or twice as long: what a coefficient owes to the scale
+//! is not known of it.
 
 mod blocks;
 mod octave;
@@ -37,7 +39,8 @@ const SPARE: usize = 2;
 /// No sensor resolves a smaller part of its range: 20 bits.
 const RESOLUTION: f64 = 1e-6;
 
-/// A coefficient is told to lack so many records like the one there is, at most: scatter falls with the length as long as the motion stays.
+/// A coefficient is told to lack so many records like the one there is, at most: scatter falls with the length as long
+/// as the motion stays.
 const FORESEEN: f64 = 10.0;
 
 /// The running estimate.
@@ -109,8 +112,8 @@ impl WeakForm {
         }
     }
 
-    /// Ends the rows of octaves too fine for the motion, under sensor noise of these variances: they cost more than all others. Where the motion
-    /// has quickened they begin anew.
+    /// Ends the rows of octaves too fine for the motion, under sensor noise of these variances: they cost more than all
+    /// others. Where the motion has quickened they begin anew.
     pub fn rest(&mut self, problem: &Problem, variance: [f64; 2]) {
         let sensors = Sensors { variance, gains: self.gains };
         let Some(fitting) = self.fitting(problem, &sensors) else { return };
@@ -131,15 +134,16 @@ impl WeakForm {
         (PASSED.contains(&ratio) && self.octaves[index].is_ready()).then_some(index)
     }
 
-    /// Whether an inertia can be told from none by any sensor: it is above zero, and its force more than a millionth of the right side.
+    /// Whether an inertia can be told from none by any sensor: it is above zero, and its force more than a millionth of
+    /// the right side.
     pub fn resolves(&self, inertia: f64) -> bool {
         let [acceleration, right] = self.octaves[0].amplitudes();
         inertia > 0.0 && inertia * acceleration >= RESOLUTION * right
     }
 
-    /// Writes the coefficients that are known to better than their own size, under sensor noise of these variances; returns the share of
-    /// the force that the law explains, none where no coefficient is known or the law is none: one with an inertia below zero, or that
-    /// explains nothing. Solves one octave at most.
+    /// Writes the coefficients that are known to better than their own size, under sensor noise of these variances;
+    /// returns the share of the force that the law explains, none where no coefficient is known or the law is none: one
+    /// with an inertia below zero, or that explains nothing. Solves one octave at most.
     pub fn publish(&mut self, problem: &Problem, variance: [f64; 2], shown: &mut [Coefficient]) -> Option<f64> {
         let sensors = Sensors { variance, gains: self.gains };
         let fitting = self.fitting(problem, &sensors)?;

@@ -153,7 +153,8 @@ impl Octave {
         self.blocks.count() >= FEWEST
     }
 
-    /// rms q̈ ÷ rms q̇ of the motion as this octave sees it, rad/s; none before it has seen any, or where noise is most of it.
+    /// rms q̈ ÷ rms q̇ of the motion as this octave sees it, rad/s; none before it has seen any, or where noise is most
+    /// of it.
     pub(super) fn frequency(&self, problem: &Problem, sensors: &Sensors) -> Option<f64> {
         let noise = self.noise(problem, sensors);
         let [velocity, acceleration] = [0, 1].map(|order| self.energies[order] - self.rows * noise[order]);

@@ -1,22 +1,25 @@
 //! Coefficients from block moments, with std from how they scatter between blocks of time.
 //!
-//! Least squares states a std that holds for white errors alone. What real records leave unexplained is coloured, so the covariance is the
-//! sandwich M⁻¹ (Σ s sᵀ) M⁻¹ over the scores s of contiguous blocks (White, Econometrica 48, 1980; Liang and Zeger, Biometrika 73,
-//! 1986), with the largest std of several lengths of block: those shorter than the error's correlation state too little. White sensor
-//! noise takes its known share out of the moments (errors in variables; Fuller, *Measurement Error Models*, 1987).
+//! Least squares states a std that holds for white errors alone. What real records leave unexplained is coloured, so
+//! the covariance is the sandwich M⁻¹ (Σ s sᵀ) M⁻¹ over the scores s of contiguous blocks (White, Econometrica 48,
+//! 1980; Liang and Zeger, Biometrika 73, 1986), with the largest std of several lengths of block: those shorter than
+//! the error's correlation state too little. White sensor noise takes its known share out of the moments (errors in
+//! variables; Fuller, *Measurement Error Models*, 1987).
 
 use super::blocks::Blocks;
 use crate::estimation::System;
 use serde::{Deserialize, Serialize};
 
-/// Fewest blocks, and how many of each length are tried: the number that a variance needs for its own error to be below a half.
+/// Fewest blocks, and how many of each length are tried: the number that a variance needs for its own error to be below
+/// a half.
 const PARTITIONS: [usize; 3] = [usize::MAX, 16, FEWEST];
 pub(super) const FEWEST: usize = 8;
 
 /// Beyond this variance inflation an unknown is a combination of the others, but for rounding.
 const INFLATION: f64 = 1e8;
 
-/// Share of a column that is added to it, so that of columns that rounding alone tells apart both are inflated, not the later one lost.
+/// Share of a column that is added to it, so that of columns that rounding alone tells apart both are inflated, not the
+/// later one lost.
 const RIDGE: f64 = 1e-12;
 
 /// A column of which white noise makes more than this share says nothing that a correction could mend.
@@ -92,9 +95,9 @@ impl Regression {
         }
     }
 
-    /// Solves the rows of `blocks`; `inertia` is the place of a free one.
-    /// The error is taken to be in the right side or in the inertia term, whichever is the larger: errors of gain, lag and law go with the
-    /// signals, and least squares is biased by those of its regressors.
+    /// Solves the rows of `blocks`; `inertia` is the place of a free one. The error is taken to be in the right side or
+    /// in the inertia term, whichever is the larger: errors of gain, lag and law go with the signals, and least squares
+    /// is biased by those of its regressors.
     pub(super) fn solve(&mut self, blocks: &Blocks, errors: &Errors, inertia: Option<usize>, best: &mut Estimate) {
         let noise = errors.noise;
         best.clear();

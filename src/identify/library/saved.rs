@@ -9,7 +9,7 @@
 //! covariance = [[1e-6, 0.0], [0.0, 4e-6]]     # of the coefficients
 //! sought = ["qdd", "qd", "q"]                 # every term that was sought
 //! change = [0.3, 0.5, 1.2]                    # how far a switch moves the coefficient of each, std
-//! [law.noise]                                 # std of the sensors; intensity of the acceleration not explained, (m/s²)² s
+//! [law.noise]                  # std of the sensors; intensity of the acceleration not explained, (m/s²)² s
 //! q = 0.01
 //! qd = 0.01
 //! process = 1e-9

@@ -68,8 +68,8 @@ impl Tracker {
         timing.corrected(&lag, self.record_length())
     }
 
-    /// F has acted at other times than was assumed: no law so far is worth keeping. The record is fitted anew where only
-    /// the hold was another one, else the next samples are.
+    /// F has acted at other times than was assumed: no law so far is worth keeping. The record is fitted anew where
+    /// only the hold was another one, else the next samples are.
     pub fn begin_under_another_timing(&mut self, problem: &Problem) {
         let rereads = self.window.hold() != problem.hold && self.regime.law().is_some();
         self.window.set_hold(problem.hold);

@@ -51,8 +51,8 @@ impl Published {
         problem.free.iter().for_each(|index| self.coefficients[*index].std = None);
     }
 
-    /// Makes known what was given, and each free coefficient's value and std as `free` says of it and its present value;
-    /// where that says none the value stays.
+    /// Makes known what was given, and each free coefficient's value and std as `free` says of it and its present
+    /// value; where that says none the value stays.
     pub(super) fn set(&mut self, problem: &Problem, free: impl Fn(usize, f64) -> Option<(f64, f64)>) {
         for (index, coefficient) in self.coefficients.iter_mut().enumerate() {
             let told = match problem.free.iter().position(|place| *place == index) {

@@ -1,4 +1,5 @@
-//! The catalogue of physical effects: what each one is, what it looks like when a model lacks it, and what may be taken for it.
+//! The catalogue of physical effects: what each one is, what it looks like when a model lacks it, and what may be taken
+//! for it.
 
 mod entries;
 mod entry;

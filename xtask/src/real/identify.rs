@@ -97,7 +97,8 @@ fn coefficients(stage: &Value, reference: &Law) -> Vec<Coefficient> {
 }
 
 impl Coefficient {
-    /// Within [`WITHIN`] std of the reference, and told where the reference's window lengths agree; withheld where they do not.
+    /// Within [`WITHIN`] std of the reference, and told where the reference's window lengths agree; withheld where they
+    /// do not.
     fn is_right(&self) -> bool {
         let withheld = self.value.is_none() && self.agree == Some(false);
         if withheld {

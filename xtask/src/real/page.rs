@@ -1,4 +1,5 @@
-//! `docs/real-records.md`: every real record with its pictures, our answer and the reference's, the errors before and after.
+//! `docs/real-records.md`: every real record with its pictures, our answer and the reference's, the errors before and
+//! after.
 
 use super::answer::{Diagnosis, list};
 use super::binary::Binary;

@@ -53,10 +53,9 @@ impl Transfer<'_> {
     }
 }
 
-/// The EMPS test run with the train run's numbers, friction and then what a diagnosis names beside it added on the train run: force residual,
-/// open loop of 1 s.
-/// `model` is the one without friction; its hold is given, the one under which the floors were measured. The second
-/// value says whether the program crashed.
+/// The EMPS test run with the train run's numbers, friction and then what a diagnosis names beside it added on the
+/// train run: force residual, open loop of 1 s. `model` is the one without friction; its hold is given, the one under
+/// which the floors were measured. The second value says whether the program crashed.
 ///
 /// # Errors
 /// [`Error::Start`], [`Error::File`].

@@ -1,4 +1,5 @@
-//! Laws that return, through the C interface: known again after a switch, across a saved state, and from laws in the archive.
+//! Laws that return, through the C interface: known again after a switch, across a saved state, and from laws in the
+//! archive.
 
 use super::contract::{OK, Subject};
 use switchid::fmu::{identifier, identifier_knowing};

@@ -3,8 +3,8 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// The system's allocator, with the bytes that are taken now and the most that were; what is as large as a slave's whole room is
-/// asked for and given back, and does not count.
+/// The system's allocator, with the bytes that are taken now and the most that were; what is as large as a slave's
+/// whole room is asked for and given back, and does not count.
 #[derive(Debug)]
 pub struct Counting {
     room: usize,

@@ -25,7 +25,8 @@ impl Instance {
     /// Makes the mistake.
     pub fn mistake(&self, mistake: Mistake) -> Status {
         let (mut real, mut status) = (0.0, OK);
-        // SAFETY: the component is alive; null pointers are what is tried, all others are as long as said and outlive the call.
+        // SAFETY: the component is alive; null pointers are what is tried, all others are as long as said and outlive
+        // the call.
         self.call(|f, c| unsafe {
             match mistake {
                 Mistake::NullArray => (f.get_real)(c, null(), 3, null_mut()),
