@@ -5,13 +5,11 @@
 //! times the sensor's variance. A difference far off holds an outlier and is left out, and so are its neighbours: the
 //! outlier is in them too, a third as large.
 
+use super::odds::SAMPLES_OF_A_VARIANCE;
 use serde::{Deserialize, Serialize};
 
 /// Variance of a third difference of white noise of variance 1: 1² + 3² + 3² + 1².
 const GAIN: f64 = 20.0;
-
-/// Samples that count: their variance is then known to 3 %, √(2 Σρ² ÷ N) with Σρ² = 2.3 of overlapping differences.
-const MEMORY: f64 = 4000.0;
 
 /// Differences from which on outliers can be told, their variance being known to a quarter; the first so many tell no
 /// more than that, for they may hold some (15 % too much after 4 s, docs/decisions/sensor-faults.md) …
@@ -58,7 +56,7 @@ impl Moments {
     }
 
     fn count_in(&mut self, difference: f64, explaining: f64) {
-        self.count = (self.count + 1.0).min(MEMORY);
+        self.count = (self.count + 1.0).min(SAMPLES_OF_A_VARIANCE);
         let share = self.count.recip();
         self.dd += share * (difference * difference - self.dd);
         self.dr += share * (difference * explaining - self.dr);

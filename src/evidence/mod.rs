@@ -11,7 +11,9 @@
 mod bayes_factor;
 mod hypotheses;
 mod single_change;
+mod switch_size;
 
 pub use bayes_factor::{BayesFactor, GaussianPrior};
 pub use hypotheses::{Bank, Law, Suspect};
 pub use single_change::either;
+pub use switch_size::{INERTIA_SPREAD, SWITCH_SIZE};

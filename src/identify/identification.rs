@@ -107,7 +107,7 @@ pub struct Identification {
     pub skipped: Vec<Skipped>,
 }
 
-/// How often the list of what cannot be determined is renewed, samples.
+/// How often the list of what cannot be determined is renewed, samples: it costs a decomposition, and changes slowly.
 const RENEW_UNIDENTIFIABLE: usize = 64;
 
 /// Samples after which holds are compared; the last time for good.

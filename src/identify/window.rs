@@ -4,7 +4,7 @@ use super::packed_readings;
 use super::reading::Reading;
 use super::sample::Sample;
 use super::settings::Channels;
-use crate::estimation::{Filter, Noise, Observation, initial_state};
+use crate::estimation::{Filter, Noise, Observation, SAMPLES_OF_A_VARIANCE, initial_state};
 use crate::law::{BandLimited, Drive, Hold, REACH, look_ahead};
 use serde::{Deserialize, Serialize};
 
@@ -19,9 +19,6 @@ const OUTAGE: f64 = 50.0;
 
 /// Share of a sample in the usual interval: it follows another rate of sampling within 20.
 const ADAPTION: f64 = 0.05;
-
-/// Samples that count for how rough the excitation is: its mean square is then known to 2 %.
-const MEMORY: f64 = 4000.0;
 
 /// Accepted samples by number; the first of all is number 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,7 +55,7 @@ impl Pace {
             return;
         }
         self.dt += ADAPTION * (dt - self.dt);
-        self.count = (self.count + 1.0).min(MEMORY);
+        self.count = (self.count + 1.0).min(SAMPLES_OF_A_VARIANCE);
         let square = 0.5 * (sample.excitation - before.excitation).powi(2);
         self.roughness += (square - self.roughness) / self.count;
     }

@@ -5,7 +5,7 @@ use crate::law::{Given, Model, Term};
 use crate::weak::{Fit, Regression};
 use nalgebra::{DMatrix, DVector};
 
-/// Windows over which residuals count as correlated.
+/// Windows over which residuals count as correlated: four lengths, since they overlap by three quarters.
 const LAGS: usize = 16;
 
 /// What of a model's coefficients is held.

@@ -7,21 +7,21 @@
 use super::force::{Left, Place};
 use super::scan::{Bins, Peak, divergence};
 use super::spectrum::spectrum;
+use crate::estimation::TWENTY_TO_ONE;
 
-/// Bins over a quantity, and over time.
+/// Bins over a quantity: regions of a twelfth of its range have two …
 const BINS: usize = 24;
+
+/// … and over time, where stretches of a twenty-fourth have as many.
 const TIME_BINS: usize = 48;
 
-/// Bins along each side of the phase plane.
+/// Bins along each side of the phase plane: 36 in all, so that each has readings enough.
 const SIDE: usize = 6;
-
-/// Evidence that a place must have, nats.
-const EVIDENCE: f64 = 3.0;
 
 /// Share of the evidence of the best place below which another is not worth saying.
 const WORTH: f64 = 0.15;
 
-/// Most places that are said.
+/// Most places that are said: what a reader takes in at a glance.
 const MOST: usize = 6;
 
 /// How much better a region of the phase plane must be than an interval of one quantity.
@@ -112,7 +112,7 @@ pub fn locate(left: &[Left], period: f64) -> Vec<Fail> {
         (0..=left.iter().map(|left| left.recording).max().unwrap_or(0)).filter_map(|r| setting.in_time(left, r)),
     );
     fails.extend(setting.in_frequency(left));
-    fails.retain(|fail| fail.evidence > EVIDENCE);
+    fails.retain(|fail| fail.evidence > TWENTY_TO_ONE);
     fails.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let worth = fails.first().map_or(0.0, |fail| WORTH * fail.evidence);
     fails.retain(|fail| fail.evidence >= worth);

@@ -10,6 +10,7 @@ const BRIDGED: usize = 2;
 
 /// Share of the energy that a region must hold, and how many times its share of the baseline.
 const SHARE: f64 = 0.25;
+/// … at least, since it was sought among all regions.
 const CONTRAST: f64 = 1.3;
 
 /// Bins over one quantity: the energy in each, and what it is measured against.

@@ -11,6 +11,7 @@ use std::f64::consts::TAU;
 
 /// Share of the velocity's period that a window spans, and of the displacement's that it may.
 const SHARE: f64 = 0.25;
+/// … at most: two windows and a half are a period.
 const LARGEST_SHARE: f64 = 0.4;
 
 /// Fewest intervals between samples in a window.

@@ -12,19 +12,19 @@ use crate::diagnose::scale::Scale;
 use crate::estimation::{Information, Noise, Pass, RIVALS, Solution, smooth};
 use crate::law::{Effect, State, Term};
 
-/// Most passes of one descent.
+/// Most passes of one descent, a bound of its cost.
 const PASSES: usize = 25;
 
-/// Gauss–Newton decrement per unknown below which a step is no longer one.
+/// Gauss–Newton decrement per unknown below which a step is no longer one: a thirtieth of a std.
 const SETTLED: f64 = 1e-3;
 
 /// The sensors alone do not come to explain the record where a pass makes good only this part of what is missing, 1 ÷.
 const HOPELESS: f64 = 5.0;
 
-/// Passes in which the sensors alone take all error.
+/// Passes in which the sensors alone take all error, a bound of the cost.
 const QUIET_PASSES: usize = 8;
 
-/// Factor by which a step may change the inertia.
+/// Factor by which a step may change the inertia: beyond, what is linear in m is not in 1 ÷ m.
 const LARGEST_RATIO: f64 = 2.5;
 
 /// Rate at which the measurements hold the motion of the series, relative to the motion's own angular frequency.
@@ -42,7 +42,7 @@ const STILL: usize = 2;
 /// Loss in log-likelihood, nats, for which a pass is taken back.
 const LOSS: f64 = 1.0;
 
-/// Factor on the information of an inner parameter that is held.
+/// Factor on the information of an inner parameter that is held: so much more than any record says, and no rounding.
 const HELD_FAST: f64 = 1e12;
 
 /// Damping of a step that is shortened, as part of each unknown's information: first, and at most.

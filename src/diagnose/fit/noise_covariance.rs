@@ -4,7 +4,7 @@ use super::outcome::Outcome;
 use super::start;
 use crate::estimation::{Noise, RIVALS};
 
-/// Gain in log-likelihood, nats, that another level of process noise must promise.
+/// Gain in log-likelihood, nats, that another level of process noise must promise: far below any that decides.
 pub(super) const GAIN: f64 = 0.1;
 
 /// Ratios of the rivals' process noise to the one in use once it is nearly right.

@@ -11,7 +11,7 @@ use super::start;
 use crate::diagnose::piece::Piece;
 use crate::estimation::{Noise, Pass};
 
-/// Guesses from which a fit begins, at most.
+/// Guesses from which a fit begins, at most: the best lengths of seven.
 const STARTS: usize = 4;
 
 /// Factor by which the inertia has grown in a fit that forgets its excitation.

@@ -14,7 +14,7 @@ use rand_distr::{Distribution, StandardNormal};
 /// Error ÷ floor below which the noise cannot be what its differences say: they tell it to a factor of two.
 const FAR: f64 = 0.5;
 
-/// Times that noise is drawn.
+/// Times that noise is drawn: over a hundred windows the RMS of one draw is known to 7 %, of two to 5 %.
 const DRAWS: u64 = 2;
 
 /// A record whose true motion is known: the smoothed one, read without noise, and read by the sensors again and again

@@ -10,10 +10,10 @@ use super::regression::{self, Normal};
 use super::windows::COUNT;
 use nalgebra::{DMatrix, DVector};
 
-/// Parts of a record that are held out in turn.
+/// Parts of a record that are held out in turn: four fifths of it train, and a stretch of its own tests.
 const FOLDS: usize = 5;
 
-/// Fewest equations of which an error is told.
+/// Fewest equations of which an error is told: its own error is then a quarter, 1 ÷ √(2 · 8).
 const FEWEST: usize = 8;
 
 /// Which equations train and which are held out, by window length and part.

@@ -10,7 +10,7 @@ const THRESHOLD: f64 = 1.345;
 /// Median of |x| ÷ std of Gaussian x.
 const MEDIAN: f64 = 0.6745;
 
-/// Times that weights are renewed.
+/// Times that weights are renewed: each changes the law by less than the one before.
 const ROUNDS: usize = 3;
 
 /// Part of a scaled Gram matrix's largest singular value below which a direction is not determined.

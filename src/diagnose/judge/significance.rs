@@ -15,10 +15,10 @@ use rand_chacha::ChaCha8Rng;
 /// Numbers of blocks, the largest that fits is taken.
 const BLOCKS: [usize; 3] = [32, 16, 8];
 
-/// Random signs that are drawn.
+/// Random signs that are drawn: a chance of one in a hundred is then known to a fifth.
 const DRAWS: usize = 2000;
 
-/// Autocorrelation down to which residuals belong together.
+/// Autocorrelation down to which residuals belong together: 1 ÷ e, the usual correlation length.
 const CORRELATED: f64 = 0.37;
 
 /// How a record is cut for the test.

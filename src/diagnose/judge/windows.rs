@@ -15,13 +15,13 @@ pub(in crate::diagnose) const LENGTHS: [f64; COUNT] = [0.1, 0.3, 1.0];
 /// The length by which errors are told.
 pub(in crate::diagnose) const PRINCIPAL: usize = 1;
 
-/// Cells in a window of each length.
+/// Cells in a window of each length: sixteen a tenth of T₀, so that four cycles in T₀ have forty each.
 const CELLS: [usize; COUNT] = [16, 48, 160];
 
 /// Cycles in a window, at most.
 const CYCLES: [usize; COUNT] = [0, 1, 4];
 
-/// By which part of its length a window advances.
+/// By which part of its length a window advances: what finer steps would tell, these share.
 const ADVANCE: usize = 8;
 
 /// Windows of one length, at most: beyond them they advance further. Their equations hardly differ from those between

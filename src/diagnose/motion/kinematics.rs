@@ -12,6 +12,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// Samples before and after an instant whose noise of q a derivative may hold.
 const BEFORE: usize = 8;
+/// … and after it.
 const AFTER: usize = 2;
 
 /// Share of what is left of q̇ that q's own noise must explain where q̇ is computed from q.

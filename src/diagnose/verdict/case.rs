@@ -15,6 +15,7 @@ const BIASED: f64 = 2.0;
 
 /// Ratio between the delays that are tried, and steps in which the best is refined.
 const GROWTH: f64 = 1.6;
+/// … by halves of what is between them.
 const STEPS: usize = 2;
 
 /// Delay, in T₀, up to which its column alone takes it: the next term of the series is then 5 % of it.

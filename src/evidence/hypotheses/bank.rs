@@ -20,16 +20,17 @@ use crate::evidence::bayes_factor::{BayesFactor, GaussianPrior, TOLERANCE, likel
 use crate::evidence::single_change::{SingleChange, either, log_sum};
 use serde::{Deserialize, Serialize};
 
-/// Evidence of this many levels at once comes from the last samples alone.
+/// Evidence of this many levels at once comes from the last samples alone: what grows sample by sample would have
+/// passed one level before.
 const OVERWHELMING: f64 = 10.0;
 
-/// Starts with this much less evidence than the best are as good, nats.
+/// Starts with this much less evidence than the best may be the switch's own, nats: odds of 150 to one against.
 const MARGIN: f64 = 5.0;
 
-/// Starts with this much less evidence than the best are none that a switch may have had, nats.
+/// Starts with this much less evidence than the best are none that a switch may have had, nats: odds of 160 000 to one.
 const FAR_BELOW: f64 = 12.0;
 
-/// Evidence that chance seldom gives a start which lies between others, nats.
+/// Evidence that chance gives a start which lies between others once in 55, nats.
 const OUTSTANDING: f64 = 4.0;
 
 /// A switch that the data speak for.

@@ -7,23 +7,24 @@
 use crate::estimation::{Innovation, Noise};
 use serde::{Deserialize, Serialize};
 
-/// Samples that count for what is weighed now.
+/// Samples that count for what is weighed now: their variance is known to an eighth, √(2 ÷ 150).
 const NOW: f64 = 150.0;
 
-/// Samples that count for what is published.
+/// Samples that count for what is published: their variance is known to 4.5 %, √(2 ÷ 1000).
 const LATELY: f64 = 1000.0;
 
 /// Below this ratio of variances the noise counts as unchanged when switches are weighed: by chance it is exceeded once
 /// in 2000 samples.
 const LOUDER: f64 = 1.5;
 
-/// A variance that differs by less than this part lately is unchanged.
+/// A variance that differs by less than this part lately, three of its stds, is unchanged.
 const UNCHANGED: f64 = 0.15;
 
-/// A single innovation counts for no more than this many times its variance.
+/// A single innovation counts for no more than this many times its variance: ten stds, so that one reading moves the
+/// mean of 150 by two thirds at most.
 const MOST: f64 = 100.0;
 
-/// A reading that was left out counts for so many times its variance.
+/// A reading that was left out counts for so many times its variance: the square of the six stds from which on it is.
 const LEFT_OUT: f64 = 36.0;
 
 /// Running means of half of (ε − the one before)²/s by channel.

@@ -1,5 +1,6 @@
 //! The decision threshold: the log Bayes factor of a change, in nats, that an alarm asks.
 
+use crate::estimation::TWENTY_TO_ONE;
 use crate::identify::settings::Settings;
 
 /// A law that is known from this many samples at the switch needs twice the evidence: its information is that of a
@@ -14,11 +15,9 @@ const SAMPLES_PER_TRIAL: f64 = 85.0;
 /// Evidence that chance brings once in some ten thousand samples, nats.
 const UNUSUAL: f64 = 5.0;
 
-/// A law that is not validated, nor stands its stability check, needs this many times the evidence.
+/// A law that is not validated, nor stands its stability check, needs this many times the evidence: what it leaves may
+/// be its own error, which the evidence takes for white.
 const UNPROVEN: f64 = 10.0;
-
-/// Least threshold, nats, however short the false-alarm interval: odds of twenty to one.
-const LEAST: f64 = 3.0;
 
 /// Samples for which a suspicion keeps the law in use from being renewed: what comes may belong to another law.
 pub const SUSPENSE: u64 = 1000;
@@ -48,7 +47,7 @@ impl Decision {
         // what chance brings is known of a law that explains its record; of another all evidence seen counts as its
         // usual one
         let trial = if self.explains { SAMPLES_PER_TRIAL } else { 1.0 };
-        self.caution() * (settings.false_alarm_interval / (trial * settings.sample_time)).ln().max(LEAST)
+        self.caution() * (settings.false_alarm_interval / (trial * settings.sample_time)).ln().max(TWENTY_TO_ONE)
     }
 
     /// Evidence that chance brings once in a sample, nats.
@@ -64,5 +63,5 @@ impl Decision {
 
 /// Evidence that chance reaches once in the false-alarm interval, nats, were every sample a trial of its own.
 pub fn false_alarm_level(settings: &Settings) -> f64 {
-    (settings.false_alarm_interval / settings.sample_time).ln().max(LEAST)
+    (settings.false_alarm_interval / settings.sample_time).ln().max(TWENTY_TO_ONE)
 }

@@ -12,6 +12,7 @@
 //! until for some periods it loses nothing: the coefficients rest.
 
 use crate::estimation::{AugmentedFilter, Channel, InnovationGate, Noise, Observation, Start, Unknowns};
+use crate::evidence::SWITCH_SIZE;
 use crate::identify::problem::Problem;
 use crate::identify::window::Window;
 use serde::{Deserialize, Serialize};
@@ -34,10 +35,6 @@ pub const INSTANTS: usize = 5;
 
 /// Filters.
 const RIVALS: usize = SWITCHED + INSTANTS;
-
-/// A switch moves a coefficient by this part of its reach, as a std, and so much is open at the beginning: the width of
-/// a switch for the hypotheses too.
-const WIDTH: f64 = 0.3;
 
 /// Samples that every filter takes in a step, until all are taken: 11 filters of 4 samples bound the step's work.
 const BUDGET: usize = 4;
@@ -166,7 +163,7 @@ impl AugmentedDrift {
             self.reach[index] = before.all[problem.inertia];
         }
         let first = window.initial_state(before.start, &before.noise);
-        let start = Start { all: before.all, reach: &self.reach, width: WIDTH, first };
+        let start = Start { all: before.all, reach: &self.reach, width: SWITCH_SIZE, first };
         self.rivals.iter_mut().for_each(|rival| rival.begin(&unknowns, &start));
         self.sound.fill(true);
         self.weights.fill(0.0);
@@ -204,7 +201,7 @@ impl AugmentedDrift {
         let count = if self.course == Course::Trial { RIVALS } else { CONSTANT + 1 };
         let switched = self.rivals[SWITCHED..count.max(SWITCHED)].iter_mut().zip(&self.switch);
         for (rival, _) in switched.filter(|(_, instant)| **instant == self.next) {
-            rival.wander(&unknowns, &self.reach, [WIDTH; 2]);
+            rival.wander(&unknowns, &self.reach, [SWITCH_SIZE; 2]);
         }
         let before: [f64; SLOW + 1] = std::array::from_fn(|index| self.rivals[index].log_likelihood);
         for (index, rival) in self.rivals[..count].iter_mut().enumerate().filter(|(index, _)| self.sound[*index]) {

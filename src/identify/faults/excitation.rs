@@ -1,6 +1,7 @@
 //! A reading of F that leaves its course and returns may be a glitch of its sensor or have acted; one that nothing can
 //! have exerted is replaced.
 
+use crate::estimation::SAMPLES_OF_A_VARIANCE;
 use crate::identify::reading::Reading;
 use crate::identify::sample::Sample;
 use serde::{Deserialize, Serialize};
@@ -11,9 +12,6 @@ const JUMP: f64 = 8.0;
 
 /// Readings after which it is known what F usually is …
 const KNOWN: f64 = 100.0;
-
-/// … and those that it is known from.
-const MEMORY: f64 = 4000.0;
 
 /// No actuator exerts this many times the RMS of what it has exerted.
 const ABSURD: f64 = 1e6;
@@ -79,7 +77,7 @@ impl ExcitationGate {
 
     /// A reading that leaves its course tells little of what is usual.
     fn learn(&mut self, force: f64, moved: f64) {
-        self.count = (self.count + 1.0).min(MEMORY);
+        self.count = (self.count + 1.0).min(SAMPLES_OF_A_VARIANCE);
         let moved = if self.count > 1.0 { moved * moved } else { 0.0 };
         let most = if self.count > KNOWN { JUMP * JUMP * self.squares[1] } else { f64::INFINITY };
         for (square, value) in self.squares.iter_mut().zip([force * force, moved.min(most)]) {

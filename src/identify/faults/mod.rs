@@ -5,8 +5,8 @@
 //! reading that was as expected, scored on the same readings; physics prices them. A switch leaves q and q̇ continuous
 //! and changes q̈ alone; readings of a burst are independent wide draws, priced one by one; an offset moves one
 //! channel; a kick (an F that was not the plant's) moves q̇, and q follows; a stuck sensor repeats exactly where it
-//! varied before. What is held enters the record once the law or a fault has [`NAMED`](weighing) nats on the other,
-//! without the readings that are a sensor's fault: nothing that is not committed has to be taken back.
+//! varied before. What is held enters the record once the law or a fault has [3 nats](crate::estimation::TWENTY_TO_ONE)
+//! on the other, without the readings that are a sensor's fault: nothing that is not committed has to be taken back.
 //!
 //! - `price`: densities of readings, and the two states of a channel;
 //! - `repetition`: how often a channel repeats a value exactly;
@@ -35,4 +35,3 @@ pub use hypothesis::Expected;
 pub use quarantine::Quarantine;
 pub use repetition::Repetition;
 pub use scatter::Scatter;
-pub use weighing::NAMED;

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A repetition rarer than this says something.
+/// A repetition rarer than this says something: of a channel that repeats itself more often a stuck sensor is told by
+/// what the law expects.
 const RARE: f64 = 0.01;
 
 /// Repetitions of one channel.

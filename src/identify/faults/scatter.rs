@@ -3,14 +3,11 @@
 //! Page's cumulative sum (*Biometrika* 41 (1954), 100) of ln(faulty ÷ working) over the innovations of the law in use.
 
 use super::price::{Burst, faulty, working};
-use crate::estimation::Innovation;
+use crate::estimation::{Innovation, TWENTY_TO_ONE};
 use serde::{Deserialize, Serialize};
 
-/// A reading counts for no more than this, nats.
+/// A reading counts for no more than this, nats: two readings are needed for what has odds of 10⁶ against it.
 const MOST: f64 = 8.0;
-
-/// A channel of which this much speaks for a burst is in one, nats.
-const ON: f64 = 3.0;
 
 /// How much the innovations speak for a burst, by channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -36,7 +33,7 @@ impl Scatter {
 
     /// The bursts that it speaks for.
     pub fn bursts(&self) -> [Burst; 2] {
-        self.gain.map(|gain| if gain > ON { Burst::going_on() } else { Burst::default() })
+        self.gain.map(|gain| if gain > TWENTY_TO_ONE { Burst::going_on() } else { Burst::default() })
     }
 
     /// Forgets what was.

@@ -2,12 +2,9 @@
 
 use super::hypothesis::{Expected, Hypothesis, Kind, Value};
 use super::price::{Burst, log_sum};
-use crate::estimation::{Channel, Filter};
+use crate::estimation::{Channel, Filter, TWENTY_TO_ONE};
 use crate::law::Drive;
 use serde::{Deserialize, Serialize};
-
-/// Log-odds at which what happened has a name: twenty to one.
-pub const NAMED: f64 = 3.0;
 
 /// What the readings say.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,14 +82,14 @@ impl Weighing {
     /// What is named: the law against all faults, or one fault against the law and against the other faults.
     pub fn verdict(&self) -> Verdict {
         let odds = self.law_against_fault();
-        if odds.is_nan() || odds.abs() < NAMED {
+        if odds.is_nan() || odds.abs() < TWENTY_TO_ONE {
             return Verdict::Open;
         }
         let best = self.likeliest(odds > 0.0);
         let own = &self.hypotheses[best];
         let others = self.hypotheses.iter().filter(|other| !other.kind.is_law() && other.kind != own.kind);
         let rival = others.map(|other| other.log).fold(f64::NEG_INFINITY, log_sum);
-        match odds > 0.0 || own.log - rival > NAMED {
+        match odds > 0.0 || own.log - rival > TWENTY_TO_ONE {
             true => Verdict::Named(best),
             false => Verdict::Open,
         }

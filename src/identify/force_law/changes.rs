@@ -13,16 +13,14 @@
 
 use super::sums::{Sums, dot};
 use crate::estimation::System;
+use crate::evidence::SWITCH_SIZE;
 use serde::{Deserialize, Serialize};
 
-/// Most hypotheses.
+/// Most hypotheses: twice those of the tracker of motion, since each costs a regression and no filter.
 const MOST: usize = 40;
 
-/// Hypotheses looked at in a step.
+/// Hypotheses looked at in a step: each of them once in ten steps.
 const LOOKS: usize = 4;
-
-/// Force of a switch ÷ RMS of the law's own force, for each coefficient (the width of the tracker of motion).
-const WIDTH: f64 = 0.3;
 
 /// Share of the posterior by which an instant is too late to be the switch: one chance in a thousand that it came
 /// later.
@@ -287,7 +285,11 @@ impl Work {
         let mean = before.squares / before.count;
         let width = |row: usize| {
             let feature = before.information[row * n + row] / before.count;
-            if active[row] && feature > 0.0 { WIDTH * WIDTH * mean / (feature * variance * inflation) } else { 0.0 }
+            if active[row] && feature > 0.0 {
+                SWITCH_SIZE * SWITCH_SIZE * mean / (feature * variance * inflation)
+            } else {
+                0.0
+            }
         };
         let sought = || (0..n).filter(|row| width(*row) > 0.0);
         let single = |row: usize| {
@@ -317,6 +319,7 @@ fn log_sum(a: f64, b: f64) -> f64 {
 
 /// What a law leaves, but no less than rounding.
 fn floor(loss: f64, sums: &Sums) -> f64 {
+    // what sums of squares lose to rounding
     const ROUNDING: f64 = 1e-14;
     loss.max(ROUNDING * sums.squares).max(f64::MIN_POSITIVE)
 }

@@ -4,7 +4,7 @@ use super::blocks::{Blocks, SURPRISE};
 use super::features::Known;
 use super::smoother::{Instant, LONGEST};
 use super::sums::{Sums, Weight, dot};
-use crate::estimation::{System, price_of_a_term};
+use crate::estimation::{SAMPLES_OF_A_VARIANCE, System, price_of_a_term};
 use crate::identify::problem::Problem;
 use crate::identify::report::Coefficient;
 use crate::identify::settings::Settings;
@@ -19,9 +19,6 @@ const MOST_ALIKE: f64 = 1.0 - 1e-6;
 
 /// Samples over which the motion's error is one and the same: as far as the smoother looks.
 pub const COHERENT: f64 = LONGEST as f64;
-
-/// Samples over which mean squares are taken: a variance is then known to 2 %.
-const MEMORY: f64 = 4000.0;
 
 /// Std of a mean deviation by which it is out of the ordinary: by chance one in two million is.
 const UNUSUAL: f64 = 5.0;
@@ -172,7 +169,7 @@ impl Segment {
             (0..n).map(|row| features[row] * dot(&self.inverse[row * n..(row + 1) * n], features)).sum();
         let scaled = residual * (weight.value / weight.freedom / (1.0 + weight.value * leverage.max(0.0))).sqrt();
         let last = std::mem::replace(&mut self.last_residual, scaled);
-        self.means = (self.means + 1.0).min(MEMORY);
+        self.means = (self.means + 1.0).min(SAMPLES_OF_A_VARIANCE);
         self.residual += (scaled * scaled - self.residual) / self.means;
         self.lagged += (scaled * last - self.lagged) / self.means;
         self.of_motion += (of_motion - self.of_motion) / self.means;

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 /// Fewest blocks, and how many of each length are tried: the number that a variance needs for its own error to be below
 /// a half.
 const PARTITIONS: [usize; 3] = [usize::MAX, 16, FEWEST];
+/// Fewest blocks of which a variance is told: its own error is then a half, √(2 ÷ 8).
 pub(super) const FEWEST: usize = 8;
 
 /// Beyond this variance inflation an unknown is a combination of the others, but for rounding.

@@ -10,7 +10,7 @@ use crate::evidence::{Bank, BayesFactor, GaussianPrior, either};
 use crate::identify::problem::Problem;
 use serde::{Deserialize, Serialize};
 
-/// Laws that are kept.
+/// Laws that are kept: each costs a filter while laws are on trial, and steps are bounded.
 pub const ROOM: usize = 16;
 
 /// A change of the law is known to this fraction of itself where its effect is linearised about the law before, as a

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// The laws are weighed anew when the record has grown by this factor: 14 times in every doubling.
 const GROWTH: f64 = 1.05;
 
-/// Samples without which nothing is weighed.
+/// Samples without which nothing is weighed: two of them only say where the motion begins.
 const FEWEST: u64 = 4;
 
 /// Samples after which the trial is over: the stage's own estimate takes over.

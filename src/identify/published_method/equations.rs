@@ -22,7 +22,7 @@ const VARIATIONS: [Variation; 4] = [
     Variation::SmoothSine { mode: 4 },
 ];
 
-/// Samples integrated over in one step, ended by the row that passes it.
+/// Samples integrated over in one step, ended by the row that passes it: a step's work is bounded.
 const BUDGET: usize = 1000;
 
 /// The overdetermined system of a captured record, formed over several steps.

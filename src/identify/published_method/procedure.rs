@@ -33,7 +33,7 @@ const THRESHOLD: f64 = 0.05;
 /// Steps of the integration between two samples.
 const PARTS: usize = 4;
 
-/// What a prediction without bounds counts as in the deviation.
+/// What a prediction without bounds counts as in the deviation: a number beyond any, whose square still is one.
 const UNBOUNDED: f64 = 1e12;
 
 /// The state of the published procedure.

@@ -2,14 +2,12 @@
 
 use super::convergence::Record;
 use super::state::Segment;
+use crate::estimation::TWENTY_TO_ONE;
 use crate::identify::validation::{Evidence, Stability, VALIDATED, is_one_law};
 
 /// Largest Gauss–Newton decrement, in units of the number of coefficients, of an estimate that has settled: a step of
 /// one std in each of them, which is what the record leaves open.
 pub(super) const SETTLED: f64 = 1.0;
-
-/// Largest gain in log-likelihood that another noise level may still promise, nats: odds of twenty to one.
-const GAIN: f64 = 3.0;
 
 /// Runs in a row that may leave what can be integrated: each is repeated with a thousand times the process noise.
 const LOST: u32 = 6;
@@ -25,7 +23,9 @@ impl Segment {
 
     /// Whether the last run changed little, by its own standard.
     pub fn is_calm(&self) -> bool {
-        self.runs.closed >= 2 && self.fit.decrement.abs() < SETTLED * self.fit.overdispersion && self.fit.gain < GAIN
+        self.runs.closed >= 2
+            && self.fit.decrement.abs() < SETTLED * self.fit.overdispersion
+            && self.fit.gain < TWENTY_TO_ONE
     }
 
     /// Whether no process noise keeps the run where it can be integrated: the coefficients are beyond repair.

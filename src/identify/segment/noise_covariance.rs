@@ -1,7 +1,7 @@
 //! Sensor noise follows the innovations, process noise the likelihood.
 
 use super::state::Segment;
-use crate::estimation::{Channel, Noise, RIVALS, Track};
+use crate::estimation::{Channel, Noise, RIVALS, TWENTY_TO_ONE, Track};
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
@@ -26,10 +26,6 @@ const UNEXPLAINED: f64 = 5.0;
 /// is four stds.
 const LASTING: f64 = 2.5;
 
-/// A law errs where a thirtieth of the process noise would make the record less likely by this, nats: odds of twenty to
-/// one.
-const ERRS: f64 = 3.0;
-
 /// Noise levels that move by less than this part have come to rest, whatever a level out of reach promises: a record of
 /// 1000 samples tells a variance to 4.5 %. On EMPS a level out of reach kept the law from settling
 /// (docs/decisions/prediction-error-method.md).
@@ -53,8 +49,8 @@ impl Segment {
             Channel::ALL.iter().any(|channel| track.variance(*channel) > factor * self.noise.sensor[*channel as usize])
         };
         let overdispersion = self.run.sandwich.overdispersion(&self.run.filter_run.information);
-        let errs =
-            self.gains(track)[0] <= -ERRS && self.noise.process >= 2.0 * self.process_floor(problem, settings, window);
+        let errs = self.gains(track)[0] <= -TWENTY_TO_ONE
+            && self.noise.process >= 2.0 * self.process_floor(problem, settings, window);
         self.fit.overdispersion = if overdispersion > LASTING { overdispersion } else { 1.0 };
         self.fit.process_matters = exceeds(PROCESS_SHARE);
         self.fit.explains = !exceeds(FORGETTING) && overdispersion < UNEXPLAINED && !errs;

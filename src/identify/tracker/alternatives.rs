@@ -1,12 +1,13 @@
 //! Other fits of the record: from the weak rows of it or of its later part, and with all error in the sensors.
 
-use super::new_record::{INERTIA_SPREAD, PRIOR_WIDTH};
+use super::new_record::PRIOR_WIDTH;
 use super::state::{FRESH_START, Fitting, NOTHING_KNOWN, Setup, Tracker};
-use crate::estimation::Noise;
+use crate::estimation::{Noise, TWENTY_TO_ONE};
+use crate::evidence::INERTIA_SPREAD;
 use crate::identify::problem::Problem;
 use crate::identify::segment::{Guess, Prior};
 
-/// Runs after which a fit that has not settled is given up …
+/// Runs after which a fit that has not settled is given up: nine decades of process noise take six of them …
 const PATIENCE: u32 = 40;
 
 /// … and one that explains its record where the segment does not.
@@ -35,9 +36,6 @@ const CLEARLY: f64 = 0.1;
 /// … or, where it explains itself down to the sensors' noise and the whole one does not, in 1 ÷ √ of the number of
 /// measurements: the mean of the right law's likelihood scatters by 0.7 of that.
 const SURELY: f64 = 2.0;
-
-/// Another fit of the same record must explain it better by this, nats.
-const BETTER: f64 = 3.0;
 
 impl Tracker {
     /// A record that has grown long without a validated law may hold a switch that nobody saw: the weak rows begin
@@ -196,7 +194,7 @@ impl Tracker {
         match self.alternative.start > self.segment.start {
             true if self.explains_what_the_segment_does_not() => (SURELY / measurements.sqrt()).min(CLEARLY),
             true => CLEARLY,
-            false => BETTER / measurements,
+            false => TWENTY_TO_ONE / measurements,
         }
     }
 }

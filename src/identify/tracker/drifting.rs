@@ -1,7 +1,8 @@
 //! Coefficients that move: put on trial at an alarm, followed until they rest and a constant law is found again.
 
 use super::regime::{Event, Follower};
-use super::state::{Fitting, SWITCH_SIZE, Setup, Tracker};
+use super::state::{Fitting, Setup, Tracker};
+use crate::evidence::SWITCH_SIZE;
 use crate::identify::drift::{Before, INSTANTS};
 use crate::identify::problem::Problem;
 use crate::identify::validation::TRUSTED;

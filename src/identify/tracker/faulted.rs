@@ -2,16 +2,13 @@
 
 use super::regime::Event;
 use super::state::Tracker;
-use crate::estimation::{Channel, Filter, Innovation};
-use crate::evidence::Suspect;
+use crate::estimation::{Channel, Filter, Innovation, TWENTY_TO_ONE};
+use crate::evidence::{INERTIA_SPREAD, Suspect};
 use crate::identify::change::LawInUse;
-use crate::identify::faults::{Expected, NAMED, Returned};
+use crate::identify::faults::{Expected, Returned};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::segment::MotionScales;
-
-/// A switch may take a part of F ÷ m: the inertia becomes 0.6 to 1.6 times what it was, as a std.
-const GAIN: f64 = 0.5;
 
 /// A decision between an offset and another law may take this long after an outage, s …
 const UNDECIDED: f64 = 3.0;
@@ -32,7 +29,7 @@ pub(super) fn expected<'a>(
     Expected {
         motion: problem.motion(&law.all),
         noise: law.noise_now(),
-        switch: [scales.restoring_acceleration(), GAIN],
+        switch: [scales.restoring_acceleration(), INERTIA_SPREAD],
         rate: scales.natural_time().recip(),
         size,
         parts: law.run.parts,
@@ -78,13 +75,13 @@ impl Tracker {
         if !self.monitor.law.explains {
             return false;
         }
-        if self.intake.scatter.evidence() > suspect.evidence + NAMED {
+        if self.intake.scatter.evidence() > suspect.evidence + TWENTY_TO_ONE {
             self.intake.quarantine.go_on_in(self.intake.scatter.bursts());
             self.clear_suspicion();
             return true;
         }
         let repeated = self.intake.force.run();
-        if repeated + SELDOM > NAMED {
+        if repeated + SELDOM > TWENTY_TO_ONE {
             self.lose_excitation();
             return true;
         }

@@ -2,6 +2,7 @@
 
 use super::faulted::expected;
 use super::state::{Intake, Setup, Tracker};
+use crate::estimation::OUTLYING;
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::report::{SensorState, Status};
@@ -11,9 +12,6 @@ use crate::law::Hold;
 
 /// Readings that enter the record in a step: what was held is made up for at this pace.
 const CATCH_UP: usize = 4;
-
-/// What moves q̇ by so many stds of a reading is told by it.
-const TOLD: f64 = 6.0;
 
 /// Samples after which a law that gets none is not that of the present any more.
 const FRESH: usize = 2;
@@ -42,7 +40,7 @@ impl Tracker {
         let motion = problem.motion(&law.all);
         let dt = reading.sample.t - self.now();
         let push = glitch * dt / motion.mass(law.run.filter.mean[0]).powi(2);
-        if push < TOLD * TOLD * law.noise.sensor[1] {
+        if push < OUTLYING * OUTLYING * law.noise.sensor[1] {
             reading.unseen += glitch;
         }
     }

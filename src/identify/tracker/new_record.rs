@@ -1,17 +1,15 @@
 //! How the record of another law begins.
 
 use super::regime::Event;
-use super::state::{Fitting, History, SWITCH_SIZE, Schedule, Tracker};
+use super::state::{Fitting, History, Schedule, Tracker};
 use crate::estimation::Noise;
+use crate::evidence::{INERTIA_SPREAD, SWITCH_SIZE};
 use crate::identify::problem::Problem;
 use crate::identify::segment::{NOISE_MEMORY, Prior};
 use crate::identify::timing::Timing;
 
 /// The prior of a new law is this much wider than the switch that is looked for.
 pub(super) const PRIOR_WIDTH: f64 = 3.0;
-
-/// Std of the logarithm of an inertia after a switch, or about a first guess: it may be 0.6 to 1.6 times what it was.
-pub(super) const INERTIA_SPREAD: f64 = 0.5;
 
 /// Share of the variance of a switch's acceleration that a new law's process noise begins with.
 const UNEXPLAINED: f64 = 0.1;

@@ -4,7 +4,7 @@ use super::published::Published;
 use super::regime::{Event, Regime};
 use super::sighting::Library;
 use crate::estimation::DifferenceNoise;
-use crate::evidence::Bank;
+use crate::evidence::{Bank, SWITCH_SIZE};
 use crate::identify::change::{EmpiricalNull, LawInUse, Prediction};
 use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
 use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition, Scatter};
@@ -20,9 +20,6 @@ const HYPOTHESES: usize = 20;
 
 /// A segment with fewer samples than this is refined at the faster pace: its law is not yet linear within its std.
 pub(super) const YOUNG: u64 = 5000;
-
-/// A switch moves a coefficient's force by this fraction of the acceleration's RMS, as a std.
-pub(super) const SWITCH_SIZE: f64 = 0.3;
 
 /// Samples after which an unvalidated law is contested by the latest record alone, and the unit of how long that may
 /// take.
