@@ -5,7 +5,8 @@
 //! b) is linear in the unknowns but for the state that they share. The covariance is (2 + n) × (2 + n).
 
 use super::covariance::{carry, correct};
-use super::filter::{Channel, Filter, times, white_acceleration};
+use super::filter::{Channel, Filter, Noise, times, white_acceleration};
+use super::initial_state::state_after_outage;
 use super::pass::{IntervalMap, Observation};
 use crate::law::{Compiled, Expression, Motion, State, Term};
 use serde::{Deserialize, Serialize};
@@ -146,6 +147,21 @@ impl AugmentedFilter {
         let noise = white_acceleration(process + observation.unseen / (mass * mass), observation.dt);
         let AugmentedFilter { covariance, moved, map, .. } = self;
         carry(covariance, moved, |change| times(&map.transition, change), &map.input, &noise);
+    }
+
+    /// Goes on after an outage over which the motion cannot be followed: of the state only what is measured next is
+    /// known, of the coefficients what was.
+    pub fn resume(&mut self, noise: &Noise, observation: &Observation) {
+        let size = self.size();
+        let filter = state_after_outage([self.state.q, self.state.qd], observation.measured, noise);
+        self.state = filter.state();
+        for (row, entries) in self.covariance.chunks_exact_mut(size).enumerate() {
+            entries[..2].fill(0.0);
+            if let Some(own) = filter.covariance.get(row) {
+                entries.fill(0.0);
+                entries[..2].copy_from_slice(own);
+            }
+        }
     }
 
     /// Writes κ and b as coefficients of the law; returns the inertia.

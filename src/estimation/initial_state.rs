@@ -1,6 +1,12 @@
-//! Where a filter run begins.
+//! Where a filter run begins, and where it goes on after an outage.
 
-use super::filter::{Filter, Noise};
+use super::filter::{Channel, Filter, Noise};
+
+/// A motion that turns by more than this in an outage, rad, cannot be followed over it: the excitation is not known.
+pub const LOST: f64 = 4.0;
+
+/// How many times its own square the variance of what an outage leaves unknown is.
+const UNKNOWN: f64 = 10.0;
 
 /// Variance of a displacement that nobody measures, m²: with a law of motion nothing tells where it began, and any
 /// number serves that is no zero.
@@ -27,4 +33,18 @@ pub fn initial_state(measured: [Option<[f64; 2]>; 2], dt: f64, noise: &Noise) ->
             Filter::begin([0.0, first], [UNMEASURED, qd])
         }
     }
+}
+
+/// The state after an outage over which the motion cannot be followed: what is measured next, and nothing that was known
+/// of it before, `mean` (q, q̇), says anything of it.
+pub fn state_after_outage(mean: [f64; 2], measured: [Option<f64>; 2], noise: &Noise) -> Filter {
+    let (mut means, mut variances) = (mean, [0.0; 2]);
+    for channel in Channel::ALL {
+        let (place, noise) = (channel as usize, noise.sensor[channel as usize]);
+        (means[place], variances[place]) = match measured[place] {
+            Some(value) => (value, noise),
+            None => (mean[place], UNKNOWN * (mean[place] * mean[place] + noise)),
+        };
+    }
+    Filter::begin(means, variances)
 }

@@ -40,7 +40,7 @@ pub use covariance::Matrix;
 pub use difference_noise::DifferenceNoise;
 pub use filter::{Channel, Filter, Innovation, Noise, times, white_acceleration};
 pub use information::{Information, Solution};
-pub use initial_state::initial_state;
+pub use initial_state::{LOST, initial_state};
 pub use innovation_gate::{InnovationGate, OUTLYING};
 pub use odds::{SAMPLES_OF_A_VARIANCE, TWENTY_TO_ONE};
 pub use pass::{IntervalMap, Observation, Pass, gains};

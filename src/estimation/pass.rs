@@ -3,6 +3,7 @@
 use super::covariance::Matrix;
 use super::filter::{Channel, Filter, Innovation, Noise, times, white_acceleration};
 use super::information::Information;
+use super::initial_state::{LOST, state_after_outage};
 use super::innovation_gate::InnovationGate;
 use super::rivals::{RIVALS, Rivals};
 use super::symmetric::{Lane, WIDTH};
@@ -15,12 +16,6 @@ const MAX_PARTS: usize = 8;
 
 /// Largest rate per part, squared radians: below it a step of order 4 errs by less than 1e-7 of the motion.
 const MAX_RATE: f64 = 0.0025;
-
-/// A motion that turns by more than this in an outage, rad, cannot be followed over it: the excitation is not known.
-const LOST: f64 = 4.0;
-
-/// How many times its own square the variance of what an outage leaves unknown is.
-const UNKNOWN: f64 = 10.0;
 
 /// A sample and the excitation since the one before it.
 #[derive(Clone, Copy, Debug)]
@@ -222,20 +217,9 @@ impl Pass {
         self.quickest = self.quickest.max(self.fastest / (observation.dt * observation.dt));
     }
 
-    /// After an outage in which the motion has turned too far to be followed its state is what is measured next, and
-    /// nothing that was known of it before says anything of it.
+    /// Goes on after an outage in which the motion has turned too far to be followed.
     fn resume(&mut self, noise: &Noise, observation: &Observation) -> [Option<Innovation>; 2] {
-        let unknown = |value: f64, noise: f64| UNKNOWN * (value * value + noise);
-        let mut filter = self.filter;
-        filter.covariance = [[0.0; 2]; 2];
-        for channel in Channel::ALL {
-            let (place, noise) = (channel as usize, noise.sensor[channel as usize]);
-            let (mean, variance) = match observation.measured[place] {
-                Some(value) => (value, noise),
-                None => (filter.mean[place], unknown(filter.mean[place], noise)),
-            };
-            (filter.mean[place], filter.covariance[place][place]) = (mean, variance);
-        }
+        let filter = state_after_outage(self.filter.mean, observation.measured, noise);
         self.filter = filter;
         self.rivals.resume(filter);
         self.sensitivity.fill([0.0; 2]);

@@ -11,11 +11,12 @@
 //! its std. A filter whose coefficients have ceased to wander is begun again and again from the likeliest of them,
 //! until for some periods it loses nothing: the coefficients rest.
 
-use crate::estimation::{AugmentedFilter, Channel, InnovationGate, Noise, Observation, Start, Unknowns};
+use crate::estimation::{AugmentedFilter, Channel, InnovationGate, LOST, Noise, Observation, Start, Unknowns};
 use crate::evidence::SWITCH_SIZE;
 use crate::identify::problem::Problem;
 use crate::identify::window::Window;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// Std of the wandering over a natural period relative to the reach, of the coefficients and of the inertia. The last
 /// is too fast for a drift; with a slower one than the first, 0.3 %, std came out too small (docs/decisions/drift.md).
@@ -182,7 +183,9 @@ impl AugmentedDrift {
         }
         let stop = window.ready().min(self.next + BUDGET as u64);
         while self.course != Course::Idle && self.next < stop {
-            self.take(problem, &window.observation(self.next));
+            let observation = window.observation(self.next);
+            let turned = TAU * observation.dt / (self.period * window.pace());
+            self.take(problem, &observation, observation.unseen > 0.0 && turned > LOST);
             self.next += 1;
             match self.course {
                 Course::Trial => self.decide(),
@@ -195,8 +198,9 @@ impl AugmentedDrift {
         self.course != Course::Idle
     }
 
-    /// Every filter takes a sample; those that have left what can be computed fall out.
-    fn take(&mut self, problem: &Problem, observation: &Observation) {
+    /// Every filter takes a sample, which may be one after an outage in which the motion was lost; those that have left
+    /// what can be computed fall out.
+    fn take(&mut self, problem: &Problem, observation: &Observation, lost: bool) {
         let unknowns = unknowns(problem);
         let count = if self.course == Course::Trial { RIVALS } else { CONSTANT + 1 };
         let switched = self.rivals[SWITCHED..count.max(SWITCHED)].iter_mut().zip(&self.switch);
@@ -208,9 +212,12 @@ impl AugmentedDrift {
             if let Some(intensity) = INTENSITIES.get(index) {
                 rival.wander(&unknowns, &self.reach, intensity.map(|std| std / self.period.sqrt()));
             }
-            rival.advance(&unknowns, self.noise.process, self.parts, observation);
+            match lost {
+                true => rival.resume(&self.noise, observation),
+                false => rival.advance(&unknowns, self.noise.process, self.parts, observation),
+            }
         }
-        for channel in Channel::ALL {
+        for channel in Channel::ALL.into_iter().filter(|_| !lost) {
             let Some(measured) = observation.measured[channel as usize] else { continue };
             let variance = self.noise.sensor[channel as usize];
             let (residual, total) = self.rivals[SLOW - 1].residual(channel, measured, variance);
