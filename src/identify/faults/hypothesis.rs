@@ -19,6 +19,8 @@ pub enum Kind {
     Law { before: u8, times: u8 },
     /// Something moved q̇, and q follows.
     Kick,
+    /// What was read of F is not what acted: that was any force of its usual size.
+    Glitch,
     /// A channel has an offset.
     Offset(Channel),
     /// A channel repeats its value.
@@ -33,12 +35,13 @@ pub enum Kind {
 
 impl Kind {
     /// Every one of them, the least first.
-    pub const ALL: [Kind; 13] = [
+    pub const ALL: [Kind; 14] = [
         Kind::Readings,
         Kind::Law { before: 0, times: 1 },
         Kind::Law { before: 0, times: 10 },
         Kind::Law { before: 3, times: 1 },
         Kind::Kick,
+        Kind::Glitch,
         Kind::Offset(Channel::Q),
         Kind::Offset(Channel::Qd),
         Kind::Stuck(Channel::Q),
@@ -57,6 +60,11 @@ impl Kind {
     /// Whether the channel scatters more than it did.
     pub fn is_louder(self, channel: Channel) -> bool {
         self == Kind::BothLouder || self == Kind::Louder(channel)
+    }
+
+    /// Whether q̇ moved once by what no reading tells, and q follows.
+    pub fn is_kick(self) -> bool {
+        matches!(self, Kind::Kick | Kind::Glitch)
     }
 
     /// Whether the law is another one.
@@ -78,6 +86,8 @@ pub struct Expected<'a> {
     pub rate: f64,
     /// RMS of q and q̇: what an offset or a kick may be.
     pub size: [f64; 2],
+    /// RMS of F ÷ m.
+    pub drive: f64,
     /// Parts of an interval between two samples.
     pub parts: usize,
 }
@@ -240,6 +250,7 @@ impl Hypothesis {
 
     /// Goes over an interval.
     pub fn predict(&mut self, law: &Expected, dt: f64, drive: &Drive) {
+        let drive = if self.kind == Kind::Glitch && self.age == 0 { &Drive::Held(0.0) } else { drive };
         let parts = drive.parts(law.parts);
         let part_dt = dt / parts as f64;
         for part in 0..parts {
@@ -272,6 +283,7 @@ impl Hypothesis {
                 [if first { event } else { 0.0 }, acceleration * acceleration * law.rate]
             }
             Kind::Kick if first => [law.size[1] * law.size[1] / dt, 0.0],
+            Kind::Glitch if first => [law.drive * law.drive * dt, 0.0],
             _ => [0.0; 2],
         }
     }

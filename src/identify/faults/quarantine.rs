@@ -263,7 +263,7 @@ impl Quarantine {
         {
             let named = self.weighing.hypothesis(place);
             let over = Channel::ALL.into_iter().all(|channel| named.burst(channel) < OVER);
-            if over && matches!(named.kind, Kind::Readings | Kind::Kick) {
+            if over && (named.kind == Kind::Readings || named.kind.is_kick()) {
                 self.stance = Stance::Calm;
             }
         }
@@ -315,7 +315,7 @@ impl Quarantine {
     /// them.
     fn decide_on(&mut self, best: usize, arrival: &Arrival, law: &Expected) {
         let decided = self.weighing.hypothesis(best);
-        if self.stance == Stance::Named(best) && matches!(decided.kind, Kind::Readings | Kind::Kick) {
+        if self.stance == Stance::Named(best) && (decided.kind == Kind::Readings || decided.kind.is_kick()) {
             let (filter, bursts) = (decided.filter(), decided.bursts());
             self.weighing.begin(&filter, law, arrival.dt, (arrival.dt / SELDOM).min(OVER), [0.0; 2]);
             self.weighing.begin_bursts(bursts);
@@ -337,7 +337,7 @@ impl Quarantine {
             (reading.sample.q, reading.sample.qd) =
                 (if faulty[0] { state.q } else { q }, if faulty[1] { state.qd } else { qd });
             reading.faulty = faulty;
-            if kind == Kind::Kick && first && number == 0 {
+            if kind.is_kick() && first && number == 0 {
                 reading.unseen += law.kick(state.q, self.interval);
             }
             any = [any[0] || faulty[0], any[1] || faulty[1]];
@@ -384,7 +384,7 @@ impl Quarantine {
         }
         match kind {
             Kind::Offset(channel) => self.sensors[channel as usize] = SensorState::Offset,
-            Kind::Kick if first => self.sensors[2] = SensorState::Outlier,
+            Kind::Kick | Kind::Glitch if first => self.sensors[2] = SensorState::Outlier,
             _ => {}
         }
     }

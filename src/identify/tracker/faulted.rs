@@ -32,6 +32,7 @@ pub(super) fn expected<'a>(
         switch: [scales.restoring_acceleration(), INERTIA_SPREAD],
         rate: scales.natural_time().recip(),
         size,
+        drive: scales.acceleration(),
         parts: law.run.parts,
     }
 }
