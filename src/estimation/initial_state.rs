@@ -35,8 +35,8 @@ pub fn initial_state(measured: [Option<[f64; 2]>; 2], dt: f64, noise: &Noise) ->
     }
 }
 
-/// The state after an outage over which the motion cannot be followed: what is measured next, and nothing that was known
-/// of it before, `mean` (q, q̇), says anything of it.
+/// The state after an outage over which the motion cannot be followed: what is measured next, and nothing that was
+/// known of it before, `mean` (q, q̇), says anything of it.
 pub fn state_after_outage(mean: [f64; 2], measured: [Option<f64>; 2], noise: &Noise) -> Filter {
     let (mut means, mut variances) = (mean, [0.0; 2]);
     for channel in Channel::ALL {
