@@ -169,6 +169,11 @@ impl Quarantine {
         count - own as u64
     }
 
+    /// Whether readings are held of which nothing is known yet.
+    pub fn is_in_doubt(&self) -> bool {
+        self.stance == Stance::Doubt
+    }
+
     /// Whether what is held speaks for another law more than for any fault.
     pub fn suspects_law(&self) -> bool {
         self.count > 0 && self.weighing.law_against_fault() > 0.0
@@ -408,8 +413,8 @@ impl Quarantine {
         sensors
     }
 
-    /// Everything held enters the record as it is: there is no law to hold it against any more.
-    fn settle(&mut self) {
+    /// Everything held enters the record as it is: there is no law to hold it against any more, or none that says why.
+    pub fn settle(&mut self) {
         for number in 0..self.count {
             self.let_through(self.held[number]);
         }

@@ -81,16 +81,21 @@ impl Tracker {
             self.clear_suspicion();
             return true;
         }
-        let repeated = self.intake.force.run();
-        if repeated + SELDOM > TWENTY_TO_ONE {
+        if self.is_excitation_stuck() {
             self.lose_excitation();
             return true;
         }
         self.is_offset(suspect, threshold)
     }
 
-    /// F repeats exactly where it varied, and the motion goes its own way: F is not known.
-    fn lose_excitation(&mut self) {
+    /// Whether F repeats exactly where it varied, for longer than chance allows: where the motion goes its own way as
+    /// well, it is not what acts.
+    pub(super) fn is_excitation_stuck(&self) -> bool {
+        !self.intake.force_lost && self.intake.force.run() + SELDOM > TWENTY_TO_ONE
+    }
+
+    /// F is stuck, so that it is not known.
+    pub(super) fn lose_excitation(&mut self) {
         self.intake.force_lost = true;
         let (since, unseen) = (self.intake.force.length(), self.unknown_excitation());
         let open = |reading: &mut Reading| reading.unseen += unseen;

@@ -64,6 +64,10 @@ impl Tracker {
         let expected = known.then(|| (expected(problem, law, &segment.scales, size), law.run.filter));
         let measured = [problem.channels.q, problem.channels.qd];
         intake.quarantine.take(reading, measured, problem.hold, window.pace(), expected);
+        if intake.quarantine.is_in_doubt() && self.is_excitation_stuck() {
+            self.intake.quarantine.settle();
+            self.lose_excitation();
+        }
     }
 
     /// What the sensors of q, q̇ and F do.
