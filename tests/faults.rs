@@ -262,3 +262,48 @@ fn a_switch_is_seen_in_either_channel_alone() {
         assert!(output.switch_count == 1 && delay.is_some_and(|delay| delay < 0.1), "{channels:?}: {output:?}");
     }
 }
+
+#[test]
+fn a_rough_excitation_that_is_stuck_or_misread_is_no_fault_of_the_motion() {
+    for (builtin, seed) in
+        [(Builtin::VanDerPolWhite, 9007), (Builtin::DuffingWhite, 6000), (Builtin::VanDerPolWhite, 6000)]
+    {
+        let scenario = plant(builtin, seed, 20.0, 24.0);
+        let clean = samples(&scenario);
+        let first = 10_000;
+        let most = clean.iter().map(|sample| sample.excitation.abs()).fold(0.0, f64::max);
+        let mut stuck = clean.clone();
+        stuck[first..first + 1000].iter_mut().for_each(|sample| sample.excitation = clean[first - 1].excitation);
+        let misread = [-2.5, 2.5].map(|glitch| {
+            let mut misread = clean.clone();
+            misread[first].excitation += glitch * most;
+            misread
+        });
+        for readings in [&stuck, &misread[0], &misread[1]] {
+            let seen = watch(&scenario, builtin, readings);
+            assert_eq!(seen.switches, 1, "{builtin:?} {seed}: {seen:?}");
+            assert!(!seen.said(0).contains(&SensorState::Offset), "{builtin:?} {seed}: {seen:?}");
+        }
+    }
+}
+
+#[test]
+fn an_outage_before_a_switch_makes_no_drift_of_it() {
+    let builtin = Builtin::DuffingSine;
+    let scenario = plant(builtin, 5003, 20.0, 26.0);
+    let mut samples = samples(&scenario);
+    samples.drain(10_000..15_000);
+    let mut identifier = Identifier::new(&Model::cubic_library(), Settings::default()).unwrap();
+    let inertia = scenario.stages[1].coefficients[0];
+    let mut shown = 0;
+    for sample in samples {
+        // a stamp far ahead is skipped until the next one agrees
+        identifier.step(sample).ok();
+        if identifier.output().valid && sample.t > 21.0 {
+            let known = identifier.coefficients()[0].value;
+            assert!((known - inertia).abs() < 0.1 * inertia, "{known} at {} s, {inertia} is right", sample.t);
+            shown += 1;
+        }
+    }
+    assert!(shown > 2000, "valid in {shown} of 5000 samples");
+}
