@@ -5,7 +5,7 @@
 //! as it is after a radian of the motion. Under "a channel has an offset" u₀ is the offset.
 
 use super::price::{Burst, faulty, working};
-use crate::estimation::{Channel, Filter, Noise};
+use crate::estimation::{Channel, Filter, Matrix, Noise, times, white_acceleration};
 use crate::law::{Drive, Motion, State};
 use serde::{Deserialize, Serialize};
 
@@ -98,6 +98,22 @@ impl Expected<'_> {
         (self.size[1] * self.motion.mass(q)).powi(2) / dt
     }
 
+    /// The filter of (q, q̇) after an interval of the law in use.
+    pub fn carry(&self, filter: &Filter, dt: f64, drive: &Drive) -> Filter {
+        let mut filter = *filter;
+        let parts = drive.parts(self.parts);
+        let dt = dt / parts as f64;
+        let noise = white_acceleration(self.noise.process, dt);
+        for part in 0..parts {
+            let [from, middle, to] = drive.part(part, parts);
+            let state = filter.state();
+            let transition = transition(self.motion.acceleration_gradient(state, middle), dt);
+            filter.set_state(self.motion.step_linear(state, dt, from, to));
+            filter.predict(|change| times(&transition, change), &noise);
+        }
+        filter
+    }
+
     /// The noise, and a white force of intensity `unseen`, N² s, that acts on the mass at `q`.
     pub fn noise_with(&self, unseen: f64, q: f64) -> Noise {
         let mass = self.motion.mass(q);
@@ -114,6 +130,12 @@ pub struct Value {
     pub repeats: Option<f64>,
     /// Probability that a burst begins.
     pub start: f64,
+}
+
+/// What an interval makes of a small change of (q, q̇), where q̈ changes so by them.
+fn transition([by_q, by_qd]: [f64; 2], dt: f64) -> Matrix<2> {
+    let half = 0.5 * dt * dt;
+    [[1.0 + half * by_q, dt + half * by_qd], [dt * by_q, 1.0 + dt * by_qd]]
 }
 
 /// Probability that what befalls one channel begins in the other too: a loose plug, a logger that fails.
@@ -242,12 +264,6 @@ impl Hypothesis {
         (self.mean[2], self.covariance[2][2].max(0.0).sqrt())
     }
 
-    /// Expected value of the channel, and the variance of a reading about it.
-    pub fn expects(&self, channel: Channel, law: &Expected) -> (f64, f64) {
-        let index = channel as usize;
-        (self.mean[index], self.covariance[index][index] + law.noise.sensor[index])
-    }
-
     /// Goes over an interval.
     pub fn predict(&mut self, law: &Expected, dt: f64, drive: &Drive) {
         let drive = if self.kind == Kind::Glitch && self.age == 0 { &Drive::Held(0.0) } else { drive };
@@ -291,10 +307,10 @@ impl Hypothesis {
     /// Carries the covariance over a part of an interval.
     fn carry(&mut self, dt: f64, gradient: [f64; 2], inputs: [f64; 2], process: f64) {
         let half = 0.5 * dt * dt;
-        let [by_q, by_qd] = gradient;
+        let [of_q, of_qd] = transition(gradient, dt);
         let rows = [
-            [1.0 + half * by_q, dt + half * by_qd, half * inputs[0], half * inputs[1]],
-            [dt * by_q, 1.0 + dt * by_qd, dt * inputs[0], dt * inputs[1]],
+            [of_q[0], of_q[1], half * inputs[0], half * inputs[1]],
+            [of_qd[0], of_qd[1], dt * inputs[0], dt * inputs[1]],
         ];
         let before = self.covariance;
         let carried = |row: &[f64; 4], column: usize| (0..4).map(|k| row[k] * before[k][column]).sum::<f64>();

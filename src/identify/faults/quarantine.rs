@@ -127,7 +127,10 @@ impl Quarantine {
         self.samples += 1.0;
         self.sensors = self.standing();
         let arrival = before.map(|before| {
-            let course = law.map_or([f64::INFINITY; 2], |(law, filter)| self.course(&law, filter, before, reading));
+            // what the law expects to move is asked of a channel that repeats itself alone
+            let repeats = reading.sample.q == before.q || reading.sample.qd == before.qd;
+            let known = law.filter(|_| repeats);
+            let course = known.map_or([f64::INFINITY; 2], |(law, filter)| self.course(&law, filter, before, reading));
             self.arrival(reading, &before, measured, hold, course)
         });
         match (law, arrival) {
@@ -274,12 +277,12 @@ impl Quarantine {
         }
     }
 
-    fn is_expected(&mut self, arrival: &Arrival, law: &Expected, filter: &Filter) -> bool {
-        let expected = self.weighing.expects(filter, law, arrival.dt, &arrival.drive);
+    fn is_expected(&self, arrival: &Arrival, law: &Expected, filter: &Filter) -> bool {
+        let expected = law.carry(filter, arrival.dt, &arrival.drive);
         Channel::ALL.into_iter().all(|channel| match arrival.values[channel as usize] {
             Some(Value { value, repeats, .. }) => {
-                let (mean, variance) = expected.expects(channel, law);
-                repeats.is_none() && (value - mean).abs() <= OUTLYING * variance.sqrt()
+                let (residual, variance) = expected.residual(channel, value, law.noise.sensor[channel as usize]);
+                repeats.is_none() && residual * residual <= OUTLYING * OUTLYING * variance
             }
             None => true,
         })

@@ -53,13 +53,6 @@ impl Weighing {
         self.hypotheses[0].begin_bursts(bursts);
     }
 
-    /// Whether the sample's readings are as expected: the first hypothesis is left before them.
-    pub fn expects(&mut self, filter: &Filter, law: &Expected, dt: f64, drive: &Drive) -> &Hypothesis {
-        self.hypotheses[0].begin(filter, law, dt, 0.0);
-        self.hypotheses[0].predict(law, dt, drive);
-        &self.hypotheses[0]
-    }
-
     /// Takes a sample.
     pub fn take(&mut self, law: &Expected, dt: f64, drive: &Drive, values: [Option<Value>; 2], place: usize) {
         self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.take(law, dt, drive, values, place));
