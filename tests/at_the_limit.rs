@@ -58,7 +58,7 @@ fn the_sensors_noise_is_known_whatever_disturbs_it() {
             let found = identify(library, builtin, &disturbance.apply(&recorded.readings, noise, 700));
             let output = found.output();
             let truth = disturbance.std(noise);
-            for found in [output.noise_q, output.noise_qd] {
+            for found in [output.noise.q, output.noise.qd] {
                 let error = (found.unwrap() / truth - 1.0).abs();
                 let allowed = match disturbance {
                     Disturbance::Louder => 0.2,

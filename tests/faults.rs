@@ -216,7 +216,7 @@ fn a_sensor_that_becomes_louder_is_believed_and_its_noise_told() {
     let mut identifier = identifier(Builtin::DuffingSine);
     samples.iter().for_each(|sample| identifier.step(*sample).unwrap());
     let output = identifier.output();
-    let ratio = output.noise_qd.unwrap() / (3.0 * NOISE);
+    let ratio = output.noise.qd.unwrap() / (3.0 * NOISE);
     assert!((0.75..1.25).contains(&ratio) && output.switch_count == 0 && output.valid, "{ratio}: {output:?}");
     assert!(output.sensors == [SensorState::Ok; 3] && scenario.stages.len() == 2, "{:?}", output.sensors);
 }

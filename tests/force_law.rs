@@ -87,7 +87,7 @@ fn coefficients_are_at_the_limit_and_their_std_honest() {
             normalised += (0..4).map(deviation).sum::<f64>() / 4.0;
             ratio += error(&values) / bound(&scenario).relative_error.unwrap();
             valid += u64::from(stage.identified.is_some());
-            let noise = found.noise_force.unwrap_or(NOISE);
+            let noise = found.noise.force.unwrap_or(NOISE);
             assert!((noise / NOISE - 1.0).abs() < 0.15, "seed {seed}: noise {noise}");
         }
         let (ratio, normalised) = (ratio / seeds as f64, normalised / seeds as f64);

@@ -192,7 +192,7 @@ fn nonsense_gives_no_nan_and_no_panic() {
                 let [q, qd, excitation] = signal(k);
                 identifier.step(Sample { t: 1e-3 * f64::from(k), q, qd, excitation }).unwrap();
                 let output = identifier.output();
-                let numbers = [output.deviation, output.threshold, output.prediction_q, output.prediction_qd];
+                let numbers = [output.deviation, output.threshold, output.prediction.q, output.prediction.qd];
                 let known = identifier.coefficients().iter().flat_map(|known| [known.value, known.std.unwrap_or(0.0)]);
                 assert!(numbers.into_iter().chain(known).all(f64::is_finite), "{what}, {hold}, sample {k}: {output:?}");
             }

@@ -51,7 +51,7 @@ pub(super) fn stage_limits(
     recording: &Recording,
     settings: &Settings,
 ) -> Vec<Option<StageLimit>> {
-    if is_noiseless([found.noise_q, found.noise_qd], recording).contains(&true) {
+    if is_noiseless([found.noise.q, found.noise.qd], recording).contains(&true) {
         return found.stages.iter().map(|_| None).collect();
     }
     let noise = noise(found);
@@ -69,7 +69,7 @@ pub(super) fn stage_limits(
 /// everything.
 fn noise(found: &Identification) -> Noise {
     let variance = |std: Option<f64>| std.map_or(f64::MIN_POSITIVE, |std| std * std);
-    let sensor = [variance(found.noise_q), variance(found.noise_qd)];
+    let sensor = [variance(found.noise.q), variance(found.noise.qd)];
     let process = LEAST * sensor.into_iter().filter(|variance| *variance > f64::MIN_POSITIVE).fold(0.0, f64::max);
     Noise { sensor, process }
 }
@@ -138,7 +138,7 @@ fn known_law(stage: &Stage) -> Option<(Law, Vec<(Term, f64)>)> {
 pub(super) fn force_limits(model: &Model, found: &Identification, recording: &Recording) -> Vec<Option<StageLimit>> {
     let fit = fit_force_law(model, recording).ok().flatten();
     let limit = |stage: &Stage| {
-        let (fit, std) = (fit.as_ref()?, found.noise_force.filter(|_| stage.identified.is_some())?);
+        let (fit, std) = (fit.as_ref()?, found.noise.force.filter(|_| stage.identified.is_some())?);
         let during = fit.motion.iter().filter(|(t, _)| (stage.start..=stage.end).contains(t));
         let motion: Vec<Imposed> = during.map(|(t, state)| Imposed { t: *t, state: *state }).collect();
         let (law, _) = known_law(stage)?;

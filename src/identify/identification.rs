@@ -4,7 +4,7 @@ use super::check::BuildError;
 use super::identifier::Identifier;
 use super::library::SavedLaws;
 use super::recording::Recording;
-use super::report::{Coefficient, SensorState};
+use super::report::{ByQuantity, Coefficient, SensorState};
 use super::sample::Skipped;
 use super::settings::{Method, Settings};
 use crate::estimation::Missing;
@@ -91,12 +91,9 @@ const CHANNELS: [&str; 3] = ["q", "qd", "F"];
 pub struct Identification {
     /// The stages, in the order of time; at least one.
     pub stages: Vec<Stage>,
-    /// Estimated std of the displacement's sensor noise.
-    pub noise_q: Option<f64>,
-    /// Estimated std of the velocity's sensor noise.
-    pub noise_qd: Option<f64>,
-    /// Estimated std of what the force has besides a law that gives it; `None` for a law of motion.
-    pub noise_force: Option<f64>,
+    /// Estimated std of the noise of the sensors of q and q̇, and of what the force has besides a law that gives it;
+    /// `None` where not known, of the force for a law of motion.
+    pub noise: ByQuantity<Option<f64>>,
     /// The laws that were validated, to be recognised in other recordings.
     pub known_laws: SavedLaws,
     /// What the excitation did between samples: as set, or as the motion tells.
@@ -188,9 +185,7 @@ pub fn identify_knowing(
     let fresh = Identifier::new(model, settings)?;
     let mut found = Identification {
         stages: Vec::new(),
-        noise_q: None,
-        noise_qd: None,
-        noise_force: None,
+        noise: ByQuantity::default(),
         known_laws: known.clone(),
         hold: settings.hold,
         sensors: Vec::new(),
@@ -233,9 +228,8 @@ fn follow(
     present.unidentifiable = identifier.unidentifiable();
     found.stages.push(present);
     found.known_laws = identifier.known_laws();
-    found.noise_q = identifier.output().noise_q.or(found.noise_q);
-    found.noise_force = identifier.output().noise_force.or(found.noise_force);
-    found.noise_qd = identifier.output().noise_qd.or(found.noise_qd);
+    let (now, before) = (identifier.output().noise, found.noise);
+    found.noise = ByQuantity { q: now.q.or(before.q), qd: now.qd.or(before.qd), force: now.force.or(before.force) };
 }
 
 /// Faults that have ended at a sample, and those that have begun.

@@ -6,7 +6,7 @@ use super::force_law::ForceTracker;
 use super::library::{SavedLaws, SavedLawsError};
 use super::problem::Problem;
 use super::published_method::Publication;
-use super::report::{Coefficient, Output, SensorState, Status};
+use super::report::{ByQuantity, Coefficient, Output, SensorState, Status};
 use super::sample::{Sample, Skipped};
 use super::settings::{Method, Settings};
 use super::timing::{Alignment, Timing};
@@ -76,13 +76,9 @@ impl Identifier {
             drifting: false,
             deviation: 0.0,
             threshold: 0.0,
-            prediction_force: 0.0,
-            prediction_q: 0.0,
-            prediction_qd: 0.0,
+            prediction: ByQuantity::default(),
             explained: None,
-            noise_q: None,
-            noise_qd: None,
-            noise_force: None,
+            noise: ByQuantity::default(),
             missing: None,
             hold: settings.hold,
         };

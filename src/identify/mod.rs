@@ -40,6 +40,6 @@ pub use library::{SavedLaw, SavedLaws, SavedLawsError, SavedNoise};
 pub use outputs::{OutputDescription, OutputKind, OutputValue, Outputs, UNKNOWN};
 pub use parameters::Parameter;
 pub use recording::{Gap, Recording, RecordingError, settings_for};
-pub use report::{Coefficient, Output, SensorState, Status};
+pub use report::{ByQuantity, Coefficient, Output, SensorState, Status};
 pub use sample::{Sample, Skipped};
 pub use settings::{Channels, Method, Settings, SettingsError};

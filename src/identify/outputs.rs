@@ -214,8 +214,8 @@ fn scalars_of(force_law: bool) -> impl Iterator<Item = Scalar> {
 /// In the order of [`OF_FORCE`].
 fn of_force(identifier: &Identifier) -> [OutputValue; OF_FORCE.len()] {
     let output = identifier.output();
-    let (noise, explained) = (output.noise_force.unwrap_or(UNKNOWN), output.explained.unwrap_or(0.0));
-    [output.prediction_force, noise, explained].map(OutputValue::Real)
+    let (noise, explained) = (output.noise.force.unwrap_or(UNKNOWN), output.explained.unwrap_or(0.0));
+    [output.prediction.force, noise, explained].map(OutputValue::Real)
 }
 
 fn scalars(identifier: &Identifier) -> [OutputValue; SCALARS.len()] {
@@ -230,10 +230,10 @@ fn scalars(identifier: &Identifier) -> [OutputValue; SCALARS.len()] {
         OutputValue::Flag(output.valid),
         OutputValue::Real(output.deviation),
         OutputValue::Real(output.threshold),
-        OutputValue::Real(output.prediction_q),
-        OutputValue::Real(output.prediction_qd),
-        or_unknown(output.noise_q),
-        or_unknown(output.noise_qd),
+        OutputValue::Real(output.prediction.q),
+        OutputValue::Real(output.prediction.qd),
+        or_unknown(output.noise.q),
+        or_unknown(output.noise.qd),
         or_unknown(output.identified_time),
         OutputValue::Effect(output.missing.map_or(1, |missing| missing.entry as u8 + 2)),
         OutputValue::Real(output.missing.map_or(0.0, |missing| missing.evidence)),

@@ -88,6 +88,17 @@ pub struct Coefficient {
     pub needed: Option<f64>,
 }
 
+/// One value for each quantity that is measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ByQuantity<T> {
+    /// Of the displacement.
+    pub q: T,
+    /// Of the velocity.
+    pub qd: T,
+    /// Of the excitation, or of the force that a law without inertia gives.
+    pub force: T,
+}
+
 /// All other outputs after a step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Output {
@@ -122,22 +133,16 @@ pub struct Output {
     pub deviation: f64,
     /// The deviation that is out of the ordinary.
     pub threshold: f64,
-    /// Force that the law predicts for this instant; 0 for a law of motion.
-    pub prediction_force: f64,
-    /// Displacement that the law predicts for this instant.
-    pub prediction_q: f64,
-    /// Velocity that the law predicts for this instant.
-    pub prediction_qd: f64,
+    /// What the law predicts for this instant, m, m/s and N: of the force 0 for a law of motion, of the motion 0 for a
+    /// law that gives F.
+    pub prediction: ByQuantity<f64>,
     /// The effect of the catalogue that the present law lacks most; `None` where none stands out.
     pub missing: Option<Missing>,
     /// Share of the force's variance that the published coefficients explain: of a law without inertia, and of one of
     /// motion where they are those of the weak form; `None` for a law of motion that states its own std, and while
     /// nothing is known.
     pub explained: Option<f64>,
-    /// Estimated std of the displacement's sensor noise; `None` while not known or not measured.
-    pub noise_q: Option<f64>,
-    /// Estimated std of the velocity's sensor noise; `None` while not known or not measured.
-    pub noise_qd: Option<f64>,
-    /// Estimated std of what the force has besides the law; `None` while not known, and for a law of motion.
-    pub noise_force: Option<f64>,
+    /// Estimated std of the noise of the sensors of q and q̇, and of what the force has besides the law; `None` while
+    /// not known or not measured, of the force for a law of motion.
+    pub noise: ByQuantity<Option<f64>>,
 }

@@ -233,7 +233,7 @@ fn a_law_that_gives_the_force_is_identified_as_in_the_library() {
     assert_eq!(instance.integer(subject.reference("switch.count")), Ok(1));
     assert_eq!(instance.boolean(subject.reference("valid")), Ok(1));
     let read = |name: &str| instance.reals(&[subject.reference(name)]).unwrap()[0];
-    assert_eq!(read("prediction.F"), output.prediction_force);
+    assert_eq!(read("prediction.F"), output.prediction.force);
     assert_eq!(read("deviation"), output.deviation);
     assert!(output.deviation > 0.0 && output.deviation < output.threshold, "{output:?}");
     for coefficient in library.coefficients() {

@@ -49,5 +49,5 @@ fn errors(builtin: Builtin, disturbance: Disturbance, noise: f64, seed: u64) -> 
     let output = identifier.output();
     let truth = disturbance.std(noise);
     let error = |found: Option<f64>| found.map_or(f64::INFINITY, |found| (found / truth - 1.0).abs());
-    Ok(([output.noise_q, output.noise_qd].map(error), output.switch_count))
+    Ok(([output.noise.q, output.noise.qd].map(error), output.switch_count))
 }

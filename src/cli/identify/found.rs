@@ -34,6 +34,6 @@ pub(super) fn missing(found: &Identification) -> Option<(usize, Missing)> {
 
 /// Estimated std of the sensors' noise by channel.
 pub(super) fn noise(found: &Identification) -> Vec<(String, f64)> {
-    let channels = [("q", found.noise_q), ("qd", found.noise_qd), ("F", found.noise_force)];
+    let channels = [("q", found.noise.q), ("qd", found.noise.qd), ("F", found.noise.force)];
     channels.into_iter().filter_map(|(channel, std)| Some((channel.to_string(), std?))).collect()
 }

@@ -301,7 +301,7 @@ fn warnings(run: &Run) -> Vec<String> {
         let count = run.found.skipped.len();
         warnings.push(format!("{source}: {count} samples were not used; the first: {first}"));
     }
-    if is_noiseless([run.found.noise_q, run.found.noise_qd], recording).contains(&true) {
+    if is_noiseless([run.found.noise.q, run.found.noise.qd], recording).contains(&true) {
         warnings.push(format!(
             "{source}: hardly any sensor noise is to be seen: no comparison with what any method could reach"
         ));

@@ -267,9 +267,9 @@ impl ForceTracker {
             (None, false, 0) => Status::Acquiring,
             (None, false, _) => Status::ReIdentifying,
         };
-        output.noise_force = stage.white.filter(|_| !stage.is_coloured()).map(f64::sqrt);
+        output.noise.force = stage.white.filter(|_| !stage.is_coloured()).map(f64::sqrt);
         let [q, qd] = self.smoothness.map(|channel| channel.map(|channel| channel.variance.sqrt()));
-        (output.noise_q, output.noise_qd) = (q, qd);
+        (output.noise.q, output.noise.qd) = (q, qd);
         self.predict(problem, settings, sample, output);
     }
 
@@ -281,8 +281,8 @@ impl ForceTracker {
         if !(is_weighable(prediction) && is_weighable(of_motion)) {
             return;
         }
-        output.prediction_force = prediction;
-        self.deviation.add(sample.t, (output.prediction_force - sample.excitation).abs());
+        output.prediction.force = prediction;
+        self.deviation.add(sample.t, (output.prediction.force - sample.excitation).abs());
         output.deviation = self.deviation.mean();
         output.threshold = match settings.deviation_threshold {
             0.0 => self.stage.unusual_deviation(of_motion, settings),

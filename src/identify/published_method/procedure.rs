@@ -155,7 +155,7 @@ impl Publication {
         self.next = self.recent.ready();
         let Sample { q, qd, .. } = *self.recent.sample(self.next - 1);
         self.prediction = State { q, qd };
-        (output.prediction_q, output.prediction_qd) = (q, qd);
+        (output.prediction.q, output.prediction.qd) = (q, qd);
         output.status = Status::Tracking;
         output.valid = true;
         output.identified_time = self.newest().map(|sample| sample.t);
@@ -166,7 +166,7 @@ impl Publication {
             self.predict(problem, settings);
             self.next += 1;
         }
-        (output.prediction_q, output.prediction_qd) = (self.prediction.q, self.prediction.qd);
+        (output.prediction.q, output.prediction.qd) = (self.prediction.q, self.prediction.qd);
         let deviation = self.deviation.mean();
         output.deviation = deviation;
         let compared = self.recent.sample(self.next - 1).t;

@@ -2,7 +2,7 @@
 
 use super::state::{Setup, Tracker};
 use crate::identify::problem::Problem;
-use crate::identify::report::{Coefficient, Output};
+use crate::identify::report::{ByQuantity, Coefficient, Output};
 use crate::identify::segment::GROWTH;
 use crate::identify::settings::Settings;
 use crate::identify::validation::TRUSTED;
@@ -46,15 +46,11 @@ impl Tracker {
             drifting: self.regime.is_drifting(),
             deviation: prediction.shown_deviation,
             threshold: prediction.shown_threshold,
-            prediction_force: 0.0,
-            prediction_q: prediction.shown.q,
-            prediction_qd: prediction.shown.qd,
+            prediction: ByQuantity { q: prediction.shown.q, qd: prediction.shown.qd, force: 0.0 },
             missing: published.missing,
             hold: self.window.hold(),
             explained: None,
-            noise_q: published.noise[0],
-            noise_qd: published.noise[1],
-            noise_force: None,
+            noise: ByQuantity { q: published.noise[0], qd: published.noise[1], force: None },
         }
     }
 
