@@ -72,9 +72,11 @@ impl RowsOfLength {
         let unknowns = fit.rank as f64;
         let independent = (rows / (OVERLAP as f64 / 2.0) - unknowns).max(0.5);
         let right = (self.norm / rows).sqrt();
-        Some(match fit.rank == 0 || right == 0.0 {
+        let tells_nothing = fit.rank == 0 && !self.noise.is_empty();
+        Some(match tells_nothing || right == 0.0 {
             true => f64::INFINITY,
-            false => fit.residual / right * (unknowns / independent).sqrt(),
+            // a law of numbers alone leaves what it leaves
+            false => fit.residual / right * (unknowns.max(1.0) / independent).sqrt(),
         })
     }
 
