@@ -307,3 +307,20 @@ fn an_outage_before_a_switch_makes_no_drift_of_it() {
     }
     assert!(shown > 2000, "valid in {shown} of 5000 samples");
 }
+
+#[test]
+fn a_drive_that_is_switched_off_hides_neither_an_outlier_nor_a_switch() {
+    for (builtin, seed) in
+        [Builtin::DuffingSine, Builtin::VanDerPolSine].into_iter().flat_map(|plant| [(plant, 71), (plant, 72)])
+    {
+        let mut scenario = plant(builtin, seed, 16.0, 20.0);
+        scenario.stages.insert(1, scenario.stages[0].clone());
+        (scenario.stages[1].start, scenario.stages[1].amplitude, scenario.stages[2].amplitude) = (10.0, 0.0, 0.0);
+        let mut samples = samples(&scenario);
+        samples[14_500].qd += 20.0 * NOISE;
+        let seen = watch(&scenario, builtin, &samples);
+        assert_eq!(seen.switches, 1, "{builtin:?} {seed}: {seen:?}");
+        assert_eq!(seen.said(2), [SensorState::Ok], "{builtin:?} {seed}: {seen:?}");
+        assert!(seen.said(1).contains(&SensorState::Outlier), "{builtin:?} {seed}: {seen:?}");
+    }
+}

@@ -89,9 +89,11 @@ impl Tracker {
     }
 
     /// Whether F repeats exactly where it varied, for longer than chance allows: where the motion goes its own way as
-    /// well, it is not what acts.
+    /// well, it is not what acts. A motion that has followed it for a radian says that it is: the drive is off.
     pub(super) fn is_excitation_stuck(&self) -> bool {
-        !self.intake.force_lost && self.intake.force.run() + SELDOM > TWENTY_TO_ONE
+        let lasts = self.intake.force.length() as f64 * self.window.pace();
+        let is_stuck = self.intake.force.run() + SELDOM > TWENTY_TO_ONE;
+        is_stuck && !self.intake.force_lost && lasts < self.segment.scales.natural_time()
     }
 
     /// F is stuck, so that it is not known.
