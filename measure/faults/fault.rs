@@ -64,7 +64,7 @@ pub enum Fault {
 
 impl Fault {
     /// All of them, in the order of the table.
-    pub const ALL: [Fault; 29] = [
+    pub const ALL: [Fault; 30] = [
         Fault::Clean,
         Fault::Burst(Of::Q),
         Fault::Burst(Of::Qd),
@@ -90,6 +90,7 @@ impl Fault {
         Fault::Coarse(5),
         Fault::Coarse(10),
         Fault::Coarse(20),
+        Fault::Coarse(50),
         Fault::Lacks("coulomb_friction"),
         Fault::Lacks("quadratic_damping"),
         Fault::Lacks("bilinear_stiffness"),

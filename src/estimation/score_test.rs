@@ -47,10 +47,23 @@ impl Missing {
 pub struct Lag {
     /// By how many samples F acted later than it is taken to.
     pub samples: f64,
-    /// Std of that.
+    /// Std of that; infinite where the motion says nothing.
     pub std: f64,
-    /// Log-likelihood that it would gain, nats.
-    pub evidence: f64,
+}
+
+impl Lag {
+    /// Nothing is said.
+    pub const UNKNOWN: Lag = Lag { samples: 0.0, std: f64::INFINITY };
+
+    /// Log-likelihood that it gains over none, nats.
+    pub fn evidence(&self) -> f64 {
+        0.5 * (self.samples / self.std).powi(2)
+    }
+
+    /// Whether it is certain that there is one.
+    pub fn is_told(&self) -> bool {
+        self.evidence() > NAMED
+    }
 }
 
 /// The candidates beside a run.
@@ -180,16 +193,20 @@ impl ScoreTest {
         all.max_by(|a, b| a.evidence.total_cmp(&b.evidence)).filter(|missing| missing.evidence > NAMED)
     }
 
-    /// When F acted, where that is not when it is taken to have.
-    pub fn lag(&self, overdispersion: f64) -> Option<Lag> {
-        let inflated = overdispersion.max(1.0);
+    /// When F acted against when it is taken to have; `slope` becomes what a lag of one sample makes of the free
+    /// coefficients, n.
+    pub fn lag(&self, overdispersion: f64, slope: &mut [f64]) -> Lag {
         let lag = |sums: &Sums, sign: f64| {
-            let (samples, gain, information) = sums.gain(&self.solution, &self.active, &self.own_score);
-            Lag { samples: sign * samples, std: (inflated / information).sqrt(), evidence: gain / inflated }
+            let (samples, _, information) = sums.gain(&self.solution, &self.active, &self.own_score);
+            Lag { samples: sign * samples, std: (overdispersion.max(1.0) / information).sqrt() }
         };
-        let [late, early] = &self.lags;
-        let [late, early] = [lag(late, 1.0), lag(early, -1.0)];
-        Some(if late.evidence > early.evidence { late } else { early }).filter(|lag| lag.evidence > NAMED)
+        let [late, early] = [lag(&self.lags[0], 1.0), lag(&self.lags[1], -1.0)];
+        let is_late = late.evidence() >= early.evidence();
+        let (sums, sign) = if is_late { (&self.lags[0], 1.0) } else { (&self.lags[1], -1.0) };
+        for (row, slope) in slope.iter_mut().enumerate() {
+            *slope = if self.active[row] { -sign * sums.shared(row, &self.solution, &self.active) } else { 0.0 };
+        }
+        if is_late { late } else { early }
     }
 }
 
@@ -219,11 +236,9 @@ impl Sums {
 
     /// (coefficient, gain in log-likelihood, information of its own) beside the law's own terms.
     fn gain(&self, own: &Solution, active: &[bool], own_score: &[f64]) -> (f64, f64, f64) {
-        let n = self.cross.len();
-        let terms = || (0..n).filter(|index| active[*index] && own.determined[*index]);
         let (mut information, mut score) = (self.information, self.score);
-        for row in terms() {
-            let shared: f64 = terms().map(|column| own.covariance[row * n + column] * self.cross[column]).sum();
+        for row in determined(own, active) {
+            let shared = self.shared(row, own, active);
             information -= self.cross[row] * shared;
             score -= shared * own_score[row];
         }
@@ -232,6 +247,17 @@ impl Sums {
             false => (0.0, 0.0, 0.0),
         }
     }
+
+    /// Row of M⁻¹c: how much of the coefficient is one of the law's own.
+    fn shared(&self, row: usize, own: &Solution, active: &[bool]) -> f64 {
+        let n = self.cross.len();
+        determined(own, active).map(|column| own.covariance[row * n + column] * self.cross[column]).sum()
+    }
+}
+
+/// The terms that the law has and its record determines.
+fn determined(own: &Solution, active: &[bool]) -> impl Iterator<Item = usize> {
+    (0..active.len()).filter(|index| active[*index] && own.determined[*index])
 }
 
 /// The term with inner parameters that suit a motion of this size.

@@ -9,7 +9,7 @@ use super::published_method::Publication;
 use super::report::{ByQuantity, Coefficient, Output, SensorState, Status};
 use super::sample::{Sample, Skipped};
 use super::settings::{Method, Settings};
-use super::timing::{Alignment, Timing};
+use super::timing::Alignment;
 use super::tracker::Tracker;
 use crate::law::{Model, Term};
 use serde::{Deserialize, Serialize};
@@ -42,7 +42,6 @@ pub struct Identifier {
     coefficients: Vec<Coefficient>,
     output: Output,
     clock: Clock,
-    timing: Timing,
     alignment: Alignment,
 }
 
@@ -83,8 +82,7 @@ impl Identifier {
             hold: settings.hold,
         };
         let (clock, alignment) = (Clock::default(), Alignment::default());
-        let timing = Timing::new(settings.hold);
-        Ok(Identifier { settings, problem, engine, potential, coefficients, output, clock, timing, alignment })
+        Ok(Identifier { settings, problem, engine, potential, coefficients, output, clock, alignment })
     }
 
     /// Takes one sample.
@@ -97,17 +95,14 @@ impl Identifier {
             Err(skipped) => return Err(self.skip(&sample, skipped)),
         };
         self.clock.advance(sample.t);
-        let Some(sample) = self.alignment.align(self.timing.lag, sample) else { return Ok(()) };
-        let Identifier { settings, problem, engine, coefficients, output, timing, .. } = self;
+        let Some(sample) = self.alignment.align(self.problem.timing.lag, sample) else { return Ok(()) };
+        let Identifier { settings, problem, engine, coefficients, output, .. } = self;
         match engine {
             Engine::Default(tracker) => {
                 tracker.step(problem, settings, sample);
-                if let Some(corrected) = tracker.corrected_timing(timing) {
-                    (*timing, problem.hold) = (corrected, corrected.hold);
-                    tracker.begin_under_another_timing(problem);
-                }
+                tracker.correct_timing(problem);
                 tracker.show(problem, settings, coefficients, output);
-                timing.say_late(problem.channels, &mut output.sensors);
+                problem.timing.say_late(problem.channels, &mut output.sensors);
             }
             Engine::Publication(publication) => publication.step(problem, settings, sample, coefficients, output),
             Engine::Force(tracker) => tracker.step(problem, settings, sample, coefficients, output),

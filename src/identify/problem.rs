@@ -1,7 +1,8 @@
 //! What is sought: the model's terms, split into known and free coefficients.
 
 use super::settings::{Channels, Settings};
-use crate::law::{Expression, Given, Hold, Model, Motion, Term};
+use super::timing::Timing;
+use crate::law::{Expression, Given, Model, Motion, Term};
 use crate::weak::Row;
 use serde::{Deserialize, Serialize};
 
@@ -24,8 +25,8 @@ pub struct Problem {
     pub inertia: usize,
     /// Which quantities are measured.
     pub channels: Channels,
-    /// What the excitation does between samples.
-    pub hold: Hold,
+    /// When the excitation acts.
+    pub timing: Timing,
 }
 
 impl Problem {
@@ -52,7 +53,7 @@ impl Problem {
             inertia: model.position(Term::Inertia).unwrap_or(0),
             free,
             channels,
-            hold: settings.hold,
+            timing: Timing::new(settings.hold),
         }
     }
 

@@ -75,7 +75,7 @@ impl SectionBuffer {
             qd: &self.qd[..length],
             qd_measured: problem.channels.qd,
             excitation: &self.excitation[..length],
-            hold: if problem.channels.excitation { problem.hold } else { Hold::Zero },
+            hold: if problem.channels.excitation { problem.timing.hold } else { Hold::Zero },
         }
     }
 }

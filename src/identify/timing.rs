@@ -3,24 +3,33 @@
 use super::report::SensorState;
 use super::sample::Sample;
 use super::settings::Channels;
-use crate::estimation::Lag;
+use crate::estimation::{Lag, TWENTY_TO_ONE};
 use crate::law::Hold;
 use serde::{Deserialize, Serialize};
 
-/// A lag is taken for the nearest half sample from this std on: a quarter is two of them.
+/// A lag is taken for that of a hold or of a late channel, which are far likelier than any other, from this std on, in
+/// samples: two of them are four apart …
 const TOLD: f64 = 0.125;
 
-/// A lag further from every half sample than this is none that a hold or a late channel makes: F then comes late by a
-/// time of its own.
-const HALF: f64 = 0.1;
+/// … and within so many.
+const OWN: f64 = 3.0;
+
+/// Samples that F may act later and earlier than it comes: by one, and by what a hold adds to that.
+const LATEST: f64 = 1.5;
+const EARLIEST: f64 = -1.0;
+
+/// Std of a lag that nobody has told yet, in samples: that of a hold.
+const UNTOLD: f64 = 0.5;
 
 /// What is assumed of F.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Timing {
     /// What it does between samples.
     pub hold: Hold,
-    /// Samples that it acts later than it comes: 1 where q and q̇ come late, −1 where F does.
-    pub lag: i8,
+    /// Samples that it acts later than it comes: 1 where q and q̇ come a sample late, −1 where F does.
+    pub lag: f64,
+    /// Std of that; 0 where a hold or a late channel explains it.
+    std: f64,
     /// Samples of the record that told so: another is believed of a record twice as long only.
     told_by: u64,
 }
@@ -28,29 +37,55 @@ pub struct Timing {
 impl Timing {
     /// The channels in time.
     pub fn new(hold: Hold) -> Timing {
-        Timing { hold, lag: 0, told_by: 0 }
+        Timing { hold, lag: 0.0, std: 0.0, told_by: 0 }
     }
 
-    /// What is assumed once a record of so many samples tells of a lag. To first order a force held over an interval is
-    /// one that moves straight and acts half a sample late.
+    /// Samples that F acts later than it comes, were it to move straight: to first order a force held over an interval
+    /// is one that does and acts half a sample late.
+    pub fn late(&self) -> f64 {
+        self.lag + if self.hold == Hold::Zero { 0.5 } else { 0.0 }
+    }
+
+    /// What is assumed once a record of so many samples tells of a lag.
     pub fn corrected(&self, found: &Lag, samples: u64) -> Option<Timing> {
-        let halves = (2.0 * found.samples).round();
-        let is_told = found.std < TOLD && (found.samples - 0.5 * halves).abs() < HALF.max(3.0 * found.std);
-        if !is_told || halves == 0.0 || samples < 2 * self.told_by || self.hold == Hold::BandLimited {
+        let is_told = found.is_told() && samples >= 2 * self.told_by;
+        if !is_told || self.hold == Hold::BandLimited {
             return None;
         }
-        let late = f64::from(2 * self.lag) + if self.hold == Hold::Zero { 1.0 } else { 0.0 } + halves;
-        let lag = (0.5 * late).floor();
-        let hold = if 2.0 * lag == late { Hold::Linear } else { Hold::Zero };
-        (lag.abs() <= 1.0).then_some(Timing { hold, lag: lag as i8, told_by: samples })
+        let late = self.late() + found.samples;
+        let nearest = 0.5 * (2.0 * late).round();
+        let (late, std) = match found.std < TOLD && (late - nearest).abs() < OWN * found.std {
+            true => (nearest, 0.0),
+            false => (late, found.std),
+        };
+        let hold = if (late - 0.5).fract() == 0.0 { Hold::Zero } else { Hold::Linear };
+        let lag = late - if hold == Hold::Zero { 0.5 } else { 0.0 };
+        let is_new = (EARLIEST..=LATEST).contains(&lag) && late != self.late();
+        is_new.then_some(Timing { hold, lag, std, told_by: samples })
+    }
+
+    /// Mean square of the lag beyond what is assumed that a record saying `found` leaves open, in squares of a sample.
+    /// Before any record what was said is right at odds of twenty to one, and a lag is normal about none else; one
+    /// that was told is.
+    pub fn left_open(&self, found: &Lag) -> f64 {
+        let prior = if self.std > 0.0 { self.std } else { UNTOLD }.powi(2);
+        let precision = found.std.powi(-2);
+        let variance = (precision + prior.recip()).recip();
+        let mean = variance * precision * found.samples;
+        let square = variance + mean * mean;
+        if self.std > 0.0 {
+            return square;
+        }
+        let gain = 0.5 * (mean * mean / variance + (variance / prior).ln());
+        square / (1.0 + (TWENTY_TO_ONE - gain).exp())
     }
 
     /// Says which of the channels measured come late, where they do nothing worse.
     pub fn say_late(&self, channels: Channels, sensors: &mut [SensorState; 3]) {
-        let late = match self.lag {
-            0 => [false; 3],
-            1.. => [channels.q, channels.qd, false],
-            _ => [false, false, true],
+        // up to half a sample is a hold's
+        let late = match self.late() {
+            late if late > 0.5 => [channels.q, channels.qd, false],
+            late => [false, false, late < 0.0],
         };
         let said = sensors.iter_mut().zip(late).filter(|(state, late)| *late && **state == SensorState::Ok);
         said.for_each(|(state, _)| *state = SensorState::Late);
@@ -61,18 +96,22 @@ impl Timing {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Alignment {
     last: Option<Sample>,
+    /// F of the one before that, N.
+    excitation_before: f64,
     /// Time of the last sample that was given, s.
     given: Option<f64>,
 }
 
 impl Alignment {
     /// The sample with the F that acted at its instant; none where that is still to come.
-    pub fn align(&mut self, lag: i8, sample: Sample) -> Option<Sample> {
+    pub fn align(&mut self, lag: f64, sample: Sample) -> Option<Sample> {
         let last = self.last.replace(sample).unwrap_or(sample);
+        let before = std::mem::replace(&mut self.excitation_before, last.excitation);
+        let [now, last_one] = [sample, last].map(|sample| sample.excitation);
         let aligned = match lag {
-            0 => sample,
-            1.. => Sample { excitation: last.excitation, ..sample },
-            _ => Sample { excitation: sample.excitation, ..last },
+            0.0..=1.0 => Sample { excitation: now + (last_one - now) * lag, ..sample },
+            1.0.. => Sample { excitation: last_one + (before - last_one) * (lag - 1.0), ..sample },
+            _ => Sample { excitation: now + (last_one - now) * (1.0 + lag), ..last },
         };
         let is_new = self.given.is_none_or(|given| aligned.t > given);
         is_new.then(|| {
@@ -87,28 +126,41 @@ mod tests {
     use super::*;
 
     fn found(samples: f64) -> Lag {
-        Lag { samples, std: 0.02, evidence: 50.0 }
+        Lag { samples, std: 0.02 }
     }
 
     #[test]
     fn half_a_sample_is_a_hold_and_a_whole_one_a_late_channel() {
         let held = Timing::new(Hold::Zero);
         let after = |timing: Timing, samples| timing.corrected(&found(samples), 1000).map(|new| (new.hold, new.lag));
-        assert_eq!(after(held, -0.5), Some((Hold::Linear, 0)));
-        assert_eq!(after(held, 0.98), Some((Hold::Zero, 1)));
-        assert_eq!(after(held, -1.03), Some((Hold::Zero, -1)));
-        assert_eq!(after(Timing::new(Hold::Linear), 0.5), Some((Hold::Zero, 0)));
-        assert_eq!(after(held, 0.25), None, "no lag of a hold or a channel");
+        assert_eq!(after(held, -0.5), Some((Hold::Linear, 0.0)));
+        assert_eq!(after(held, 0.98), Some((Hold::Zero, 1.0)));
+        assert_eq!(after(held, -1.03), Some((Hold::Zero, -1.0)));
+        assert_eq!(after(Timing::new(Hold::Linear), 0.5), Some((Hold::Zero, 0.0)));
+        assert_eq!(after(held, -0.25), Some((Hold::Linear, 0.25)), "a force that is late by a time of its own");
+        assert_eq!(after(held, 0.05), None, "chance");
         assert_eq!(after(held, 5.0), None, "more than can be set right");
         assert_eq!(after(Timing::new(Hold::BandLimited), 1.0), None);
-        assert_eq!(held.corrected(&Lag { std: 0.2, ..found(1.0) }, 1000), None, "not told yet");
+        let [seldom, unsure] = [0.25, 0.2].map(|std| held.corrected(&Lag { samples: 0.98, std }, 1000));
+        assert_eq!((seldom, unsure.map(|new| (new.hold, new.lag, new.std))), (None, Some((Hold::Linear, 1.48, 0.2))));
     }
 
     #[test]
     fn what_was_left_is_believed_of_twice_the_record_only() {
         let late = Timing::new(Hold::Zero).corrected(&found(1.0), 1000).unwrap();
         assert_eq!(late.corrected(&found(-1.0), 1999), None);
-        assert_eq!(late.corrected(&found(-1.0), 2000).map(|new| new.lag), Some(0));
+        assert_eq!(late.corrected(&found(-1.0), 2000).map(|new| new.lag), Some(0.0));
+    }
+
+    #[test]
+    fn what_is_left_open_is_the_prior_before_a_record_and_the_lag_itself_after_it() {
+        let held = Timing::new(Hold::Zero);
+        let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.01;
+        assert!(near(held.left_open(&Lag::UNKNOWN), 0.25 / (1.0 + TWENTY_TO_ONE.exp())));
+        assert!(near(held.left_open(&found(0.3)), 0.09), "{}", held.left_open(&found(0.3)));
+        assert!(held.left_open(&found(0.0)) < 1e-6, "{}", held.left_open(&found(0.0)));
+        let told = held.corrected(&found(-0.25), 1000).unwrap();
+        assert!(near(told.left_open(&Lag::UNKNOWN), 0.02 * 0.02));
     }
 
     #[test]
@@ -117,10 +169,14 @@ mod tests {
         let sample =
             |k: i32| Sample { t: f64::from(k), q: f64::from(k), excitation: f64::from(10 * k), ..Sample::default() };
         let mut align = |lag, k| alignment.align(lag, sample(k)).map(|given| (given.t, given.q, given.excitation));
-        assert_eq!(align(0, 1), Some((1.0, 1.0, 10.0)));
-        assert_eq!(align(1, 2), Some((2.0, 2.0, 10.0)));
-        assert_eq!(align(-1, 3), None);
-        assert_eq!(align(-1, 4), Some((3.0, 3.0, 40.0)));
-        assert_eq!(align(0, 5), Some((5.0, 5.0, 50.0)));
+        assert_eq!(align(0.0, 1), Some((1.0, 1.0, 10.0)));
+        assert_eq!(align(1.0, 2), Some((2.0, 2.0, 10.0)));
+        assert_eq!(align(-1.0, 3), None);
+        assert_eq!(align(-1.0, 4), Some((3.0, 3.0, 40.0)));
+        assert_eq!(align(0.0, 5), Some((5.0, 5.0, 50.0)));
+        assert_eq!(align(0.25, 6), Some((6.0, 6.0, 57.5)));
+        assert_eq!(align(-0.25, 7), None);
+        assert_eq!(align(-0.25, 8), Some((7.0, 7.0, 72.5)));
+        assert_eq!(align(1.5, 9), Some((9.0, 9.0, 75.0)));
     }
 }

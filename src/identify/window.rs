@@ -134,9 +134,26 @@ impl Window {
         self.hold
     }
 
-    /// From now on F is taken to do this between samples.
-    pub fn set_hold(&mut self, hold: Hold) {
+    /// From now on F is taken to do this between samples, and to act so many samples later than it did.
+    pub fn set_timing(&mut self, hold: Hold, later: f64) {
         self.hold = hold;
+        let range = self.oldest()..self.end();
+        match later > 0.0 {
+            _ if later == 0.0 || range.is_empty() => {}
+            // each is made of older ones
+            true => range.rev().for_each(|number| self.move_excitation(number, later)),
+            false => range.for_each(|number| self.move_excitation(number, later)),
+        }
+    }
+
+    /// What was taken to act so many samples before this one acts with it; at the record's ends, what there is.
+    fn move_excitation(&mut self, number: u64, later: f64) {
+        let (first, last) = (self.oldest() as i64, self.end() as i64 - 1);
+        let whole = later.ceil();
+        let [from, to] = [0, 1].map(|next| (number as i64 - whole as i64 + next).clamp(first, last) as u64);
+        let [from, to] = [from, to].map(|number| self.sample(number).excitation);
+        let slot = self.slot(number);
+        self.ring[slot].sample.excitation = from + (to - from) * (whole - later);
     }
 
     /// Changes the last `count` readings.

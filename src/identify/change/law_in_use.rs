@@ -117,6 +117,13 @@ impl LawInUse {
         self.caution * variance.max(0.0) * self.lasting
     }
 
+    /// F acts so many samples later than was assumed, each of which makes that of the free coefficients.
+    pub fn begin_later(&mut self, problem: &Problem, slope: &[f64], samples: f64) {
+        for (index, slope) in problem.free.iter().zip(slope) {
+            self.all[*index] += samples * slope;
+        }
+    }
+
     /// Takes over the segment's estimate and the run that led to it.
     pub fn adopt(&mut self, segment: &mut Segment, window: &Window) {
         segment.hand_over(window, &mut self.run);

@@ -89,7 +89,7 @@ impl WeakForm {
         self.travelled += 0.5 * dt * (last.qd + sample.qd);
         let mut next = Some(Sample {
             q: if problem.channels.q { sample.q } else { self.travelled },
-            excitation: match problem.hold {
+            excitation: match problem.timing.hold {
                 // the mean of what was held half an interval before and after
                 Hold::Zero => 0.5 * (last.excitation + sample.excitation),
                 _ => sample.excitation,

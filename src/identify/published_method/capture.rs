@@ -75,7 +75,7 @@ impl Capture {
             qd: &self.qd[range.clone()],
             qd_measured: problem.channels.qd,
             excitation: &self.excitation[range],
-            hold: if problem.channels.excitation { problem.hold } else { Hold::Zero },
+            hold: if problem.channels.excitation { problem.timing.hold } else { Hold::Zero },
         }
     }
 }

@@ -69,7 +69,7 @@ impl Publication {
             capture: Capture::new(wanted.min(settings.max_window), settings.sample_time),
             equations: Equations::new(problem),
             solved: false,
-            recent: Window::new(4 * REACH, problem.channels, problem.hold),
+            recent: Window::new(4 * REACH, problem.channels, problem.timing.hold),
             law: problem.known.clone(),
             prediction: State::default(),
             next: 0,

@@ -10,7 +10,7 @@ use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
 use super::prior::{InertiaPrior, Prior};
 use super::state::{NOISE_MEMORY, Runs, Segment};
-use crate::estimation::{Noise, Pass};
+use crate::estimation::{Lag, Noise, Pass};
 use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
@@ -65,7 +65,8 @@ impl Segment {
             self.known.inertia = Some(InertiaPrior { centre: prior.centre[index], log_std: prior.log_inertia });
         }
         self.fit.gain = f64::INFINITY;
-        (self.missing, self.lag) = (None, None);
+        (self.missing, self.timing.lag, self.timing.open) = (None, Lag::UNKNOWN, 0.0);
+        self.timing.slope.fill(0.0);
         self.score_test.next_look = 0;
         self.convergence.clear();
         self.run.largest = [0.0; 2];
@@ -166,6 +167,7 @@ impl Segment {
         self.take_step(problem);
         self.tell_error(problem, settings, &track, window);
         self.follow_noise(problem, settings, &track, window);
+        self.timing.open = problem.timing.left_open(&self.timing.lag);
         self.runs.calm = if self.is_calm() { self.runs.calm + 1 } else { 0 };
         self.confirm();
         self.compare();
@@ -178,7 +180,7 @@ impl Segment {
             let candidates = &mut self.score_test.candidates;
             candidates.end(&self.run.filter_run.information, &self.active);
             self.missing = candidates.missing(self.fit.overdispersion);
-            self.lag = candidates.lag(self.fit.overdispersion);
+            self.timing.lag = candidates.lag(self.fit.overdispersion, &mut self.timing.slope);
             self.score_test.next_look = (LOOK_AGAIN * self.length(self.run.next) as f64) as u64;
         }
     }
@@ -230,6 +232,18 @@ impl Segment {
                 *new = old + fraction * (*new - old);
             }
         }
+    }
+
+    /// F has acted so many samples later than was assumed: the law that would have been found, and the record once more
+    /// under it.
+    pub fn begin_later(&mut self, problem: &Problem, window: &Window, samples: f64) {
+        for (value, slope) in self.coefficients.iter_mut().zip(&self.timing.slope) {
+            *value += samples * slope;
+        }
+        problem.scatter(&self.coefficients, &mut self.all);
+        self.timing.lag.samples -= samples;
+        self.constancy.clear();
+        self.begin_run(window);
     }
 
     /// `step` holds the step: scores are taken about the new coefficients, the filtered state follows them.

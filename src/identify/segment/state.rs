@@ -38,8 +38,8 @@ pub struct Segment {
     pub runs: Runs,
     /// The effect that the law lacks most, as of the last run that looked for one.
     pub missing: Option<Missing>,
-    /// When F acted, where that run told that it was another time.
-    pub lag: Option<Lag>,
+    /// When F acted, as that run told.
+    pub timing: OpenTiming,
     /// What is known beside the record.
     pub(super) known: Known,
     /// The run under way.
@@ -52,6 +52,17 @@ pub struct Segment {
     pub(super) constancy: Constancy,
     /// The coefficients before the last step, then that step.
     pub(super) step: Vec<f64>,
+}
+
+/// What a record says of when F acted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OpenTiming {
+    /// The lag beyond the one assumed.
+    pub lag: Lag,
+    /// Mean square of it that this leaves open.
+    pub(super) open: f64,
+    /// What a sample of it makes of the free coefficients.
+    pub slope: Vec<f64>,
 }
 
 /// How well a law explains its record.
@@ -159,7 +170,7 @@ impl Segment {
             fit: Fit::unknown(),
             runs: Runs::default(),
             missing: None,
-            lag: None,
+            timing: OpenTiming { lag: Lag::UNKNOWN, open: 0.0, slope: vec![0.0; n] },
             known: Known {
                 information: Information::none(n),
                 inertia: None,
@@ -200,19 +211,17 @@ impl Segment {
         self.run.closed_at
     }
 
-    /// Std of the free coefficient; infinite where the data do not determine it.
+    /// Std of the free coefficient, with what its record leaves open of when F acted; infinite where the data do not
+    /// determine it.
     pub fn std(&self, free: usize) -> f64 {
-        self.solution.std(free, self.fit.overdispersion)
+        self.solution.std(free, self.fit.overdispersion).hypot(self.timing.open.sqrt() * self.timing.slope[free])
     }
 
-    /// The variance that the estimate states for e of eq. (8), relative: tr Cov ÷ Σθ².
+    /// The variance that the estimate states for e of eq. (8), relative: Σ std² ÷ Σθ².
     pub fn stated_error(&self) -> f64 {
         let squares: f64 = self.all.iter().map(|value| value * value).sum();
         let active = (0..self.active.len()).filter(|index| self.active[*index]);
-        let trace: f64 = active
-            .map(|index| if self.solution.determined[index] { self.solution.variance(index) } else { f64::INFINITY })
-            .sum();
-        self.fit.overdispersion * trace / squares
+        active.map(|index| self.std(index).powi(2)).sum::<f64>() / squares
     }
 
     /// The law as the library keeps it.

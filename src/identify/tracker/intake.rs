@@ -59,11 +59,11 @@ impl Tracker {
         let Setup { problem, .. } = setup;
         let Tracker { intake, monitor, window, segment, regime, .. } = self;
         let law = &monitor.law;
-        let known = law.running && law.explains && regime.law().is_some() && problem.hold != Hold::BandLimited;
+        let known = law.running && law.explains && regime.law().is_some() && problem.timing.hold != Hold::BandLimited;
         let size = intake.quarantine.size();
         let expected = known.then(|| (expected(problem, law, &segment.scales, size), law.run.filter));
         let measured = [problem.channels.q, problem.channels.qd];
-        intake.quarantine.take(reading, measured, problem.hold, window.pace(), expected);
+        intake.quarantine.take(reading, measured, problem.timing.hold, window.pace(), expected);
         if intake.quarantine.is_in_doubt() && self.is_excitation_stuck() {
             self.intake.quarantine.settle();
             self.lose_excitation();

@@ -6,7 +6,6 @@ use crate::estimation::Noise;
 use crate::evidence::{INERTIA_SPREAD, SWITCH_SIZE};
 use crate::identify::problem::Problem;
 use crate::identify::segment::{NOISE_MEMORY, Prior};
-use crate::identify::timing::Timing;
 
 /// The prior of a new law is this much wider than the switch that is looked for.
 pub(super) const PRIOR_WIDTH: f64 = 3.0;
@@ -60,39 +59,36 @@ impl Tracker {
         self.enter(Event::StateLost);
     }
 
-    /// What the record of the present law tells of when F acted, where that is not as assumed.
-    pub fn corrected_timing(&mut self, timing: &Timing) -> Option<Timing> {
-        let lag = self.segment.lag.take().filter(|_| self.is_refining())?;
-        timing.corrected(&lag, self.record_length())
+    /// What is assumed of when F acted follows what the record of the present law tells, where no effect that the law
+    /// lacks explains it as well.
+    pub fn correct_timing(&mut self, problem: &mut Problem) {
+        let lag = self.segment.timing.lag;
+        let lacks = self.segment.missing.is_some_and(|missing| missing.evidence > lag.evidence());
+        let corrected = problem.timing.corrected(&lag, self.record_length());
+        let Some(corrected) = corrected.filter(|_| self.is_refining() && !lacks) else { return };
+        let before = std::mem::replace(&mut problem.timing, corrected);
+        self.window.set_timing(corrected.hold, corrected.lag - before.lag);
+        self.begin_under_another_timing(problem, corrected.late() - before.late());
     }
 
-    /// F has acted at other times than was assumed: no law so far is worth keeping. The record is fitted anew where
-    /// only the hold was another one, else the next samples are.
-    pub fn begin_under_another_timing(&mut self, problem: &Problem) {
-        let rereads = self.window.hold() != problem.hold && self.regime.law().is_some();
-        self.window.set_hold(problem.hold);
-        match rereads {
-            true => self.fit_again(),
-            false => self.lose(),
+    /// F acts so many samples later than was assumed: the laws move along, and the record is fitted anew.
+    fn begin_under_another_timing(&mut self, problem: &Problem, later: f64) {
+        self.segment.begin_later(problem, &self.window, later);
+        self.monitor.law.begin_later(problem, &self.segment.timing.slope, later);
+        self.monitor.bank.clear();
+        self.monitor.empirical_null.clear();
+        self.begin_weak_rows(self.window.end());
+        match self.regime.law() {
+            Some(_) => self.publish_coefficients(problem),
+            None => self.published.forget_stds(problem),
         }
         self.library.known.forget();
         self.library.end_trials();
-        self.published.forget_stds(problem);
         self.weak_form.restart();
         self.weak_row_drift.restart(self.window.end());
         self.augmented_drift.end();
         self.intake.after_outage.end();
         (self.history, self.drifted) = (History::default(), false);
-    }
-
-    /// The segment's record once more, from its coefficients.
-    fn fit_again(&mut self) {
-        self.segment.begin_run(&self.window);
-        self.begin_weak_rows(self.window.end());
-        self.monitor.stop();
-        self.monitor.bank.clear();
-        self.monitor.empirical_null.clear();
-        self.refute_law();
     }
 
     /// A law that was validated does not explain its record any more, and no switch does: it is contested again.

@@ -174,7 +174,7 @@ impl Tracker {
                 force: Repetition::default(),
                 force_lost: false,
             },
-            window: Window::new(capacity, problem.channels, problem.hold),
+            window: Window::new(capacity, problem.channels, problem.timing.hold),
             regime: Regime::Acquiring,
             published: Published::new(problem),
             start: WeakStart::new(problem, capacity),

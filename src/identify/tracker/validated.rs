@@ -26,7 +26,8 @@ impl Tracker {
         }
     }
 
-    fn publish_coefficients(&mut self, problem: &Problem) {
+    /// What the segment says of each coefficient.
+    pub(super) fn publish_coefficients(&mut self, problem: &Problem) {
         let Tracker { published, library, segment, belief, regime, .. } = self;
         let recognition = regime.recognition();
         published.set(problem, |free, _| {
