@@ -102,7 +102,7 @@ impl Identifier {
                 tracker.step(problem, settings, sample);
                 tracker.correct_timing(problem);
                 tracker.show(problem, settings, coefficients, output);
-                problem.timing.say_late(problem.channels, &mut output.sensors);
+                problem.timing.say_late(output.valid, problem.channels, &mut output.sensors);
             }
             Engine::Publication(publication) => publication.step(problem, settings, sample, coefficients, output),
             Engine::Force(tracker) => tracker.step(problem, settings, sample, coefficients, output),

@@ -32,12 +32,14 @@ pub struct Timing {
     std: f64,
     /// Samples of the record that told so: another is believed of a record twice as long only.
     told_by: u64,
+    /// Whether a law has been validated under it: what a law lacks may look like a lag.
+    is_confirmed: bool,
 }
 
 impl Timing {
     /// The channels in time.
     pub fn new(hold: Hold) -> Timing {
-        Timing { hold, lag: 0.0, std: 0.0, told_by: 0 }
+        Timing { hold, lag: 0.0, std: 0.0, told_by: 0, is_confirmed: false }
     }
 
     /// Samples that F acts later than it comes, were it to move straight: to first order a force held over an interval
@@ -61,13 +63,21 @@ impl Timing {
         let hold = if (late - 0.5).fract() == 0.0 { Hold::Zero } else { Hold::Linear };
         let lag = late - if hold == Hold::Zero { 0.5 } else { 0.0 };
         let is_new = (EARLIEST..=LATEST).contains(&lag) && late != self.late();
-        is_new.then_some(Timing { hold, lag, std, told_by: samples })
+        is_new.then_some(Timing { hold, lag, std, told_by: samples, is_confirmed: false })
+    }
+
+    /// Whether a hold or a late channel explains the lag.
+    pub fn is_usual(&self) -> bool {
+        self.std == 0.0
     }
 
     /// Mean square of the lag beyond what is assumed that a record saying `found` leaves open, in squares of a sample.
     /// Before any record what was said is right at odds of twenty to one, and a lag is normal about none else; one
     /// that was told is.
     pub fn left_open(&self, found: &Lag) -> f64 {
+        if self.hold == Hold::BandLimited {
+            return 0.0;
+        }
         let prior = if self.std > 0.0 { self.std } else { UNTOLD }.powi(2);
         let precision = found.std.powi(-2);
         let variance = (precision + prior.recip()).recip();
@@ -80,10 +90,12 @@ impl Timing {
         square / (1.0 + (TWENTY_TO_ONE - gain).exp())
     }
 
-    /// Says which of the channels measured come late, where they do nothing worse.
-    pub fn say_late(&self, channels: Channels, sensors: &mut [SensorState; 3]) {
+    /// Says which of the channels measured come late, where they do nothing worse and a law has been valid with that.
+    pub fn say_late(&mut self, is_valid: bool, channels: Channels, sensors: &mut [SensorState; 3]) {
+        self.is_confirmed |= is_valid;
         // up to half a sample is a hold's
         let late = match self.late() {
+            _ if !self.is_confirmed => [false; 3],
             late if late > 0.5 => [channels.q, channels.qd, false],
             late => [false, false, late < 0.0],
         };
@@ -161,6 +173,18 @@ mod tests {
         assert!(held.left_open(&found(0.0)) < 1e-6, "{}", held.left_open(&found(0.0)));
         let told = held.corrected(&found(-0.25), 1000).unwrap();
         assert!(near(told.left_open(&Lag::UNKNOWN), 0.02 * 0.02));
+    }
+
+    #[test]
+    fn late_is_said_once_a_law_has_been_valid_with_it() {
+        let mut late = Timing::new(Hold::Zero).corrected(&found(1.0), 1000).unwrap();
+        let mut said = |is_valid| {
+            let mut sensors = [SensorState::Ok; 3];
+            late.say_late(is_valid, Channels { q: true, qd: true, excitation: true }, &mut sensors);
+            sensors[0]
+        };
+        let (ok, late) = (SensorState::Ok, SensorState::Late);
+        assert_eq!([said(false), said(true), said(false)], [ok, late, late]);
     }
 
     #[test]
