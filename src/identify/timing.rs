@@ -120,10 +120,12 @@ impl Alignment {
         let last = self.last.replace(sample).unwrap_or(sample);
         let before = std::mem::replace(&mut self.excitation_before, last.excitation);
         let [now, last_one] = [sample, last].map(|sample| sample.excitation);
+        // a mean of two, which is finite and at its ends exact whatever a sensor sends
+        let between = |share: f64, from: f64, to: f64| (1.0 - share) * from + share * to;
         let aligned = match lag {
-            0.0..=1.0 => Sample { excitation: now + (last_one - now) * lag, ..sample },
-            1.0.. => Sample { excitation: last_one + (before - last_one) * (lag - 1.0), ..sample },
-            _ => Sample { excitation: now + (last_one - now) * (1.0 + lag), ..last },
+            0.0..=1.0 => Sample { excitation: between(lag, now, last_one), ..sample },
+            1.0.. => Sample { excitation: between(lag - 1.0, last_one, before), ..sample },
+            _ => Sample { excitation: between(1.0 + lag, now, last_one), ..last },
         };
         let is_new = self.given.is_none_or(|given| aligned.t > given);
         is_new.then(|| {
@@ -202,5 +204,16 @@ mod tests {
         assert_eq!(align(-0.25, 7), None);
         assert_eq!(align(-0.25, 8), Some((7.0, 7.0, 72.5)));
         assert_eq!(align(1.5, 9), Some((9.0, 9.0, 75.0)));
+    }
+
+    #[test]
+    fn what_is_read_between_two_finite_forces_is_finite_and_at_the_ends_exact() {
+        for (lag, expected) in [(0.0, -f64::MAX), (0.5, 0.0), (1.0, f64::MAX), (1.5, f64::MAX)] {
+            let mut alignment = Alignment::default();
+            let forces = [f64::MAX, f64::MAX, -f64::MAX].into_iter().enumerate();
+            let samples = forces.map(|(k, excitation)| Sample { t: k as f64, excitation, ..Sample::default() });
+            let aligned: Vec<f64> = samples.map(|sample| alignment.align(lag, sample).unwrap().excitation).collect();
+            assert_eq!(aligned[2], expected, "{lag}");
+        }
     }
 }

@@ -153,7 +153,7 @@ impl Window {
         let [from, to] = [0, 1].map(|next| (number as i64 - whole as i64 + next).clamp(first, last) as u64);
         let [from, to] = [from, to].map(|number| self.sample(number).excitation);
         let slot = self.slot(number);
-        self.ring[slot].sample.excitation = from + (to - from) * (whole - later);
+        self.ring[slot].sample.excitation = (1.0 - whole + later) * from + (whole - later) * to;
     }
 
     /// Changes the last `count` readings.
@@ -223,5 +223,35 @@ impl Window {
     #[inline]
     fn slot(&self, number: u64) -> usize {
         (number % self.ring.len() as u64) as usize
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::timing::Alignment;
+
+    /// A window that has dropped its oldest samples.
+    fn window(lag: f64) -> Window {
+        let channels = Channels { q: true, qd: true, excitation: true };
+        let (mut window, mut alignment) = (Window::new(8, channels, Hold::Linear), Alignment::default());
+        for k in 0..12 {
+            let sample = Sample { t: f64::from(k), excitation: f64::from(k * k), ..Sample::default() };
+            alignment.align(lag, sample).into_iter().for_each(|sample| window.push(sample));
+        }
+        window
+    }
+
+    #[test]
+    fn samples_kept_are_moved_as_those_to_come_are_aligned() {
+        for later in [0.25, 1.0, 1.5, -0.25, -1.0] {
+            let mut moved = window(0.0);
+            moved.set_timing(Hold::Linear, later);
+            let aligned = window(later);
+            // beyond the ends of what is kept the last value stays
+            for number in moved.oldest() + 2..moved.end() - 1 {
+                assert_eq!(moved.sample(number), aligned.sample(number), "{later}: {number}");
+            }
+        }
     }
 }

@@ -242,6 +242,7 @@ impl Segment {
         }
         problem.scatter(&self.coefficients, &mut self.all);
         self.timing.lag.samples -= samples;
+        self.timing.open = problem.timing.left_open(&self.timing.lag);
         self.constancy.clear();
         self.begin_run(window);
     }
