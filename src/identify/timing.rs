@@ -66,11 +66,6 @@ impl Timing {
         is_new.then_some(Timing { hold, lag, std, told_by: samples, is_confirmed: false })
     }
 
-    /// Whether a hold or a late channel explains the lag.
-    pub fn is_usual(&self) -> bool {
-        self.std == 0.0
-    }
-
     /// Mean square of the lag beyond what is assumed that a record saying `found` leaves open, in squares of a sample.
     /// Before any record what was said is right at odds of twenty to one, and a lag is normal about none else; one
     /// that was told is.

@@ -6,7 +6,6 @@ use crate::estimation::Noise;
 use crate::evidence::{INERTIA_SPREAD, SWITCH_SIZE};
 use crate::identify::problem::Problem;
 use crate::identify::segment::{NOISE_MEMORY, Prior};
-use crate::identify::timing::Timing;
 
 /// The prior of a new law is this much wider than the switch that is looked for.
 pub(super) const PRIOR_WIDTH: f64 = 3.0;
@@ -66,10 +65,7 @@ impl Tracker {
         let lag = self.segment.timing.lag;
         let lacks = self.segment.missing.is_some_and(|missing| missing.evidence > lag.evidence());
         let corrected = problem.timing.corrected(&lag, self.record_length());
-        // what a law lacks may look like a lag of any size
-        let explains = self.segment.fit.explains && self.segment.fit.overdispersion == 1.0;
-        let is_told = |timing: &Timing| self.is_refining() && !lacks && (explains || timing.is_usual());
-        let Some(corrected) = corrected.filter(is_told) else { return };
+        let Some(corrected) = corrected.filter(|_| self.is_refining() && !lacks) else { return };
         let before = std::mem::replace(&mut problem.timing, corrected);
         self.window.set_timing(corrected.hold, corrected.lag - before.lag);
         self.begin_under_another_timing(problem, corrected.late() - before.late());
