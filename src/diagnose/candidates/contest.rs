@@ -1,7 +1,7 @@
 //! Every candidate beside a law: its inner parameters, its errors on what it has not seen, what it is worth.
 
 use super::grid::{Variant, candidates, same_effect, variants};
-use crate::diagnose::judge::{Column, Equation, Folds, HeldOut, PRINCIPAL, Record, Screen, Target};
+use crate::diagnose::judge::{Column, Equation, Folds, HeldOut, PRINCIPAL, Record, Role, Screen, Target, role};
 use crate::diagnose::scale::Scale;
 use crate::law::{Catalogue, Effect, Term};
 
@@ -25,14 +25,14 @@ pub(in crate::diagnose) struct Contender {
     pub(in crate::diagnose) before: HeldOut,
     /// … and with it.
     pub(in crate::diagnose) held: HeldOut,
-    /// S, against the law without it.
+    /// S, against the law without it; of one that was tried on half of the readings, what it would be on all.
     pub(in crate::diagnose) score: f64,
     /// Share of its own rows that the law's columns are: near 1 it cannot be told from them.
     pub(in crate::diagnose) resemblance: f64,
 }
 
-/// A variant with its column, and whether that holds the target itself.
-type Tried = (Variant, (Column, bool));
+/// A variant with its column, and what that is to the target.
+type Tried = (Variant, (Column, Role));
 
 /// A law beside which candidates are tried, and its errors.
 struct Arena<'a> {
@@ -46,7 +46,8 @@ struct Arena<'a> {
 /// All candidates beside a law, the best first, and how many were tried, inner parameters counted apart.
 ///
 /// A candidate that holds q̈ itself has the target's own noise, which would pass for physics: it is tried on the even
-/// readings' motion while the target is that of the odd ones.
+/// readings' motion while the target is that of the odd ones, and set against the others by how it stands beside the
+/// best of them there: half of the readings are noisier.
 pub(in crate::diagnose) fn contest(
     record: &Record,
     folds: &Folds,
@@ -59,7 +60,8 @@ pub(in crate::diagnose) fn contest(
     let (apart, common): (Vec<Variant>, Vec<Variant>) = all.iter().partition(|variant| is_apart(variant));
     let arena = Arena { record, folds, equation, base, scale };
     let mut found = arena.contest(&common);
-    found.extend(arena.contest_apart(&apart));
+    let best = found.first().cloned();
+    found.extend(arena.contest_apart(&apart, best.as_ref()));
     found.sort_by(|a, b| a.score.total_cmp(&b.score));
     (found, all.len())
 }
@@ -75,6 +77,20 @@ pub(in crate::diagnose) fn contender(
     let scale = scale(record);
     let group = variants(&[term], &equation.terms, &scale);
     Arena { record, folds, equation, base, scale }.contest(&group).into_iter().next()
+}
+
+/// One candidate beside a law, its inner parameters sought near those that it has.
+pub(in crate::diagnose) fn narrowed(
+    record: &Record,
+    folds: &Folds,
+    equation: &Equation,
+    base: &HeldOut,
+    term: Term,
+) -> Contender {
+    let scale = scale(record);
+    let spacing = variants(&[term], &equation.terms, &scale).first().map_or(1.0, |variant| variant.spacing);
+    let arena = Arena { record, folds, equation, base, scale };
+    arena.narrowed(&Screen::new(folds, equation), arena.columns(&[Variant { term, spacing }]))
 }
 
 impl Arena<'_> {
@@ -103,13 +119,22 @@ impl Arena<'_> {
         robust
     }
 
-    /// The same where candidates and target have each half of the readings.
-    fn contest_apart(&self, all: &[Variant]) -> Vec<Contender> {
+    /// The same where candidates and target have each half of the readings, beside a rival with all of them.
+    fn contest_apart(&self, all: &[Variant], rival: Option<&Contender>) -> Vec<Contender> {
         let Some([even, odd]) = self.record.halves().filter(|_| !all.is_empty()) else { return Vec::new() };
         let own = self.equation;
         let equation = Equation::new(&even, &own.terms, own.target, own.timing, true).for_motion(&odd);
         let base = self.folds.judge(&equation);
-        Arena { record: &even, equation: &equation, base: &base, ..*self }.contest(all)
+        let arena = Arena { record: &even, equation: &equation, base: &base, ..*self };
+        let lost = rival.map_or(0.0, |rival| rival.score - arena.score(rival.term));
+        let with_all = |found: Contender| Contender { score: found.score + lost, ..found };
+        arena.contest(all).into_iter().map(with_all).collect()
+    }
+
+    /// S of one candidate with the inner parameters that it has.
+    fn score(&self, term: Term) -> f64 {
+        let (column, role) = column(self.record, self.equation, term);
+        self.folds.judge_with(self.equation, &|_| Some((&column, role))).score(self.base)
     }
 
     /// Variants with their columns, without those that are the target where others are not.
@@ -121,13 +146,13 @@ impl Arena<'_> {
     }
 
     /// Whether a column that holds the target is the target: the law is nearly it.
-    fn is_target(&self, (column, holds_target): &(Column, bool)) -> bool {
-        *holds_target && self.equation.resemblance(PRINCIPAL, &column[PRINCIPAL]) >= TRAP
+    fn is_target(&self, (column, role): &(Column, Role)) -> bool {
+        *role == Role::Holds && self.equation.resemblance(PRINCIPAL, &column[PRINCIPAL]) >= TRAP
     }
 
     /// What the parts of the record choose among variants of one effect, and which.
     fn chosen(&self, screen: &Screen, tried: &[Tried]) -> (Contender, Vec<usize>) {
-        let columns: Vec<&(Column, bool)> = tried.iter().map(|(_, column)| column).collect();
+        let columns: Vec<&(Column, Role)> = tried.iter().map(|(_, column)| column).collect();
         let (chosen, held) = screen.choose(&columns);
         let votes = |index: &usize| chosen.iter().filter(|own| *own == index).count();
         let middle = chosen.iter().copied().max_by_key(votes).unwrap_or(0);
@@ -181,7 +206,7 @@ fn kept(tried: &[Tried], chosen: &[usize]) -> Vec<Tried> {
     })
 }
 
-fn scale(record: &Record) -> Scale {
+pub(super) fn scale(record: &Record) -> Scale {
     let pieces: Vec<_> = record.motions.iter().flat_map(|motion| motion.pieces.iter().cloned()).collect();
     let states: Vec<_> = record.motions.iter().flat_map(|motion| motion.states()).collect();
     let scale = Scale::of(&pieces, &states);
@@ -190,7 +215,7 @@ fn scale(record: &Record) -> Scale {
 
 /// The candidates that make sense beside this law: a delay has its own test, and what depends on the excitation cannot
 /// predict it.
-fn eligible(record: &Record, equation: &Equation) -> Vec<Term> {
+pub(super) fn eligible(record: &Record, equation: &Equation) -> Vec<Term> {
     let is_output = !equation.terms.contains(&Term::Inertia) || !record.forced;
     let is_delay =
         |term: &Term| matches!(term, Term::Effect(Effect::ExcitationDelay { .. } | Effect::ActuatorLag { .. }));
@@ -200,12 +225,8 @@ fn eligible(record: &Record, equation: &Equation) -> Vec<Term> {
     all.filter(|term| !is_barred(term)).collect()
 }
 
-fn column(record: &Record, equation: &Equation, term: Term) -> (Column, bool) {
-    let holds_target = match equation.target {
-        Target::Inertia => record.accelerates(term),
-        Target::Force => term.uses_excitation(),
-    };
-    (record.term(term, equation.timing), holds_target)
+pub(super) fn column(record: &Record, equation: &Equation, term: Term) -> (Column, Role) {
+    (record.term(term, equation.timing), role(record, term, equation.target))
 }
 
 fn is_within(term: Term, scale: &Scale) -> bool {

@@ -2,6 +2,8 @@
 
 mod contest;
 mod grid;
+mod pairs;
 
-pub(super) use contest::{Contender, TRAP, contender, contest};
+pub(super) use contest::{Contender, TRAP, contender, contest, narrowed};
+pub(super) use pairs::best_pairs;
 pub use grid::same_effect;

@@ -9,6 +9,7 @@ use super::record::{Column, Record, Timing};
 use super::regression::{self, Normal};
 use super::windows::COUNT;
 use crate::law::{Effect, Term};
+use nalgebra::{DMatrix, DVector};
 
 /// Which column stands alone.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,11 +40,42 @@ pub(in crate::diagnose) struct Equation {
     /// What explains it: the force where it is not the target, the terms but the inertia where that is, the force's
     /// slope last.
     pub(in crate::diagnose) left: Vec<Column>,
+    /// What each of them is to the target.
+    roles: Vec<Role>,
+}
+
+/// What a column is to the target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::diagnose) enum Role {
+    /// It holds the target itself: q̈ where that is the target, F where it is.
+    Holds,
+    /// It is the other side of the law: F where q̈ is the target, q̈ where F is.
+    Closes,
+    /// Neither.
+    Explains,
 }
 
 impl Equation {
     /// Of a law of these terms; `nuisance`: with the column that takes a little delay.
     pub(in crate::diagnose) fn new(
+        record: &Record,
+        terms: &[Term],
+        target: Target,
+        timing: Timing,
+        nuisance: bool,
+    ) -> Equation {
+        let mut equation = Equation::from_rest(record, terms, target, timing, nuisance);
+        for (index, term) in terms.iter().enumerate() {
+            let begun = equation.place(index).and_then(|place| {
+                Some((place, beginning::begun(record, (*term, timing), &equation.left, place, &equation.right)?))
+            });
+            begun.into_iter().for_each(|(place, column)| equation.left[place] = column);
+        }
+        equation
+    }
+
+    /// The same on a record before which nothing moved.
+    pub(super) fn from_rest(
         record: &Record,
         terms: &[Term],
         target: Target,
@@ -58,24 +90,21 @@ impl Equation {
         if target == Target::Inertia && record.forced {
             left.push(record.force(timing));
         }
-        let own = terms.iter().filter(|term| has_column(**term, target));
-        left.extend(own.map(|term| record.term(*term, timing)));
+        let mut roles = vec![Role::Closes; left.len()];
+        for term in terms.iter().filter(|term| has_column(**term, target)) {
+            left.push(record.term(*term, timing));
+            roles.push(role(record, *term, target));
+        }
         let takes_delay = nuisance && record.forced;
         if takes_delay {
             left.push(record.force_slope(timing));
+            roles.push(if target == Target::Inertia { Role::Closes } else { Role::Explains });
         }
         let functions = [0, 1, 2].map(|which| record.windows[which].functions);
         let spread = [0, 1, 2].map(|which| spread(&right[which], functions[which]));
         let tells = [0, 1, 2].map(|which| record.windows[which].length >= record.sample_time);
-        let mut equation =
-            Equation { terms: terms.to_vec(), target, timing, right, spread, functions, tells, takes_delay, left };
-        for (index, term) in terms.iter().enumerate() {
-            let begun = equation.place(index).and_then(|place| {
-                Some((place, beginning::begun(record, (*term, timing), &equation.left, place, &equation.right)?))
-            });
-            begun.into_iter().for_each(|(place, column)| equation.left[place] = column);
-        }
-        equation
+        let terms = terms.to_vec();
+        Equation { terms, target, timing, right, spread, functions, tells, takes_delay, left, roles }
     }
 
     /// Which column a term has; none where it is the target or stands in the excitation's.
@@ -96,6 +125,7 @@ impl Equation {
         let place = equation.left.len() - usize::from(equation.takes_delay);
         if has_column(term, self.target) {
             equation.left.insert(place, record.term(term, self.timing));
+            equation.roles.insert(place, role(record, term, self.target));
         }
         equation.terms.push(term);
         equation
@@ -108,9 +138,9 @@ impl Equation {
         Equation { right, spread, ..self.clone() }
     }
 
-    /// The same regressors for other rows, such as noise.
+    /// The same regressors for other rows, such as noise, that none of them holds.
     pub(in crate::diagnose) fn for_rows(&self, right: Column) -> Equation {
-        Equation { right, ..self.clone() }
+        Equation { right, roles: vec![Role::Explains; self.left.len()], ..self.clone() }
     }
 
     /// The same without the term of that position.
@@ -118,9 +148,32 @@ impl Equation {
         let mut equation = self.clone();
         if let Some(place) = self.place(index) {
             equation.left.remove(place);
+            equation.roles.remove(place);
         }
         equation.terms.remove(index);
         equation
+    }
+
+    /// What a residual under a solution is relative to the target that the law then has.
+    pub(super) fn relative(&self, which: usize, solution: &[f64]) -> f64 {
+        if !self.roles.contains(&Role::Holds) {
+            return 1.0;
+        }
+        let (columns, right) = (self.columns(which), &self.right[which]);
+        let weights = vec![1.0; right.len()];
+        let energy = right.iter().map(|value| value * value).sum();
+        relative(&Normal::of(&columns, right, &weights), energy, solution, &self.roles)
+    }
+
+    /// What each column is to the target, that of a candidate last.
+    pub(super) fn roles_with(&self, candidate: Option<Role>) -> Vec<Role> {
+        self.roles.iter().copied().chain(candidate).collect()
+    }
+
+    /// The columns of one window length that neither hold the target nor close the law; none where nothing closes it.
+    pub(super) fn aside(&self, which: usize) -> Vec<&[f64]> {
+        let aside = aside(&self.roles);
+        aside.into_iter().map(|index| self.left[index][which].as_slice()).collect()
     }
 
     /// Share of a column's variance that the law's columns are, over windows of one length.
@@ -205,6 +258,50 @@ impl Equation {
 /// none as it is in the excitation's own.
 fn has_column(term: Term, target: Target) -> bool {
     delay_of(term).is_none() && (target == Target::Force || term != Term::Inertia)
+}
+
+/// What a term's column is to the target.
+pub(in crate::diagnose) fn role(record: &Record, term: Term, target: Target) -> Role {
+    let holds = match target {
+        Target::Inertia => record.accelerates(term),
+        Target::Force => term.uses_excitation(),
+    };
+    match holds {
+        true => Role::Holds,
+        false if term == Term::Inertia => Role::Closes,
+        false => Role::Explains,
+    }
+}
+
+/// Columns that neither hold the target nor close the law; none where nothing closes it.
+fn aside(roles: &[Role]) -> Vec<usize> {
+    let is_closed = roles.contains(&Role::Closes);
+    (0..roles.len()).filter(|index| is_closed && roles[*index] == Role::Explains).collect()
+}
+
+/// What a residual is relative to the target that a law then has: of y = X b + z, z what the columns that hold the target
+/// give, it is a law of y − z, and what cancels the target explains nothing of it. Both are taken less what the law's
+/// other terms give of them: a filtered q̇ is q̇ and some q̈. 1 where nothing holds the target. By the sums of all columns
+/// and the target's Σ weight y².
+pub(super) fn relative(sums: &Normal, energy: f64, solution: &[f64], roles: &[Role]) -> f64 {
+    let own: Vec<usize> = (0..roles.len()).filter(|index| roles[*index] == Role::Holds).collect();
+    if own.is_empty() {
+        return 1.0;
+    }
+    let aside = aside(roles);
+    let gram = DMatrix::from_fn(aside.len(), aside.len(), |a, b| sums.gram[(aside[a], aside[b])]);
+    let beyond = |square: f64, products: DVector<f64>| {
+        let normal = Normal { gram: gram.clone(), moment: products };
+        let given = normal.solve().map_or(0.0, |solution| normal.moment.iter().zip(solution).map(|(a, b)| a * b).sum());
+        square - given
+    };
+    let with = |product: &dyn Fn(usize) -> f64| own.iter().map(|index| solution[*index] * product(*index)).sum::<f64>();
+    let all = energy - 2.0 * with(&|index| sums.moment[index])
+        + with(&|index| with(&|other| sums.gram[(index, other)]));
+    let target = beyond(energy, DVector::from_fn(aside.len(), |a, _| sums.moment[aside[a]]));
+    let products = |a: usize, _| sums.moment[aside[a]] - with(&|index| sums.gram[(aside[a], index)]);
+    let law = beyond(all, DVector::from_fn(aside.len(), products));
+    (target / law).abs().sqrt()
 }
 
 /// How late the excitation acts by a term, s, as far as its rate tells: a delay, or an actuator's time constant.

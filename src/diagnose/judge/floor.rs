@@ -100,7 +100,11 @@ pub(in crate::diagnose) fn floor_of_law(trial: &Trial, record: &Record, force: f
     // what draws the motion along is missing from the force of its equations
     let sign = if equation.target == Target::Inertia { mass.recip() } else { -1.0 };
     let pull = pull.map(|rows| rows.into_iter().map(|value| sign * value).collect());
-    let residuals = |record: Record| trial.residuals(&trial.on(&record));
+    // the law's own motion begins with a memory at rest
+    let residuals = |record: Record| {
+        let Equation { terms, target, timing, .. } = equation;
+        trial.residuals(&Equation::from_rest(&record, terms, *target, *timing, trial.folds.is_some()))
+    };
     let clean = residuals(truth.moved(noisy(&truth, force, None))?);
     let draws = (0..DRAWS).filter_map(|seed| truth.moved(noisy(&truth, force, Some(seed))));
     let noise = draws.map(|draw| less(residuals(draw), &clean)).collect();
@@ -149,7 +153,10 @@ impl Trial<'_> {
             }
         }
         let count = draws.len().max(1) as f64;
-        std::array::from_fn(|which| (squares[which] / count).sqrt() / self.equation.spread[which])
+        std::array::from_fn(|which| {
+            let scale = self.equation.relative(which, &self.solutions[which]);
+            scale * (squares[which] / count).sqrt() / self.equation.spread[which]
+        })
     }
 }
 

@@ -4,11 +4,12 @@
 //! window to the fifth left out, and judged by the windows of the fifth. Inner parameters are chosen by the training
 //! windows alone.
 
-use super::equation::Equation;
+use super::equation::{Equation, Role, relative};
 use super::record::{Column, Record};
 use super::regression::{self, Normal};
 use super::windows::COUNT;
 use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
 /// Parts of a record that are held out in turn: four fifths of it train, and a stretch of its own tests.
 const FOLDS: usize = 5;
@@ -23,6 +24,8 @@ pub(in crate::diagnose) struct Folds {
     training: [Vec<Vec<f64>>; COUNT],
     /// Equations held out.
     held_out: [Vec<Vec<usize>>; COUNT],
+    /// The same as ranges that leave none out.
+    parts: [Vec<Range<usize>>; COUNT],
 }
 
 /// What is held out, and how well it is predicted.
@@ -51,7 +54,21 @@ impl Folds {
             let inside = |row: &usize, [from, to]: [f64; 2]| (from..to).contains(&windows.centre(*row));
             (0..FOLDS).map(|fold| (0..windows.rows()).filter(|row| inside(row, bounds(fold))).collect()).collect()
         });
-        Folds { training, held_out }
+        let parts = [0, 1, 2].map(|which| {
+            let windows = &record.windows[which];
+            let before = |bound: f64| {
+                windows.functions * windows.centres.iter().filter(|centre| **centre < bound).count()
+            };
+            let last = |fold: usize| if fold + 1 == FOLDS { windows.rows() } else { before(bounds(fold)[1]) };
+            (0..FOLDS).map(|fold| before(bounds(fold)[0])..last(fold)).collect()
+        });
+        Folds { training, held_out, parts }
+    }
+
+    /// Products of two sets of equations' rows, by the part of the record that holds them out.
+    pub(super) fn products(&self, which: usize, one: &[f64], other: &[f64]) -> Vec<f64> {
+        let sum = |rows: &Range<usize>| one[rows.clone()].iter().zip(&other[rows.clone()]).map(|(a, b)| a * b).sum();
+        self.parts[which].iter().map(sum).collect()
     }
 
     /// A law's errors.
@@ -59,11 +76,11 @@ impl Folds {
         self.judge_with(equation, &|_| None)
     }
 
-    /// The same with one more column in each part, and whether it holds the target itself.
+    /// The same with one more column in each part, and what it is to the target.
     pub(in crate::diagnose) fn judge_with<'a>(
         &self,
         equation: &Equation,
-        joining: &dyn Fn(usize) -> Option<(&'a Column, bool)>,
+        joining: &dyn Fn(usize) -> Option<(&'a Column, Role)>,
     ) -> HeldOut {
         let residuals = [0, 1, 2].map(|which| {
             let mut left = vec![f64::NAN; equation.right[which].len()];
@@ -72,12 +89,16 @@ impl Folds {
                 let mut columns = equation.columns(which);
                 columns.extend(joined.map(|(column, _)| column[which].as_slice()));
                 let right = &equation.right[which];
-                let Some((solution, _)) = regression::fit(&columns, right, &self.training[which][fold]) else {
+                let Some((solution, weights)) = regression::fit(&columns, right, &self.training[which][fold]) else {
                     continue;
                 };
-                let scale = joined
-                    .filter(|(_, holds_target)| *holds_target)
-                    .map_or(1.0, |(column, _)| unscaled(equation, which, &column[which], solution[solution.len() - 1]));
+                let roles = equation.roles_with(joined.map(|(_, role)| role));
+                let scale = if roles.contains(&Role::Holds) {
+                    let energy = weights.iter().zip(right).map(|(weight, value)| weight * value * value).sum();
+                    relative(&Normal::of(&columns, right, &weights), energy, &solution, &roles)
+                } else {
+                    1.0
+                };
                 for row in &self.held_out[which][fold] {
                     let predicted: f64 =
                         columns.iter().zip(&solution).map(|(column, value)| column[*row] * value).sum();
@@ -88,15 +109,6 @@ impl Folds {
         });
         HeldOut::new(residuals, equation)
     }
-}
-
-/// A candidate that holds the target itself could cancel it: its residual is relative to the two together.
-fn unscaled(equation: &Equation, which: usize, column: &[f64], coefficient: f64) -> f64 {
-    let right = &equation.right[which];
-    let [own, all] = right.iter().zip(column).fold([0.0; 2], |[own, all], (right, value)| {
-        [own + right * right, all + (right - coefficient * value).powi(2)]
-    });
-    (own / all).sqrt()
 }
 
 impl HeldOut {
@@ -112,8 +124,11 @@ impl HeldOut {
 
     /// Errors of a law whose numbers are held, over all windows.
     pub(in crate::diagnose) fn as_given(equation: &Equation, solutions: &[Vec<f64>; COUNT]) -> HeldOut {
-        let residuals = [0, 1, 2]
-            .map(|which| regression::residuals(&equation.columns(which), &equation.right[which], &solutions[which]));
+        let residuals = [0, 1, 2].map(|which| {
+            let scale = equation.relative(which, &solutions[which]);
+            let left = regression::residuals(&equation.columns(which), &equation.right[which], &solutions[which]);
+            left.into_iter().map(|value| scale * value).collect()
+        });
         HeldOut::new(residuals, equation)
     }
 
@@ -160,10 +175,11 @@ impl<'a> Screen<'a> {
     }
 
     /// Of several variants of one candidate: which one each part's training prefers, and the errors of that choice.
-    pub(in crate::diagnose) fn choose(&self, variants: &[&(Column, bool)]) -> (Vec<usize>, HeldOut) {
-        let fits: Vec<Vec<[Option<Fitted>; COUNT]>> = variants.iter().map(|variant| self.fit(&variant.0)).collect();
+    pub(in crate::diagnose) fn choose(&self, variants: &[&(Column, Role)]) -> (Vec<usize>, HeldOut) {
+        let fits: Vec<Vec<[Option<Fitted>; COUNT]>> = variants.iter().map(|variant| self.fit(variant)).collect();
         let loss = |variant: usize, fold: usize| -> f64 {
-            fits[variant][fold].iter().flatten().map(|fitted| fitted.loss.max(f64::MIN_POSITIVE).ln()).sum()
+            let relative = |fitted: &Fitted| fitted.loss * fitted.scale.powi(2);
+            fits[variant][fold].iter().flatten().map(|fitted| relative(fitted).max(f64::MIN_POSITIVE).ln()).sum()
         };
         let best =
             |fold: usize| (0..variants.len()).min_by(|a, b| loss(*a, fold).total_cmp(&loss(*b, fold))).unwrap_or(0);
@@ -172,13 +188,9 @@ impl<'a> Screen<'a> {
             let right = &self.equation.right[which];
             let mut left = vec![f64::NAN; right.len()];
             for (fold, variant) in chosen.iter().enumerate() {
-                let Some(Fitted { solution, .. }) = &fits[*variant][fold][which] else { continue };
-                let (column, holds_target) = variants[*variant];
+                let Some(Fitted { solution, scale, .. }) = &fits[*variant][fold][which] else { continue };
                 let mut columns = self.equation.columns(which);
-                columns.push(&column[which]);
-                let coefficient = solution[solution.len() - 1];
-                let scale =
-                    if *holds_target { unscaled(self.equation, which, &column[which], coefficient) } else { 1.0 };
+                columns.push(&variants[*variant].0[which]);
                 for row in &self.folds.held_out[which][fold] {
                     let predicted: f64 = columns.iter().zip(solution).map(|(column, value)| column[*row] * value).sum();
                     left[*row] = scale * (right[*row] - predicted);
@@ -190,12 +202,13 @@ impl<'a> Screen<'a> {
     }
 
     /// The law with one more column, in every part.
-    fn fit(&self, column: &Column) -> Vec<[Option<Fitted>; COUNT]> {
-        (0..FOLDS).map(|fold| [0, 1, 2].map(|which| self.fit_part(which, fold, &column[which]))).collect()
+    fn fit(&self, candidate: &(Column, Role)) -> Vec<[Option<Fitted>; COUNT]> {
+        (0..FOLDS).map(|fold| [0, 1, 2].map(|which| self.fit_part(which, fold, candidate))).collect()
     }
 
-    fn fit_part(&self, which: usize, fold: usize, column: &[f64]) -> Option<Fitted> {
+    fn fit_part(&self, which: usize, fold: usize, (column, role): &(Column, Role)) -> Option<Fitted> {
         let part = self.parts[which][fold].as_ref()?;
+        let column = &column[which];
         let weighted: Vec<f64> = column.iter().zip(&part.weights).map(|(value, weight)| value * weight).collect();
         let dot = |other: &[f64]| weighted.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
         let columns = self.equation.columns(which);
@@ -203,20 +216,21 @@ impl<'a> Screen<'a> {
         let mut cross: Vec<f64> = columns.iter().map(|column| dot(column)).collect();
         cross.push(dot(column));
         let own = &part.normal;
-        let gram =
-            DMatrix::from_fn(p + 1, p + 1, |a, b| if a < p && b < p { own.gram[(a, b)] } else { cross[a.min(b)] });
-        let gram = DMatrix::from_fn(p + 1, p + 1, |a, b| if a == p { cross[b] } else { gram[(a, b)] });
+        let entry = |a: usize, b: usize| if a < p && b < p { own.gram[(a, b)] } else { cross[a.min(b)] };
         let right = dot(&self.equation.right[which]);
         let moment = DVector::from_fn(p + 1, |a, _| if a < p { own.moment[a] } else { right });
-        let normal = Normal { gram, moment };
+        let normal = Normal { gram: DMatrix::from_fn(p + 1, p + 1, entry), moment };
         let solution = normal.solve()?;
         let explained: f64 = solution.iter().zip(normal.moment.iter()).map(|(value, moment)| value * moment).sum();
-        Some(Fitted { loss: (part.energy - explained) / part.energy, solution })
+        let scale = relative(&normal, part.energy, &solution, &self.equation.roles_with(Some(*role)));
+        Some(Fitted { loss: (part.energy - explained) / part.energy, solution, scale })
     }
 }
 
 struct Fitted {
     solution: Vec<f64>,
+    /// What a residual is relative to the target that the law then has.
+    scale: f64,
     /// Weighted Σ residual² ÷ Σ target² of training.
     loss: f64,
 }

@@ -55,7 +55,11 @@ impl Normal {
         Some(DMatrix::from_fn(p, p, |a, b| inverse[(a, b)] * scale[a] * scale[b]))
     }
 
+    /// The solution; empty where there are no columns.
     pub(super) fn solve(&self) -> Option<Vec<f64>> {
+        if self.moment.is_empty() {
+            return Some(Vec::new());
+        }
         let solution = self.inverse()? * &self.moment;
         solution.iter().all(|value| value.is_finite()).then(|| solution.iter().copied().collect())
     }

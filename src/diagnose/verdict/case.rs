@@ -43,7 +43,7 @@ pub(in crate::diagnose) struct Case {
     /// What the excitation did between samples, where the user says so.
     hold: Option<Hold>,
     /// The inertia of a free motion.
-    inertia: f64,
+    pub(in crate::diagnose) inertia: f64,
     /// The record as its even and as its odd readings show it, once it was asked for.
     halves: OnceCell<Option<[Record; 2]>>,
 }

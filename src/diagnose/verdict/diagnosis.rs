@@ -7,7 +7,7 @@
 
 use super::case::{Case, Standing};
 use super::contained::smallest;
-use super::doubt::{Doubt, SURE};
+use super::doubt::{Doubt, SURE, may_be};
 use super::entry::{Candidate, Entry};
 use super::errors::{TIE, WindowError, are_adequate, errors};
 use super::law::Law;
@@ -69,7 +69,7 @@ pub(in crate::diagnose) fn diagnose(case: &Case, terms: &[Term]) -> Option<Diagn
     let (mut entries, tried) = entries(case, &standing, terms);
     let named = entries.iter().position(|entry| entry.doubt.is_none());
     let winner = named.map(|best| smallest(case, &standing, &entries, best));
-    let ties = winner.map_or_else(Vec::new, |winner| ties(case, &entries, winner));
+    let ties = winner.map_or_else(Vec::new, |winner| ties(&entries, winner));
     let improved = winner.and_then(|winner| {
         let term = entries[winner].contender.term;
         let law: Vec<Term> = terms.iter().copied().chain([term]).collect();
@@ -115,6 +115,11 @@ fn weigh(case: &Case, standing: &Standing, entries: &mut [Entry]) {
             entry.doubt = Some(Doubt::Trap);
         }
     }
+    for entry in entries.iter_mut().filter(|entry| entry.doubt == Some(Doubt::Trap)) {
+        if entry.leaves_no_error(case, standing) {
+            entry.doubt = None;
+        }
+    }
 }
 
 /// An excitation that acts later than recorded, at once or gradually, as effects among the others: where the law stands
@@ -157,9 +162,9 @@ fn acting_late(case: &Case, terms: &[Term], before: &HeldOut, effect: Effect) ->
 /// Those that are at least as good as the winner, it first, those last that contain it: of them it is a limit. Once
 /// something is missing a tied one need not prove it again; one that the law's own terms nearly are cannot win alone,
 /// but may be what is there.
-fn ties(case: &Case, entries: &[Entry], winner: usize) -> Vec<Vec<String>> {
+fn ties(entries: &[Entry], winner: usize) -> Vec<Vec<String>> {
     let best = entries[winner].contender.score;
-    let near = |entry: &&Entry| entry.may_be(case) && entry.contender.score <= best + TIE * COUNT as f64;
+    let near = |entry: &&Entry| may_be(entry.doubt) && entry.contender.score <= best + TIE * COUNT as f64;
     let others = entries.iter().enumerate().filter(|(index, entry)| *index != winner && near(entry));
     let first = entries[winner].name();
     let names = others.map(|(_, entry)| entry.name());

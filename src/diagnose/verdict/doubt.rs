@@ -1,9 +1,7 @@
 //! What speaks against a candidate: physics, the law's own terms, its std, chance.
 
-use super::case::Case;
 use super::errors::ADEQUATE;
 use crate::diagnose::judge::{COUNT, HeldOut};
-use crate::law::Term;
 
 /// Chance, shared among all candidates tried, below which a gain is none.
 pub const LEVEL: f64 = 0.01;
@@ -43,7 +41,10 @@ pub(super) fn doubt_of_gain(
     floor: &[f64; COUNT],
 ) -> Option<Doubt> {
     let ratios = after.ratios(before);
-    if ratios.iter().any(|ratio| *ratio > WORSE) || after.errors.iter().any(|error| *error >= 1.0) {
+    // where only the sensors' noise is left, a little more of it is no worse law
+    let worse = |((before, after), floor): ((&f64, &f64), &f64)| *after > WORSE * before && *after > ADEQUATE * floor;
+    let windows = before.errors.iter().zip(&after.errors).zip(floor);
+    if windows.into_iter().any(worse) || after.errors.iter().any(|error| *error >= 1.0) {
         return Some(Doubt::Worse);
     }
     let mean = after.score(before) / ratios.len().max(1) as f64;
@@ -63,12 +64,7 @@ pub(super) fn is_large(before: &HeldOut, after: &HeldOut, floor: &[f64; COUNT]) 
     ratios.len() >= told.min(2) && !ratios.is_empty() && ratios.iter().all(|ratio| *ratio <= LARGE)
 }
 
-/// Whether a candidate may be what is there, as far as only chance or the law's own terms speak against it. One that
-/// holds the target and that the law nearly is, is the target.
-pub(super) fn may_be(case: &Case, term: Term, doubt: Option<Doubt>) -> bool {
-    match doubt {
-        None | Some(Doubt::Chance) => true,
-        Some(Doubt::Trap) => !case.record.accelerates(term),
-        _ => false,
-    }
+/// Whether a candidate may be what is there, as far as only chance or the law's own terms speak against it.
+pub(super) fn may_be(doubt: Option<Doubt>) -> bool {
+    matches!(doubt, None | Some(Doubt::Chance | Doubt::Trap))
 }

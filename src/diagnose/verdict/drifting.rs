@@ -2,7 +2,7 @@
 
 use super::case::{Case, Standing};
 use super::diagnosis::diagnose;
-use super::doubt::{Doubt, LARGE, is_large};
+use super::doubt::{LARGE, is_large, may_be};
 use super::errors::{TIE, are_adequate};
 use crate::diagnose::judge::{COUNT, Drift, drift};
 use crate::identify::Recording;
@@ -49,7 +49,6 @@ pub(super) fn steadied(
         let Some((case, next)) = steady(&sums).filter(|(_, next)| next.held.score(&stands.held) < -TIE) else { break };
         (steadied, stands, drifts) = (case, next, sums);
     }
-    let may_be = |doubt: Option<Doubt>| matches!(doubt, None | Some(Doubt::Chance | Doubt::Trap));
     let best = effects.candidates.iter().filter(|candidate| may_be(candidate.doubt)).map(|candidate| candidate.score);
     let beats = stands.held.score(&standing.held) < best.fold(0.0, f64::min) - TIE * COUNT as f64;
     (beats && is_large(&standing.held, &stands.held, &standing.floor)).then_some((steadied, drifts))

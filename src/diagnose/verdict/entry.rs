@@ -1,12 +1,13 @@
 //! A candidate beside a law, with what decides about it.
 
 use super::case::{Case, Standing};
-use super::doubt::{Doubt, SURE, WORTH, doubt_of_gain, may_be};
-use super::errors::{WindowError, errors};
+use super::doubt::{Doubt, SURE, WORTH, doubt_of_gain};
+use super::errors::{WindowError, are_adequate, errors};
 use super::untold::drives;
 use crate::diagnose::candidates::{Contender, TRAP};
-use crate::diagnose::judge::{COUNT, PRINCIPAL, delay_of};
+use crate::diagnose::judge::{Blocks, COUNT, PRINCIPAL, delay_of, estimate};
 use crate::law::{Catalogue, Term};
+use std::cell::OnceCell;
 
 /// A candidate beside the law.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,21 +47,28 @@ pub(super) struct Entry {
     pub(super) standing: Option<Standing>,
     pub(super) p_value: Option<f64>,
     pub(super) doubt: Option<Doubt>,
+    /// Its coefficient and std beside the law, once they were asked for.
+    pub(super) coefficient: OnceCell<[f64; 2]>,
 }
 
 impl Entry {
     pub(super) fn new(contender: Contender) -> Entry {
-        Entry { contender, standing: None, p_value: None, doubt: None }
+        Entry { contender, standing: None, p_value: None, doubt: None, coefficient: OnceCell::new() }
     }
 
     /// Coefficient and std.
-    fn coefficient(&self, case: &Case, standing: &Standing) -> [f64; 2] {
+    fn measured(&self, case: &Case, standing: &Standing) -> [f64; 2] {
+        *self.coefficient.get_or_init(|| self.estimated(case, standing))
+    }
+
+    fn estimated(&self, case: &Case, standing: &Standing) -> [f64; 2] {
         if let Some((late, own)) = delay_of(self.contender.term).zip(self.standing.as_ref()) {
             return [1.0, own.estimate.delay.map_or(f64::NAN, |[_, std]| std / late)];
         }
         let equation = standing.equation.with(&case.record, self.contender.term);
         let inertia = equation.terms.iter().position(|term| *term == Term::Inertia);
-        let found = case.estimated(equation);
+        let blocks = Blocks::new(&case.record, &self.contender.held);
+        let found = estimate(&case.record, &equation, &blocks, case.inertia);
         let backward = |values: &[f64]| inertia.is_some_and(|index| values[index] <= 0.0);
         let last = |values: &[f64]| values.last().copied().unwrap_or(f64::NAN);
         match found {
@@ -71,7 +79,7 @@ impl Entry {
 
     /// What bars it whatever its gain.
     pub(super) fn barred(&self, case: &Case, standing: &Standing) -> Option<Doubt> {
-        let [coefficient, std] = self.coefficient(case, standing);
+        let [coefficient, std] = self.measured(case, standing);
         if !self.contender.allows(coefficient) || drives(case, standing, self.contender.term, [coefficient, std]) {
             return Some(Doubt::Sign);
         }
@@ -82,10 +90,19 @@ impl Entry {
         (!is_sure).then_some(Doubt::Uncertain)
     }
 
-    /// Whether it may be what is there though the law's own terms nearly are it: not where it holds the target, for
-    /// then it is that.
-    pub(super) fn may_be(&self, case: &Case) -> bool {
-        may_be(case, self.contender.term, self.doubt)
+    /// Whether the law with it leaves what the sensors alone would where the law without leaves clearly more: the law's
+    /// own terms pass for it by their errors, and then there are none.
+    pub(super) fn leaves_no_error(&self, case: &Case, standing: &Standing) -> bool {
+        let [coefficient, std] = self.measured(case, standing);
+        let gains = |floor: &[f64; COUNT]| {
+            doubt_of_gain(&self.contender.before, &self.contender.held, None, floor).is_none()
+        };
+        let is_sure = coefficient.abs() > SURE * std;
+        if !(is_sure && gains(&standing.floor) && gains(&case.settled(standing.clone()).floor)) {
+            return false;
+        }
+        let law: Vec<Term> = standing.equation.terms.iter().copied().chain([self.contender.term]).collect();
+        case.stand(&law).is_some_and(|whole| are_adequate(&case.errors_of(&case.settled(whole))))
     }
 
     /// Its effect id, or the name of a user's expression.
@@ -109,7 +126,7 @@ impl Entry {
     }
 
     pub(super) fn describe(&self, case: &Case, standing: &Standing) -> Candidate {
-        let [coefficient, std] = self.coefficient(case, standing);
+        let [coefficient, std] = self.measured(case, standing);
         let term = self.contender.term;
         let inner = term.inner_named(&case.record.expressions);
         Candidate {

@@ -6,15 +6,19 @@
 //! best alone.
 
 use super::case::{Case, Standing};
-use super::diagnosis::{Diagnosis, Finding, diagnose};
-use super::doubt::{SURE, doubt_of_gain, may_be};
+use super::diagnosis::{Finding, diagnose};
+use super::doubt::{SURE, doubt_of_gain};
 use super::errors::TIE;
-use crate::diagnose::candidates::same_effect;
-use crate::diagnose::judge::{COUNT, delay_of};
+use crate::diagnose::candidates::{best_pairs, narrowed, same_effect};
+use crate::diagnose::judge::{COUNT, Equation, delay_of};
 use crate::law::{Catalogue, Term};
 
-/// Single effects beside which a second is sought (docs/decisions/pairs.md).
-const ALTERNATIVES: usize = 5;
+/// Pairs that are fitted and judged in full: those that leave least on a grid of inner parameters
+/// (docs/decisions/pairs.md).
+const PAIRS: usize = 6;
+
+/// Times that each effect's inner parameters are sought anew beside the others.
+const ROUNDS: usize = 2;
 
 /// A law with other effects in the place of some.
 pub(super) struct Exchange {
@@ -61,23 +65,27 @@ fn worth(old: Term, new: Term) -> f64 {
     }
 }
 
-/// The best law with two effects in the place of none, one or two: each of the best single effects is tried with the
-/// best beside it. None where the law has more, or no two are better: beyond chance, all of them counted, than fewer;
-/// than two by their errors or, these being equal, with fewer inner parameters.
+/// The best law with two effects in the place of none, one or two. None where the law has more, or no two are better:
+/// beyond chance, all of them counted, than fewer; than two by their errors or, these being equal, with fewer inner
+/// parameters.
 pub(super) fn paired(case: &Case, original: &[Term], terms: &[Term], standing: &Standing) -> Option<Exchange> {
     let own = added(original, terms);
     if own.len() > 2 {
         return None;
     }
     let rest: Vec<Term> = (0..terms.len()).filter(|place| !own.contains(place)).map(|place| terms[place]).collect();
-    let others = alternatives(case, &diagnose(case, &rest)?);
-    let pairs = others.into_iter().filter_map(|other| with_named(case, joined(&rest, other)));
-    let told = pairs.filter(|pair| is_told(original, pair));
+    let base = case.stand(&rest)?;
+    let best = best_pairs(&case.record, &case.folds, &base.equation).into_iter().take(PAIRS);
+    let pairs = best.filter_map(|pair| {
+        let terms = tuned(case, &rest, &[&rest[..], &pair[..]].concat(), &base.equation);
+        Some(Exchange { standing: case.stand(&terms)?, terms, ties: Vec::new() })
+    });
+    let told = pairs.filter(|pair| is_told(case, original, pair));
     let best = told.min_by(|a, b| compare(a, b, standing))?;
     let score = best.standing.held.score(&standing.held);
     let better = if own.len() < 2 {
         let gains = standing.blocks.gains(&case.record, &standing.held, &best.standing.held);
-        let chance = standing.blocks.p_values(&[gains]).map(|values| ALTERNATIVES as f64 * values[0]);
+        let chance = standing.blocks.p_values(&[gains]).map(|values| PAIRS as f64 * values[0]);
         doubt_of_gain(&standing.held, &best.standing.held, chance, &standing.floor).is_none()
     } else {
         let simpler = parameters(&best.terms) < parameters(terms);
@@ -86,11 +94,33 @@ pub(super) fn paired(case: &Case, original: &[Term], terms: &[Term], standing: &
     better.then_some(best)
 }
 
-/// Whether every effect that was added has a coefficient that is none by chance.
-fn is_told(original: &[Term], exchange: &Exchange) -> bool {
+/// Terms with the inner parameters of those added to a law that suit them beside each other; `base` is the equation of
+/// the law without them.
+pub(super) fn tuned(case: &Case, original: &[Term], terms: &[Term], base: &Equation) -> Vec<Term> {
+    let mut own: Vec<Term> = added(original, terms).into_iter().map(|place| terms[place]).collect();
+    for place in (0..own.len()).cycle().take(ROUNDS * own.len()) {
+        if own[place].inner_values().is_empty() {
+            continue;
+        }
+        let others = own.iter().enumerate().filter(|(other, _)| *other != place);
+        let beside = others.fold(base.clone(), |equation, (_, term)| equation.with(&case.record, *term));
+        let held = case.folds.judge(&beside);
+        own[place] = narrowed(&case.record, &case.folds, &beside, &held, own[place]).term;
+    }
+    let found = |term: &Term| own.iter().find(|own| same_effect(**own, *term)).copied();
+    terms.iter().map(|term| found(term).unwrap_or(*term)).collect()
+}
+
+/// Whether every effect that was added is one that physics allows, with a coefficient that is none by chance, and is
+/// worth the word beside the others.
+fn is_told(case: &Case, original: &[Term], exchange: &Exchange) -> bool {
     let Exchange { terms, standing, .. } = exchange;
     let (values, stds) = (&standing.estimate.coefficients, &standing.estimate.std);
-    added(original, terms).into_iter().all(|place| values[place].abs() > SURE * stds[place])
+    added(original, terms).into_iter().all(|place| {
+        let allowed = Catalogue::of(terms[place]).is_none_or(|entry| entry.sign.allows(values[place]));
+        let without = || case.folds.judge(&standing.equation.without(place)).score(&standing.held);
+        allowed && values[place].abs() > SURE * stds[place] && without() >= TIE * COUNT as f64
+    })
 }
 
 /// Inner parameters of a law.
@@ -105,14 +135,6 @@ fn with_named(case: &Case, terms: Vec<Term>) -> Option<Exchange> {
     let terms = joined(&terms, named);
     let standing = case.stand(&terms)?;
     Some(Exchange { terms, standing, ties: found.indistinguishable })
-}
-
-/// The best candidates, as far as only chance speaks against them, or that the law's own terms nearly are them: beside
-/// another effect they may be told.
-fn alternatives(case: &Case, found: &Diagnosis) -> Vec<Term> {
-    let candidates = found.candidates.iter().filter(|candidate| may_be(case, candidate.term, candidate.doubt));
-    let helps = candidates.filter(|candidate| candidate.score < 0.0);
-    helps.take(ALTERNATIVES).map(|candidate| candidate.term).collect()
 }
 
 fn compare(a: &Exchange, b: &Exchange, standing: &Standing) -> std::cmp::Ordering {

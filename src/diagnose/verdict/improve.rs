@@ -3,7 +3,7 @@
 use super::case::{Case, Standing};
 use super::diagnosis::{Diagnosis, Finding, diagnose};
 use super::errors::{TIE, WindowError};
-use super::exchange::{Exchange, Seen, added, joined, paired, seen};
+use super::exchange::{Exchange, Seen, added, joined, paired, seen, tuned};
 use super::law::Law;
 use crate::diagnose::candidates::{contender, same_effect};
 use crate::diagnose::judge::{COUNT, PRINCIPAL, delay_of};
@@ -84,11 +84,26 @@ impl Search<'_> {
 
     /// Exchanges added effects until all stand.
     fn settle(&mut self) {
+        self.tune();
         for round in 0..STEPS {
             let pairs = round == 0 && added(self.original, &self.terms).len() == 2;
             if !(self.exchange() || pairs && self.pair()) {
                 break;
             }
+        }
+    }
+
+    /// Seeks inner parameters of added effects anew beside each other, where there are several: each was found before
+    /// those that came after it.
+    fn tune(&mut self) {
+        let own = added(self.original, &self.terms);
+        let rest: Vec<Term> =
+            (0..self.terms.len()).filter(|place| !own.contains(place)).map(|place| self.terms[place]).collect();
+        let Some(base) = self.case.stand(&rest).filter(|_| own.len() > 1) else { return };
+        let terms = tuned(self.case, self.original, &self.terms, &base.equation);
+        let Some(standing) = self.case.stand(&terms) else { return };
+        if standing.held.score(&self.standing.held) < 0.0 {
+            (self.terms, self.standing) = (terms, standing);
         }
     }
 
