@@ -1,13 +1,13 @@
 //! Every candidate beside a law: its inner parameters, its errors on what it has not seen, what it is worth.
 
 use super::grid::{Variant, candidates, same_effect, variants};
-use crate::diagnose::judge::{Column, Equation, Folds, HeldOut, PRINCIPAL, Record, Role, Screen, Target, role};
+use crate::diagnose::judge::{COUNT, Column, Equation, Folds, HeldOut, PRINCIPAL, Record, Role, Screen, Target, role};
 use crate::diagnose::scale::Scale;
 use crate::law::{Catalogue, Effect, Term};
 
 /// Rounds in which the grid of inner parameters is narrowed, a third of the spacing at a time: from a half of a value
 /// to a thousandth or two. After three a dead zone in the law was 1 % off, and what that left had a name.
-const ROUNDS: usize = 5;
+pub(super) const ROUNDS: usize = 5;
 
 /// Effects whose grid is narrowed and whose errors are taken robustly: those that come nearest to being the best.
 const CONTENDERS: usize = 8;
@@ -40,6 +40,8 @@ struct Arena<'a> {
     folds: &'a Folds,
     equation: &'a Equation,
     base: &'a HeldOut,
+    /// What the sensors alone would leave of the law.
+    floor: [f64; COUNT],
     scale: Scale,
 }
 
@@ -52,13 +54,13 @@ pub(in crate::diagnose) fn contest(
     record: &Record,
     folds: &Folds,
     equation: &Equation,
-    base: &HeldOut,
+    (base, floor): (&HeldOut, [f64; COUNT]),
 ) -> (Vec<Contender>, usize) {
     let scale = scale(record);
     let all = variants(&eligible(record, equation), &equation.terms, &scale);
     let is_apart = |variant: &Variant| equation.target == Target::Inertia && record.accelerates(variant.term);
     let (apart, common): (Vec<Variant>, Vec<Variant>) = all.iter().partition(|variant| is_apart(variant));
-    let arena = Arena { record, folds, equation, base, scale };
+    let arena = Arena { record, folds, equation, base, floor, scale };
     let mut found = arena.contest(&common);
     let best = found.first().cloned();
     found.extend(arena.contest_apart(&apart, best.as_ref()));
@@ -71,32 +73,18 @@ pub(in crate::diagnose) fn contender(
     record: &Record,
     folds: &Folds,
     equation: &Equation,
-    base: &HeldOut,
+    (base, floor): (&HeldOut, [f64; COUNT]),
     term: Term,
 ) -> Option<Contender> {
     let scale = scale(record);
     let group = variants(&[term], &equation.terms, &scale);
-    Arena { record, folds, equation, base, scale }.contest(&group).into_iter().next()
-}
-
-/// One candidate beside a law, its inner parameters sought near those that it has.
-pub(in crate::diagnose) fn narrowed(
-    record: &Record,
-    folds: &Folds,
-    equation: &Equation,
-    base: &HeldOut,
-    term: Term,
-) -> Contender {
-    let scale = scale(record);
-    let spacing = variants(&[term], &equation.terms, &scale).first().map_or(1.0, |variant| variant.spacing);
-    let arena = Arena { record, folds, equation, base, scale };
-    arena.narrowed(&Screen::new(folds, equation), arena.columns(&[Variant { term, spacing }]))
+    Arena { record, folds, equation, base, floor, scale }.contest(&group).into_iter().next()
 }
 
 impl Arena<'_> {
     /// The best variant of every effect, the best effect first.
     fn contest(&self, all: &[Variant]) -> Vec<Contender> {
-        let screen = Screen::new(self.folds, self.equation);
+        let screen = self.screen();
         let mut groups: Vec<Vec<Variant>> = Vec::new();
         for variant in all {
             match groups.iter_mut().find(|group| same_effect(group[0].term, variant.term)) {
@@ -131,10 +119,19 @@ impl Arena<'_> {
         arena.contest(all).into_iter().map(with_all).collect()
     }
 
+    fn screen(&self) -> Screen<'_> {
+        Screen::new(self.folds, self.equation, share(&self.floor, self.base))
+    }
+
     /// S of one candidate with the inner parameters that it has.
     fn score(&self, term: Term) -> f64 {
         let (column, role) = column(self.record, self.equation, term);
-        self.folds.judge_with(self.equation, &|_| Some((&column, role))).score(self.base)
+        self.scored(&self.folds.judge_with(self.equation, &|_| Some((&column, role))), term)
+    }
+
+    /// S of a candidate's errors; where it holds q̈ none counts lower than the floor.
+    fn scored(&self, held: &HeldOut, term: Term) -> f64 {
+        if self.record.accelerates(term) { held.no_lower(&self.floor).score(self.base) } else { held.score(self.base) }
     }
 
     /// Variants with their columns, without those that are the target where others are not.
@@ -153,11 +150,13 @@ impl Arena<'_> {
     /// What the parts of the record choose among variants of one effect, and which.
     fn chosen(&self, screen: &Screen, tried: &[Tried]) -> (Contender, Vec<usize>) {
         let columns: Vec<&(Column, Role)> = tried.iter().map(|(_, column)| column).collect();
-        let (chosen, held) = screen.choose(&columns);
+        let allows = |value: f64| is_allowed(self.equation.target, tried[0].0.term, value);
+        let (chosen, held) = screen.choose(&columns, &allows);
         let votes = |index: &usize| chosen.iter().filter(|own| *own == index).count();
         let middle = chosen.iter().copied().max_by_key(votes).unwrap_or(0);
         let resemblance = self.equation.resemblance(PRINCIPAL, &columns[middle].0[PRINCIPAL]);
-        let (term, score, before) = (tried[middle].0.term, held.score(self.base), self.base.clone());
+        let term = tried[middle].0.term;
+        let (score, before) = (self.scored(&held, term), self.base.clone());
         (Contender { term, score, before, held, resemblance }, chosen)
     }
 
@@ -176,7 +175,7 @@ impl Arena<'_> {
         }
         let joining = |fold: usize| chosen.get(fold).map(|index| (&tried[*index].1.0, tried[*index].1.1));
         let held = self.folds.judge_with(self.equation, &joining);
-        Contender { score: held.score(self.base), held, ..found }
+        Contender { score: self.scored(&held, found.term), held, ..found }
     }
 
     /// Neighbours of what was chosen that were not tried yet.
@@ -193,6 +192,18 @@ impl Arena<'_> {
             },
         )
     }
+}
+
+/// Whether physics allows a term the sign that it has in the regression: with the inertia as target that is the other
+/// way round.
+pub(super) fn is_allowed(target: Target, term: Term, value: f64) -> bool {
+    let by = if target == Target::Force { 1.0 } else { -1.0 };
+    Catalogue::of(term).is_none_or(|entry| entry.sign.allows(by * value))
+}
+
+/// Share of the energy that a law leaves that its sensors would.
+pub(super) fn share(floor: &[f64; COUNT], base: &HeldOut) -> [f64; COUNT] {
+    std::array::from_fn(|which| (floor[which] / base.errors[which]).powi(2).min(1.0))
 }
 
 /// What was chosen, each once, at the next spacing.
@@ -229,7 +240,7 @@ pub(super) fn column(record: &Record, equation: &Equation, term: Term) -> (Colum
     (record.term(term, equation.timing), role(record, term, equation.target))
 }
 
-fn is_within(term: Term, scale: &Scale) -> bool {
+pub(super) fn is_within(term: Term, scale: &Scale) -> bool {
     let Term::Effect(effect) = term else { return true };
     let inner = effect.inner_values();
     scale.resolves(effect)

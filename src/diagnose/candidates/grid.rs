@@ -32,7 +32,7 @@ impl Scale {
             Effect::ExcitationDelay { .. } => (vec![geometric(0.3 * self.sample_time, 1.0 / slow, 1.8)], 1.8),
             Effect::Hysteresis { .. } => (vec![lengths_of(0.004, 1.5, 2.0), vec![0.5, 1.0], vec![1.0, 2.0]], 2.0),
             Effect::HiddenResonator { .. } => {
-                (vec![geometric(0.3 * slow, (3.0 * fast).min(highest), 1.15), vec![0.02, 0.12]], 1.15)
+                (vec![geometric(0.3 * slow, (3.0 * fast).min(highest), 1.15), vec![0.02, 0.05, 0.12]], 1.15)
             }
             Effect::PreslidingFriction { .. } => (vec![lengths_of(0.004, 1.5, 2.0)], 2.0),
             Effect::FrictionWithBacklash { .. } => (vec![lengths_of(0.01, 0.7, 3.0), lengths_of(0.03, 0.7, 2.0)], 2.0),
@@ -111,31 +111,35 @@ pub fn same_effect(one: Term, other: Term) -> bool {
 }
 
 impl Variant {
-    /// The variant and its neighbours at a third of its spacing, each inner parameter in turn.
+    /// The variant and its neighbours at a third of its spacing: its first two inner parameters together, for a ripple's
+    /// wave number and angle, or a resonance's frequency and damping, are not found one by one.
     pub fn neighbours(&self) -> Vec<Variant> {
         let spacing = self.spacing.cbrt();
-        let mut all = vec![Variant { term: self.term, spacing }];
         let values = self.term.inner_values();
-        let ranges =
+        let range =
             |index: usize| self.term.effect().map_or(InnerRange::Positive, |effect| effect.inner()[index].range);
-        for index in 0..values.len() {
-            // the first says where the effect sets in, the others what it is like beyond
-            let powers: &[i32] = if index == 0 { &[-2, -1, 1, 2] } else { &[-1, 1] };
-            for power in powers {
-                let mut moved = values.clone();
-                match ranges(index) {
-                    // powers are whole numbers
-                    InnerRange::Either(..) => continue,
-                    // an angle
-                    InnerRange::Any => {
-                        moved[index] += f64::from(*power) * FRAC_PI_4 * spacing.ln() / RIPPLE.ln();
-                    }
-                    _ => moved[index] *= spacing.powi(*power),
-                }
-                all.extend(self.term.with_inner(&moved).map(|term| Variant { term, spacing }));
-            }
-        }
-        all
+        let moved = |index: usize, power: i32| match range(index) {
+            // an angle
+            InnerRange::Any => values[index] + f64::from(power) * FRAC_PI_4 * spacing.ln() / RIPPLE.ln(),
+            _ => values[index] * spacing.powi(power),
+        };
+        let powers = |index: usize| match (index, values.get(index).map(|_| range(index))) {
+            // powers are whole numbers
+            (_, None | Some(InnerRange::Either(..))) => &[0][..],
+            // says where the effect sets in, the others what it is like beyond
+            (0, _) => &[0, -2, -1, 1, 2],
+            _ => &[0, -1, 1],
+        };
+        let with = |steps: &[(usize, i32)]| {
+            let mut point = values.clone();
+            let told = steps.iter().filter(|(_, power)| *power != 0);
+            told.for_each(|(index, power)| point[*index] = moved(*index, *power));
+            self.term.with_inner(&point).map(|term| Variant { term, spacing })
+        };
+        let both = powers(0).iter().flat_map(|one| powers(1).iter().map(|other| with(&[(0, *one), (1, *other)])));
+        let further = (2..values.len()).flat_map(|index| powers(index)[1..].iter().map(move |power| (index, *power)));
+        let all = both.chain(further.map(|step| with(&[step])));
+        if values.is_empty() { vec![Variant { spacing, ..*self }] } else { all.flatten().collect() }
     }
 }
 

@@ -4,6 +4,6 @@ mod contest;
 mod grid;
 mod pairs;
 
-pub(super) use contest::{Contender, TRAP, contender, contest, narrowed};
-pub(super) use pairs::best_pairs;
+pub(super) use contest::{Contender, TRAP, contender, contest};
+pub(super) use pairs::Pairs;
 pub use grid::same_effect;

@@ -51,8 +51,18 @@ pub(in crate::diagnose) enum Role {
     Holds,
     /// It is the other side of the law: F where q̈ is the target, q̈ where F is.
     Closes,
-    /// Neither.
+    /// It holds q̈ beside the law's own: a filtered q̈ is a smoother q̈ too, and what is left below the floor with it is the
+    /// readings' noise.
+    Smooths,
+    /// None of these.
     Explains,
+}
+
+impl Role {
+    /// Whether errors with it count no lower than what the sensors alone would leave.
+    pub(super) fn may_smooth(self) -> bool {
+        matches!(self, Role::Holds | Role::Smooths)
+    }
 }
 
 impl Equation {
@@ -269,6 +279,7 @@ pub(in crate::diagnose) fn role(record: &Record, term: Term, target: Target) -> 
     match holds {
         true => Role::Holds,
         false if term == Term::Inertia => Role::Closes,
+        false if record.accelerates(term) => Role::Smooths,
         false => Role::Explains,
     }
 }
@@ -276,7 +287,7 @@ pub(in crate::diagnose) fn role(record: &Record, term: Term, target: Target) -> 
 /// Columns that neither hold the target nor close the law; none where nothing closes it.
 fn aside(roles: &[Role]) -> Vec<usize> {
     let is_closed = roles.contains(&Role::Closes);
-    (0..roles.len()).filter(|index| is_closed && roles[*index] == Role::Explains).collect()
+    (0..roles.len()).filter(|index| is_closed && matches!(roles[*index], Role::Explains | Role::Smooths)).collect()
 }
 
 /// What a residual is relative to the target that a law then has: of y = X b + z, z what the columns that hold the target

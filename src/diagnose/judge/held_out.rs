@@ -132,6 +132,12 @@ impl HeldOut {
         HeldOut::new(residuals, equation)
     }
 
+    /// The same with errors no lower than a floor.
+    pub(in crate::diagnose) fn no_lower(&self, floor: &[f64; COUNT]) -> HeldOut {
+        let errors = std::array::from_fn(|which| self.errors[which].max(floor[which].min(f64::INFINITY)));
+        HeldOut { residuals: self.residuals.clone(), errors }
+    }
+
     /// S = Σ ln(own error ÷ another's) over the window lengths that tell both; 0 where none does.
     pub(in crate::diagnose) fn score(&self, before: &HeldOut) -> f64 {
         let ratios = self.errors.iter().zip(before.errors).map(|(after, before)| (after / before).ln());
@@ -152,37 +158,59 @@ pub(in crate::diagnose) struct Screen<'a> {
     equation: &'a Equation,
     /// By window length and part: weights, sums of the law's columns, Σ weight target².
     parts: [Vec<Option<Part>>; COUNT],
+    /// Share of what the law leaves that the sensors alone would leave, by window length.
+    sensors: [f64; COUNT],
 }
 
 struct Part {
     weights: Vec<f64>,
     normal: Normal,
     energy: f64,
+    /// Weighted Σ residual² of the law ÷ Σ target².
+    left: f64,
 }
 
 impl<'a> Screen<'a> {
-    pub(in crate::diagnose) fn new(folds: &'a Folds, equation: &'a Equation) -> Screen<'a> {
+    /// `sensors`: the share of the law's energy that the sensors alone would leave.
+    pub(in crate::diagnose) fn new(folds: &'a Folds, equation: &'a Equation, sensors: [f64; COUNT]) -> Screen<'a> {
         let parts = [0, 1, 2].map(|which| {
             let (columns, right) = (equation.columns(which), &equation.right[which]);
             let part = |fold: usize| {
-                let (_, weights) = regression::fit(&columns, right, &folds.training[which][fold])?;
-                let energy = weights.iter().zip(right).map(|(weight, value)| weight * value * value).sum();
-                Some(Part { normal: Normal::of(&columns, right, &weights), weights, energy })
+                let (solution, weights) = regression::fit(&columns, right, &folds.training[which][fold])?;
+                let energy: f64 = weights.iter().zip(right).map(|(weight, value)| weight * value * value).sum();
+                let normal = Normal::of(&columns, right, &weights);
+                let explained: f64 = solution.iter().zip(normal.moment.iter()).map(|(value, own)| value * own).sum();
+                Some(Part { normal, weights, energy, left: (energy - explained) / energy })
             };
             (0..FOLDS).map(part).collect()
         });
-        Screen { folds, equation, parts }
+        Screen { folds, equation, parts, sensors }
     }
 
-    /// Of several variants of one candidate: which one each part's training prefers, and the errors of that choice.
-    pub(in crate::diagnose) fn choose(&self, variants: &[&(Column, Role)]) -> (Vec<usize>, HeldOut) {
+    /// Of several variants of one candidate: which one each part's training prefers among those whose coefficient in the
+    /// regression is allowed, if there are any, and the errors of that choice.
+    pub(in crate::diagnose) fn choose(
+        &self,
+        variants: &[&(Column, Role)],
+        allows: &dyn Fn(f64) -> bool,
+    ) -> (Vec<usize>, HeldOut) {
         let fits: Vec<Vec<[Option<Fitted>; COUNT]>> = variants.iter().map(|variant| self.fit(variant)).collect();
         let loss = |variant: usize, fold: usize| -> f64 {
             let relative = |fitted: &Fitted| fitted.loss * fitted.scale.powi(2);
             fits[variant][fold].iter().flatten().map(|fitted| relative(fitted).max(f64::MIN_POSITIVE).ln()).sum()
         };
-        let best =
-            |fold: usize| (0..variants.len()).min_by(|a, b| loss(*a, fold).total_cmp(&loss(*b, fold))).unwrap_or(0);
+        let forbidden = |variant: usize, fold: usize| {
+            let mut fitted = fits[variant][fold].iter().rev().flatten();
+            fitted.next().and_then(|fitted| fitted.solution.last()).is_some_and(|value| !allows(*value))
+        };
+        let best = |fold: usize| {
+            let rank = |variant: &usize| (forbidden(*variant, fold), loss(*variant, fold));
+            let ranked = (0..variants.len()).min_by(|a, b| {
+                let ([one, other], [a, b]) = ([rank(a).0, rank(b).0], [rank(a).1, rank(b).1]);
+                one.cmp(&other).then(a.total_cmp(&b))
+            });
+            ranked.unwrap_or(0)
+        };
         let chosen: Vec<usize> = (0..FOLDS).map(best).collect();
         let residuals = [0, 1, 2].map(|which| {
             let right = &self.equation.right[which];
@@ -223,7 +251,8 @@ impl<'a> Screen<'a> {
         let solution = normal.solve()?;
         let explained: f64 = solution.iter().zip(normal.moment.iter()).map(|(value, moment)| value * moment).sum();
         let scale = relative(&normal, part.energy, &solution, &self.equation.roles_with(Some(*role)));
-        Some(Fitted { loss: (part.energy - explained) / part.energy, solution, scale })
+        let least = if role.may_smooth() { self.sensors[which] * part.left } else { 0.0 };
+        Some(Fitted { loss: ((part.energy - explained) / part.energy).max(least), solution, scale })
     }
 }
 

@@ -28,7 +28,7 @@ pub(super) use estimate::{Estimate, estimate};
 pub(super) use floor::{Bootstrap, Trial, floor, floor_of_law, noise_share};
 pub(super) use held_out::{Folds, HeldOut, Screen};
 pub(super) use instruments::instrumented;
-pub(super) use pair_screen::{PairScreen, Partialled, Together};
+pub(super) use pair_screen::{PairScreen, Partialled};
 pub use record::Timing;
 pub(super) use record::{Column, Record};
 pub(super) use significance::Blocks;

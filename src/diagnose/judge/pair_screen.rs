@@ -22,6 +22,8 @@ pub(in crate::diagnose) struct PairScreen<'a> {
     folds: &'a Folds,
     /// By window length.
     parts: [Option<Part>; COUNT],
+    /// Share of what the law leaves that the sensors alone would leave, by window length.
+    sensors: [f64; COUNT],
 }
 
 /// The law on windows of one length.
@@ -38,6 +40,8 @@ struct Part {
 
 /// A candidate beside the law.
 pub(in crate::diagnose) struct Partialled {
+    /// Whether errors with it count no lower than the floor.
+    smooths: bool,
     /// By window length; none where the law's columns are it.
     own: [Option<Own>; COUNT],
 }
@@ -62,7 +66,12 @@ pub(in crate::diagnose) struct Together {
 }
 
 impl<'a> PairScreen<'a> {
-    pub(in crate::diagnose) fn new(folds: &'a Folds, equation: &'a Equation) -> PairScreen<'a> {
+    /// `sensors`: the share of the law's energy that the sensors alone would leave.
+    pub(in crate::diagnose) fn new(
+        folds: &'a Folds,
+        equation: &'a Equation,
+        sensors: [f64; COUNT],
+    ) -> PairScreen<'a> {
         let part = |which: usize| {
             let (columns, right) = (equation.columns(which), &equation.right[which]);
             let (_, weights) = regression::fit(&columns, right, &vec![1.0; right.len()])?;
@@ -72,7 +81,8 @@ impl<'a> PairScreen<'a> {
             let open = aside(equation, which, right, &weights)?;
             Some(Part { weights, normal, target, energy, open })
         };
-        PairScreen { equation, folds, parts: [0, 1, 2].map(|which| part(which).filter(|_| equation.tells[which])) }
+        let parts = [0, 1, 2].map(|which| part(which).filter(|_| equation.tells[which]));
+        PairScreen { equation, folds, parts, sensors }
     }
 
     /// A candidate's column beside the law.
@@ -90,7 +100,7 @@ impl<'a> PairScreen<'a> {
             let open = if holds { Some(aside(self.equation, which, &column[which], &part.weights)?) } else { None };
             (energy.iter().sum::<f64>() > NONE * whole).then_some(Own { rows, energy, product, open })
         };
-        Partialled { own: [0, 1, 2].map(own) }
+        Partialled { smooths: role.may_smooth(), own: [0, 1, 2].map(own) }
     }
 
     /// What two candidates come to, each part of the record predicted from the others. None where they are one.
@@ -113,7 +123,8 @@ impl<'a> PairScreen<'a> {
                 left += held_out.left(whole.less(held_out).solved()?);
             }
             coefficients = whole.solved()?;
-            score += 0.5 * (left / whole.energy * part.relative([a, b], coefficients)).ln();
+            let least = if one.smooths || other.smooths { self.sensors[which] } else { 0.0 };
+            score += 0.5 * (left / whole.energy * part.relative([a, b], coefficients)).max(least).ln();
             told = true;
         }
         (told && score.is_finite()).then_some(Together { score, coefficients })

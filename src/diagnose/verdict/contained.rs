@@ -52,6 +52,6 @@ fn is_no_worse_punctually(case: &Case, standing: &Standing, smaller: Term, large
     let Equation { terms, target, timing, .. } = &standing.equation;
     let punctual = Equation::new(&case.record, terms, *target, *timing, false);
     let base = case.folds.judge(&punctual);
-    let held = |term: Term| Some(contender(&case.record, &case.folds, &punctual, &base, term)?.held);
+    let held = |term: Term| Some(contender(&case.record, &case.folds, &punctual, (&base, standing.floor), term)?.held);
     held(smaller).zip(held(larger)).is_some_and(|(smaller, larger)| is_no_worse(case, standing, &smaller, &larger))
 }

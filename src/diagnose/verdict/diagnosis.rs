@@ -84,7 +84,7 @@ pub(in crate::diagnose) fn diagnose(case: &Case, terms: &[Term]) -> Option<Diagn
 
 /// Every candidate beside the law, the best first.
 fn entries(case: &Case, standing: &Standing, terms: &[Term]) -> (Vec<Entry>, usize) {
-    let (found, tried) = contest(&case.record, &case.folds, &standing.equation, &standing.held);
+    let (found, tried) = contest(&case.record, &case.folds, &standing.equation, (&standing.held, standing.floor));
     let mut entries: Vec<Entry> = found.into_iter().map(Entry::new).collect();
     weigh(case, standing, &mut entries);
     let late = late(case, terms, &entries);

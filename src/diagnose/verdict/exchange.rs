@@ -9,16 +9,13 @@ use super::case::{Case, Standing};
 use super::diagnosis::{Finding, diagnose};
 use super::doubt::{SURE, doubt_of_gain};
 use super::errors::TIE;
-use crate::diagnose::candidates::{best_pairs, narrowed, same_effect};
-use crate::diagnose::judge::{COUNT, Equation, delay_of};
+use crate::diagnose::candidates::{Pairs, same_effect};
+use crate::diagnose::judge::{COUNT, delay_of};
 use crate::law::{Catalogue, Term};
 
 /// Pairs that are fitted and judged in full: those that leave least on a grid of inner parameters
 /// (docs/decisions/pairs.md).
 const PAIRS: usize = 6;
-
-/// Times that each effect's inner parameters are sought anew beside the others.
-const ROUNDS: usize = 2;
 
 /// A law with other effects in the place of some.
 pub(super) struct Exchange {
@@ -75,9 +72,9 @@ pub(super) fn paired(case: &Case, original: &[Term], terms: &[Term], standing: &
     }
     let rest: Vec<Term> = (0..terms.len()).filter(|place| !own.contains(place)).map(|place| terms[place]).collect();
     let base = case.stand(&rest)?;
-    let best = best_pairs(&case.record, &case.folds, &base.equation).into_iter().take(PAIRS);
-    let pairs = best.filter_map(|pair| {
-        let terms = tuned(case, &rest, &[&rest[..], &pair[..]].concat(), &base.equation);
+    let tried = Pairs::new(&case.record, &case.folds, &base.equation, (&base.held, base.floor));
+    let pairs = tried.best().into_iter().take(PAIRS).filter_map(|pair| {
+        let terms = [&rest[..], &tried.narrowed(pair)[..]].concat();
         Some(Exchange { standing: case.stand(&terms)?, terms, ties: Vec::new() })
     });
     let told = pairs.filter(|pair| is_told(case, original, pair));
@@ -94,18 +91,18 @@ pub(super) fn paired(case: &Case, original: &[Term], terms: &[Term], standing: &
     better.then_some(best)
 }
 
-/// Terms with the inner parameters of those added to a law that suit them beside each other; `base` is the equation of
-/// the law without them.
-pub(super) fn tuned(case: &Case, original: &[Term], terms: &[Term], base: &Equation) -> Vec<Term> {
+/// Terms with the inner parameters of those added to a law, two and more, that suit them beside each other; `base` is the
+/// law without them.
+pub(super) fn tuned(case: &Case, original: &[Term], terms: &[Term], base: &Standing) -> Vec<Term> {
     let mut own: Vec<Term> = added(original, terms).into_iter().map(|place| terms[place]).collect();
-    for place in (0..own.len()).cycle().take(ROUNDS * own.len()) {
-        if own[place].inner_values().is_empty() {
-            continue;
+    for one in 0..own.len() {
+        for other in one + 1..own.len() {
+            let rest = own.iter().enumerate().filter(|(place, _)| ![one, other].contains(place));
+            let beside = rest.fold(base.equation.clone(), |equation, (_, term)| equation.with(&case.record, *term));
+            let held = case.folds.judge(&beside);
+            let pairs = Pairs::new(&case.record, &case.folds, &beside, (&held, base.floor));
+            [own[one], own[other]] = pairs.narrowed([own[one], own[other]]);
         }
-        let others = own.iter().enumerate().filter(|(other, _)| *other != place);
-        let beside = others.fold(base.clone(), |equation, (_, term)| equation.with(&case.record, *term));
-        let held = case.folds.judge(&beside);
-        own[place] = narrowed(&case.record, &case.folds, &beside, &held, own[place]).term;
     }
     let found = |term: &Term| own.iter().find(|own| same_effect(**own, *term)).copied();
     terms.iter().map(|term| found(term).unwrap_or(*term)).collect()

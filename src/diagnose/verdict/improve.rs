@@ -100,7 +100,7 @@ impl Search<'_> {
         let rest: Vec<Term> =
             (0..self.terms.len()).filter(|place| !own.contains(place)).map(|place| self.terms[place]).collect();
         let Some(base) = self.case.stand(&rest).filter(|_| own.len() > 1) else { return };
-        let terms = tuned(self.case, self.original, &self.terms, &base.equation);
+        let terms = tuned(self.case, self.original, &self.terms, &base);
         let Some(standing) = self.case.stand(&terms) else { return };
         if standing.held.score(&self.standing.held) < 0.0 {
             (self.terms, self.standing) = (terms, standing);
@@ -204,7 +204,7 @@ pub struct Addition {
 /// Adds an effect to a law, whatever its evidence. None where the record is too short for the law with it.
 pub(in crate::diagnose) fn add(case: &Case, terms: &[Term], effect: Term) -> Option<Addition> {
     let before = case.stand(terms)?;
-    let found = contender(&case.record, &case.folds, &before.equation, &before.held, effect)?;
+    let found = contender(&case.record, &case.folds, &before.equation, (&before.held, before.floor), effect)?;
     let after = case.of(before.equation.with(&case.record, found.term))?;
     let errors = case.errors_of(&after);
     let errors = std::array::from_fn(|which| WindowError { before: before.held.errors[which], ..errors[which] });

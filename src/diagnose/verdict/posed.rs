@@ -139,7 +139,8 @@ fn with_open(case: &Case, terms: Vec<Term>, term: Term) -> Option<Vec<Term>> {
         }
     } else {
         let before = case.stand(&terms)?;
-        contender(&case.record, &case.folds, &before.equation, &before.held, term).map_or(term, |found| found.term)
+        let base = (&before.held, before.floor);
+        contender(&case.record, &case.folds, &before.equation, base, term).map_or(term, |found| found.term)
     };
     Some(terms.into_iter().chain([fitted]).collect())
 }

@@ -38,7 +38,7 @@ pub(super) fn is_of_untold_damper(case: &Case, standing: &Standing, term: Term) 
     let undamped = rubbed.equation.without(place);
     let base = case.folds.judge(&undamped);
     let bent = Effect::prototype("presliding_friction").map(Term::Effect);
-    let bent = bent.and_then(|term| contender(&case.record, &case.folds, &undamped, &base, term));
+    let bent = bent.and_then(|term| contender(&case.record, &case.folds, &undamped, (&base, rubbed.floor), term));
     let mut frictions = bent.into_iter().map(|found| found.held).chain([rubbed.held]);
     frictions.any(|held| held.score(&standing.held) < TIE * COUNT as f64)
 }
