@@ -73,8 +73,8 @@ impl Scale {
                 times(self.excursion, 1e-3, 4.0)
             }
             (Effect::FrictionWithBacklash { .. }, _) => times(self.excursion, 1e-3, 1.0),
-            // from a half to as many ripples as ten samples each show at full speed
-            (Effect::Cogging { .. }, 0) => [0.5 * PI / self.excursion, 0.2 * PI / (self.velocity * self.sample_time)],
+            // from a half to as many ripples as four samples each show at full speed
+            (Effect::Cogging { .. }, 0) => [0.5 * PI / self.excursion, 0.5 * PI / (self.velocity * self.sample_time)],
             (Effect::Cogging { .. }, _) => [f64::NEG_INFINITY, f64::INFINITY],
             (Effect::Relaxation { .. }, _) => [0.1 / fast, 10.0 / slow],
             (Effect::ActuatorLag { .. }, _) => [1e-3 * self.sample_time, 3.0 / slow],

@@ -32,7 +32,8 @@ impl Scale {
             Effect::ExcitationDelay { .. } => (vec![geometric(0.3 * self.sample_time, 1.0 / slow, 1.8)], 1.8),
             Effect::Hysteresis { .. } => (vec![lengths_of(0.004, 1.5, 2.0), vec![0.5, 1.0], vec![1.0, 2.0]], 2.0),
             Effect::HiddenResonator { .. } => {
-                (vec![geometric(0.3 * slow, (3.0 * fast).min(highest), 1.15), vec![0.02, 0.05, 0.12]], 1.15)
+                let frequencies = geometric(0.3 * slow, (3.0 * fast).min(highest), RESONANCE);
+                (vec![frequencies, vec![0.02, 0.02 * DAMPING, 0.02 * DAMPING * DAMPING]], RESONANCE)
             }
             Effect::PreslidingFriction { .. } => (vec![lengths_of(0.004, 1.5, 2.0)], 2.0),
             Effect::FrictionWithBacklash { .. } => (vec![lengths_of(0.01, 0.7, 3.0), lengths_of(0.03, 0.7, 2.0)], 2.0),
@@ -50,6 +51,12 @@ impl Scale {
         (2..=2 * RIPPLES).map(|halves| 0.5 * PI * f64::from(halves) / self.excursion).collect()
     }
 }
+
+/// Ratio between neighbouring frequencies of a hidden mass.
+const RESONANCE: f64 = 1.15;
+
+/// Ratio between neighbouring damping ratios of it: a resonance of 0.02 to 0.12 is 4 to 24 % wide.
+const DAMPING: f64 = 2.45;
 
 /// Most ripples over the way that are sought: each more costs eight columns.
 const RIPPLES: u32 = 8;
@@ -111,6 +118,14 @@ pub fn same_effect(one: Term, other: Term) -> bool {
 }
 
 impl Variant {
+    /// Grid of an inner parameter, in those of the first one.
+    fn stretch(&self, index: usize) -> f64 {
+        match (self.term, index) {
+            (Term::Effect(Effect::HiddenResonator { .. }), 1) => DAMPING.ln() / RESONANCE.ln(),
+            _ => 1.0,
+        }
+    }
+
     /// The variant and its neighbours at a third of its spacing: its first two inner parameters together, for a ripple's
     /// wave number and angle, or a resonance's frequency and damping, are not found one by one.
     pub fn neighbours(&self) -> Vec<Variant> {
@@ -121,7 +136,7 @@ impl Variant {
         let moved = |index: usize, power: i32| match range(index) {
             // an angle
             InnerRange::Any => values[index] + f64::from(power) * FRAC_PI_4 * spacing.ln() / RIPPLE.ln(),
-            _ => values[index] * spacing.powi(power),
+            _ => values[index] * spacing.powf(f64::from(power) * self.stretch(index)),
         };
         let powers = |index: usize| match (index, values.get(index).map(|_| range(index))) {
             // powers are whole numbers
