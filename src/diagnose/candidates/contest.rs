@@ -232,7 +232,10 @@ pub(super) fn eligible(record: &Record, equation: &Equation) -> Vec<Term> {
         |term: &Term| matches!(term, Term::Effect(Effect::ExcitationDelay { .. } | Effect::ActuatorLag { .. }));
     let all = candidates(&record.expressions).into_iter();
     let scales = |term: &Term| !record.forced && *term == Term::Inertia;
-    let is_barred = |term: &Term| is_delay(term) || scales(term) || is_output && term.uses_excitation();
+    // without a force a velocity less its low-pass is the acceleration that nothing else tells
+    let filters = |term: &Term| !record.forced && matches!(term, Term::Effect(Effect::Relaxation { .. }));
+    let is_barred =
+        |term: &Term| is_delay(term) || scales(term) || filters(term) || is_output && term.uses_excitation();
     all.filter(|term| !is_barred(term)).collect()
 }
 

@@ -9,6 +9,7 @@ use super::case::{Case, Standing};
 use super::diagnosis::{Finding, diagnose};
 use super::doubt::{SURE, doubt_of_gain};
 use super::errors::TIE;
+use super::untold::drives;
 use crate::diagnose::candidates::{Pairs, same_effect};
 use crate::diagnose::judge::{COUNT, delay_of};
 use crate::law::{Catalogue, Term};
@@ -77,18 +78,31 @@ pub(super) fn paired(case: &Case, original: &[Term], terms: &[Term], standing: &
         let terms = [&rest[..], &tried.narrowed(pair)[..]].concat();
         Some(Exchange { standing: case.stand(&terms)?, terms, ties: Vec::new() })
     });
-    let told = pairs.filter(|pair| is_told(case, original, pair));
-    let best = told.min_by(|a, b| compare(a, b, standing))?;
-    let score = best.standing.held.score(&standing.held);
-    let better = if own.len() < 2 {
-        let gains = standing.blocks.gains(&case.record, &standing.held, &best.standing.held);
-        let chance = standing.blocks.p_values(&[gains]).map(|values| PAIRS as f64 * values[0]);
-        doubt_of_gain(&standing.held, &best.standing.held, chance, &standing.floor).is_none()
-    } else {
-        let simpler = parameters(&best.terms) < parameters(terms);
-        score < if simpler { TIE * COUNT as f64 } else { -TIE }
+    let better = |pair: &Exchange| {
+        if own.len() < 2 {
+            let gains = standing.blocks.gains(&case.record, &standing.held, &pair.standing.held);
+            let chance = standing.blocks.p_values(&[gains]).map(|values| PAIRS as f64 * values[0]);
+            return doubt_of_gain(&standing.held, &pair.standing.held, chance, &standing.floor).is_none();
+        }
+        let simpler = parameters(&pair.terms) < parameters(terms);
+        pair.standing.held.score(&standing.held) < if simpler { TIE * COUNT as f64 } else { -TIE }
     };
-    better.then_some(best)
+    let mut told: Vec<Exchange> = pairs.filter(|pair| better(pair) && is_told(case, original, pair)).collect();
+    told.sort_by(|a, b| compare(a, b, standing));
+    told.into_iter().find(|pair| is_named(case, &rest, pair))
+}
+
+/// Whether a diagnosis beside one of a pair names the other, with all that it asks of one effect.
+fn is_named(case: &Case, rest: &[Term], pair: &Exchange) -> bool {
+    let new = &pair.terms[rest.len()..];
+    (0..new.len()).rev().any(|other| {
+        let beside = (0..new.len()).filter(|place| *place != other).fold(rest.to_vec(), |law, place| joined(&law, new[place]));
+        let found = diagnose(case, &beside).filter(|found| found.finding == Finding::Missing);
+        let name = Catalogue::name_of(new[other]);
+        found.is_some_and(|found| {
+            found.effect.as_ref() == Some(&name) || found.indistinguishable.iter().flatten().any(|tied| *tied == name)
+        })
+    })
 }
 
 /// Terms with the inner parameters of those added to a law, two and more, that suit them beside each other; `base` is the
@@ -115,8 +129,12 @@ fn is_told(case: &Case, original: &[Term], exchange: &Exchange) -> bool {
     let (values, stds) = (&standing.estimate.coefficients, &standing.estimate.std);
     added(original, terms).into_iter().all(|place| {
         let allowed = Catalogue::of(terms[place]).is_none_or(|entry| entry.sign.allows(values[place]));
-        let without = || case.folds.judge(&standing.equation.without(place)).score(&standing.held);
-        allowed && values[place].abs() > SURE * stds[place] && without() >= TIE * COUNT as f64
+        let without = || case.of(standing.equation.without(place));
+        let helps = |without: Standing| {
+            without.held.score(&standing.held) >= TIE * COUNT as f64
+                && !drives(case, &without, terms[place], [values[place], stds[place]])
+        };
+        allowed && values[place].abs() > SURE * stds[place] && without().is_some_and(helps)
     })
 }
 
