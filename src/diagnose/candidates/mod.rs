@@ -5,5 +5,5 @@ mod grid;
 mod pairs;
 
 pub(super) use contest::{Contender, TRAP, contender, contest};
-pub(super) use pairs::Pairs;
 pub use grid::same_effect;
+pub(super) use pairs::Pairs;

@@ -57,7 +57,8 @@ impl<'a> Pairs<'a> {
     }
 
     fn tried(&self, variants: Vec<Variant>) -> Vec<Tried> {
-        let own = |variant: Variant| (variant, self.screen.partialled(&column(self.record, self.equation, variant.term)));
+        let own =
+            |variant: Variant| (variant, self.screen.partialled(&column(self.record, self.equation, variant.term)));
         variants.into_iter().map(own).collect()
     }
 

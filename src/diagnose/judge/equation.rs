@@ -307,8 +307,8 @@ pub(super) fn relative(sums: &Normal, energy: f64, solution: &[f64], roles: &[Ro
         square - given
     };
     let with = |product: &dyn Fn(usize) -> f64| own.iter().map(|index| solution[*index] * product(*index)).sum::<f64>();
-    let all = energy - 2.0 * with(&|index| sums.moment[index])
-        + with(&|index| with(&|other| sums.gram[(index, other)]));
+    let all =
+        energy - 2.0 * with(&|index| sums.moment[index]) + with(&|index| with(&|other| sums.gram[(index, other)]));
     let target = beyond(energy, DVector::from_fn(aside.len(), |a, _| sums.moment[aside[a]]));
     let products = |a: usize, _| sums.moment[aside[a]] - with(&|index| sums.gram[(aside[a], index)]);
     let law = beyond(all, DVector::from_fn(aside.len(), products));

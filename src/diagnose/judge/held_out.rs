@@ -56,9 +56,8 @@ impl Folds {
         });
         let parts = [0, 1, 2].map(|which| {
             let windows = &record.windows[which];
-            let before = |bound: f64| {
-                windows.functions * windows.centres.iter().filter(|centre| **centre < bound).count()
-            };
+            let before =
+                |bound: f64| windows.functions * windows.centres.iter().filter(|centre| **centre < bound).count();
             let last = |fold: usize| if fold + 1 == FOLDS { windows.rows() } else { before(bounds(fold)[1]) };
             (0..FOLDS).map(|fold| before(bounds(fold)[0])..last(fold)).collect()
         });

@@ -67,11 +67,7 @@ pub(in crate::diagnose) struct Together {
 
 impl<'a> PairScreen<'a> {
     /// `sensors`: the share of the law's energy that the sensors alone would leave.
-    pub(in crate::diagnose) fn new(
-        folds: &'a Folds,
-        equation: &'a Equation,
-        sensors: [f64; COUNT],
-    ) -> PairScreen<'a> {
+    pub(in crate::diagnose) fn new(folds: &'a Folds, equation: &'a Equation, sensors: [f64; COUNT]) -> PairScreen<'a> {
         let part = |which: usize| {
             let (columns, right) = (equation.columns(which), &equation.right[which]);
             let (_, weights) = regression::fit(&columns, right, &vec![1.0; right.len()])?;
@@ -94,7 +90,8 @@ impl<'a> PairScreen<'a> {
             let normal = Normal { gram: part.normal.gram.clone(), moment: sums.moment };
             let rows = left(&columns, &normal, &column[which], &part.weights)?;
             let energy = self.folds.products(which, &rows, &rows);
-            let whole = column[which].iter().zip(&part.weights).map(|(value, weight)| weight * value * value).sum::<f64>();
+            let whole =
+                column[which].iter().zip(&part.weights).map(|(value, weight)| weight * value * value).sum::<f64>();
             let product = self.folds.products(which, &rows, &part.target);
             let holds = *role == Role::Holds;
             let open = if holds { Some(aside(self.equation, which, &column[which], &part.weights)?) } else { None };

@@ -94,9 +94,8 @@ impl Entry {
     /// own terms pass for it by their errors, and then there are none.
     pub(super) fn leaves_no_error(&self, case: &Case, standing: &Standing) -> bool {
         let [coefficient, std] = self.measured(case, standing);
-        let gains = |floor: &[f64; COUNT]| {
-            doubt_of_gain(&self.contender.before, &self.contender.held, None, floor).is_none()
-        };
+        let gains =
+            |floor: &[f64; COUNT]| doubt_of_gain(&self.contender.before, &self.contender.held, None, floor).is_none();
         let is_sure = coefficient.abs() > SURE * std;
         if !(is_sure && gains(&standing.floor) && gains(&case.settled(standing.clone()).floor)) {
             return false;

@@ -96,7 +96,8 @@ pub(super) fn paired(case: &Case, original: &[Term], terms: &[Term], standing: &
 fn is_named(case: &Case, rest: &[Term], pair: &Exchange) -> bool {
     let new = &pair.terms[rest.len()..];
     (0..new.len()).rev().any(|other| {
-        let beside = (0..new.len()).filter(|place| *place != other).fold(rest.to_vec(), |law, place| joined(&law, new[place]));
+        let beside =
+            (0..new.len()).filter(|place| *place != other).fold(rest.to_vec(), |law, place| joined(&law, new[place]));
         let found = diagnose(case, &beside).filter(|found| found.finding == Finding::Missing);
         let name = Catalogue::name_of(new[other]);
         found.is_some_and(|found| {
