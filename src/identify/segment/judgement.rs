@@ -61,11 +61,6 @@ impl Segment {
         self.start == other.start && is_one_law(&self.all, &other.all)
     }
 
-    /// Whether the fit has come to rest, explains its record, and is another law than these coefficients make.
-    pub fn contradicts(&self, all: &[f64]) -> bool {
-        self.settled() && self.fit.explains && !is_one_law(&self.all, all)
-    }
-
     /// Lets the law stand its stability check, once it has settled.
     pub(super) fn confirm(&mut self) {
         if self.settled() {

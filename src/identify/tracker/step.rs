@@ -148,9 +148,6 @@ impl Tracker {
             return;
         }
         self.published.missing = self.segment.missing;
-        let contradicted = self.monitor.law.running && self.segment.contradicts(&self.monitor.law.all);
-        let since = self.history.contradicted_since.unwrap_or(self.segment.closed_at());
-        self.history.contradicted_since = contradicted.then_some(since);
         let mixed = self.is_mixed();
         let trusted = self.segment.settled() && self.segment.stated_error() < TRUSTED && !mixed;
         self.make_known(setup, trusted);
