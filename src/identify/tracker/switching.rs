@@ -35,16 +35,9 @@ impl Tracker {
                 None => self.switch(setup.problem, suspect, threshold),
             }
         } else if suspect.evidence > 0.5 * threshold {
-            self.suspect();
-        } else if self.regime.suspected_since().is_some() {
+            self.enter(Event::SuspicionRaised);
+        } else if self.regime.is_suspected() {
             self.enter(Event::SuspicionCleared);
-        }
-    }
-
-    fn suspect(&mut self) {
-        if self.regime.is_unsuspected() {
-            let since = *self.monitor.suspected_at.get_or_insert(self.window.end());
-            self.enter(Event::SuspicionRaised { since });
         }
     }
 
