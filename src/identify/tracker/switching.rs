@@ -66,7 +66,7 @@ impl Tracker {
         let start = (self.monitor.bank.after(&suspect, threshold) + 1).min(last);
         let time = |number: u64| self.window.sample(number).t;
         let distance = self.monitor.bank.distance_of_switch(time(instant), self.now(), time);
-        if self.regime.is_unconfirmed() || self.was_never_right(instant, last, suspect.evidence - threshold) {
+        if self.regime.is_unconfirmed() {
             return self.take_back(problem);
         }
         self.intake.after_outage.end();
