@@ -6,9 +6,6 @@ use std::f64::consts::TAU;
 /// A faulty reading's scale in std of a working one: what is nearer costs about the same as a working one.
 const SCALE: f64 = 3.0;
 
-/// Readings that a burst has had when it is found in the record.
-const SOME: f64 = 10.0;
-
 /// Log-density of a Gaussian residual.
 pub fn working(residual: f64, variance: f64) -> f64 {
     -0.5 * (residual * residual / variance + (TAU * variance).ln())
@@ -39,11 +36,6 @@ pub struct Burst {
 }
 
 impl Burst {
-    /// A burst that has had some readings already.
-    pub fn going_on() -> Burst {
-        Burst { probability: 1.0, age: SOME }
-    }
-
     /// Takes a reading by its log-densities under a working and a faulty sensor; `start` is the probability that a
     /// burst begins with a reading. One that has lasted for n readings ends with the next at 1 ÷ (n + 2). Returns the
     /// reading's log-density.
