@@ -126,8 +126,8 @@ impl Variant {
         }
     }
 
-    /// The variant and its neighbours at a third of its spacing: its first two inner parameters together, for a ripple's
-    /// wave number and angle, or a resonance's frequency and damping, are not found one by one.
+    /// The variant and its neighbours at a third of its spacing: its first two inner parameters together, for a
+    /// ripple's wave number and angle, or a resonance's frequency and damping, are not found one by one.
     pub fn neighbours(&self) -> Vec<Variant> {
         let spacing = self.spacing.cbrt();
         let values = self.term.inner_values();

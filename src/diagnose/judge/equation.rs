@@ -51,8 +51,8 @@ pub(in crate::diagnose) enum Role {
     Holds,
     /// It is the other side of the law: F where q̈ is the target, q̈ where F is.
     Closes,
-    /// It holds q̈ beside the law's own: a filtered q̈ is a smoother q̈ too, and what is left below the floor with it is the
-    /// readings' noise.
+    /// It holds q̈ beside the law's own: a filtered q̈ is a smoother q̈ too, and what is left below the floor with it
+    /// is the readings' noise.
     Smooths,
     /// None of these.
     Explains,
@@ -290,10 +290,10 @@ fn aside(roles: &[Role]) -> Vec<usize> {
     (0..roles.len()).filter(|index| is_closed && matches!(roles[*index], Role::Explains | Role::Smooths)).collect()
 }
 
-/// What a residual is relative to the target that a law then has: of y = X b + z, z what the columns that hold the target
-/// give, it is a law of y − z, and what cancels the target explains nothing of it. Both are taken less what the law's
-/// other terms give of them: a filtered q̇ is q̇ and some q̈. 1 where nothing holds the target. By the sums of all columns
-/// and the target's Σ weight y².
+/// What a residual is relative to the target that a law then has: of y = X b + z, z what the columns that hold the
+/// target give, it is a law of y − z, and what cancels the target explains nothing of it. Both are taken less what the
+/// law's other terms give of them: a filtered q̇ is q̇ and some q̈. 1 where nothing holds the target. By the sums of all
+/// columns and the target's Σ weight y².
 pub(super) fn relative(sums: &Normal, energy: f64, solution: &[f64], roles: &[Role]) -> f64 {
     let own: Vec<usize> = (0..roles.len()).filter(|index| roles[*index] == Role::Holds).collect();
     if own.is_empty() {

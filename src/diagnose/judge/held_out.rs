@@ -186,8 +186,8 @@ impl<'a> Screen<'a> {
         Screen { folds, equation, parts, sensors }
     }
 
-    /// Of several variants of one candidate: which one each part's training prefers among those whose coefficient in the
-    /// regression is allowed, if there are any, and the errors of that choice.
+    /// Of several variants of one candidate: which one each part's training prefers among those whose coefficient in
+    /// the regression is allowed, if there are any, and the errors of that choice.
     pub(in crate::diagnose) fn choose(
         &self,
         variants: &[&(Column, Role)],

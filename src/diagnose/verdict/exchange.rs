@@ -106,8 +106,8 @@ fn is_named(case: &Case, rest: &[Term], pair: &Exchange) -> bool {
     })
 }
 
-/// Terms with the inner parameters of those added to a law, two and more, that suit them beside each other; `base` is the
-/// law without them.
+/// Terms with the inner parameters of those added to a law, two and more, that suit them beside each other; `base` is
+/// the law without them.
 pub(super) fn tuned(case: &Case, original: &[Term], terms: &[Term], base: &Standing) -> Vec<Term> {
     let mut own: Vec<Term> = added(original, terms).into_iter().map(|place| terms[place]).collect();
     for one in 0..own.len() {
