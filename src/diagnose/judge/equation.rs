@@ -292,8 +292,8 @@ fn aside(roles: &[Role]) -> Vec<usize> {
 
 /// What a residual is relative to the target that a law then has: of y = X b + z, z what the columns that hold the
 /// target give, it is a law of y − z, and what cancels the target explains nothing of it. Both are taken less what the
-/// law's other terms give of them: a filtered q̇ is q̇ and some q̈. 1 where nothing holds the target. By the sums of all
-/// columns and the target's Σ weight y².
+/// law's other terms give of them: a filtered q̇ is q̇ and some q̈. 1 where nothing holds the target. By the sums of
+/// all columns and the target's Σ weight y².
 pub(super) fn relative(sums: &Normal, energy: f64, solution: &[f64], roles: &[Role]) -> f64 {
     let own: Vec<usize> = (0..roles.len()).filter(|index| roles[*index] == Role::Holds).collect();
     if own.is_empty() {
