@@ -157,8 +157,10 @@ fn two_hidden_effects_are_found() {
 /// has no name, F³ and a position-dependent inertia never beside another effect.
 #[test]
 fn what_holds_the_target_is_told_by_what_it_explains() {
-    let drawn = |secret: Secret, strength: f64, noise: f64, seed: u64| {
-        Setting { seed, samples: 5000, ..setting(secret, strength, noise, 0) }
+    let drawn = |secret: Secret, strength: f64, noise: f64, seed: u64| Setting {
+        seed,
+        samples: 5000,
+        ..setting(secret, strength, noise, 0)
     };
     let both = |one: &str, other: &str| Secret::Missing(vec![one.into(), other.into()]);
     let outcomes = visible(vec![
