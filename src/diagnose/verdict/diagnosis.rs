@@ -115,9 +115,12 @@ fn weigh(case: &Case, standing: &Standing, entries: &mut [Entry]) {
             entry.doubt = Some(Doubt::Trap);
         }
     }
-    for entry in entries.iter_mut().filter(|entry| entry.doubt == Some(Doubt::Trap)) {
-        if entry.leaves_no_error(case, standing) {
-            entry.doubt = None;
+    // near the law's own terms two candidates are near each other: one that is none of them stands for both
+    if entries.iter().all(|entry| entry.doubt.is_some()) {
+        for entry in entries.iter_mut().filter(|entry| entry.doubt == Some(Doubt::Trap)) {
+            if entry.leaves_no_error(case, standing) {
+                entry.doubt = None;
+            }
         }
     }
 }

@@ -12,6 +12,9 @@ pub(super) const SETTLED: f64 = 1.0;
 /// Runs in a row that may leave what can be integrated: each is repeated with a thousand times the process noise.
 const LOST: u32 = 6;
 
+/// Sensor variance ÷ that of the law before from which on the record may hold an error that is none of the sensors'.
+const LOUDER: f64 = 1.3;
+
 impl Segment {
     /// Whether the last runs agree: the estimate is at the likelihood's maximum, to within a fraction of its std.
     pub fn settled(&self) -> bool {
@@ -45,14 +48,22 @@ impl Segment {
         self.stands() && self.stated_error() < VALIDATED
     }
 
-    /// Whether nothing speaks against the law: no error that lasts, no estimate that a longer record contradicted.
+    /// Whether nothing speaks against the law: no error that lasts, none that the sensors seem to have since it began,
+    /// no estimate that a longer record contradicted.
     pub fn is_beyond_doubt(&self) -> bool {
-        self.fit.explains && self.fit.overdispersion == 1.0 && !self.constancy.broken
+        let known = self.known.weight > 0.0;
+        let louder = self.noise.sensor.iter().zip(self.known.noise).any(|(now, before)| *now > LOUDER * before);
+        self.fit.explains && self.fit.overdispersion == 1.0 && !(known && louder) && !self.constancy.broken
     }
 
     /// Whether both fits found one law in the same record.
     pub fn agrees_with(&self, other: &Segment) -> bool {
         self.start == other.start && is_one_law(&self.all, &other.all)
+    }
+
+    /// Whether the fit has come to rest, explains its record, and is another law than these coefficients make.
+    pub fn contradicts(&self, all: &[f64]) -> bool {
+        self.settled() && self.fit.explains && !is_one_law(&self.all, all)
     }
 
     /// Lets the law stand its stability check, once it has settled.

@@ -41,6 +41,7 @@ impl Tracker {
     /// Takes what the law in use makes of a sample, number `number`, for the hypotheses of faults that no single
     /// reading shows.
     pub(super) fn weigh_faults(&mut self, number: u64, innovations: &[Option<Innovation>; 2]) {
+        self.intake.scatter.take(innovations);
         let Tracker { intake, window, monitor, .. } = self;
         let law = &monitor.law;
         let outage = window.ends_outage(number);
@@ -56,14 +57,17 @@ impl Tracker {
             }
         }
         if intake.after_outage.is_due() {
-            self.take_off_the_rest();
+            self.look_for_offset();
         }
     }
 
-    /// What is left of an offset that was found is taken off.
-    fn take_off_the_rest(&mut self) {
-        if let Some(returned) = self.intake.after_outage.likeliest() {
-            self.correct_offset(&returned);
+    /// An offset that stands out is taken off before anything alarms, and what is left of one that was found.
+    fn look_for_offset(&mut self) {
+        let Some(returned) = self.intake.after_outage.likeliest() else { return };
+        let stands_out = returned.evidence > DECISIVE && returned.against_other > DECISIVE;
+        match stands_out || self.intake.after_outage.is_found() {
+            true => self.correct_offset(&returned),
+            false => self.intake.after_outage.look_later(),
         }
     }
 
@@ -71,6 +75,11 @@ impl Tracker {
     pub(super) fn is_fault(&mut self, suspect: &Suspect, threshold: f64) -> bool {
         if !self.monitor.law.explains {
             return false;
+        }
+        if self.intake.scatter.evidence() > suspect.evidence + TWENTY_TO_ONE {
+            self.intake.quarantine.go_on_in(self.intake.scatter.bursts());
+            self.clear_suspicion();
+            return true;
         }
         if self.is_excitation_stuck() {
             self.lose_excitation();
@@ -160,7 +169,8 @@ impl Tracker {
         self.monitor.bank.clear();
         self.monitor.empirical_null.clear();
         self.monitor.unusual_since = None;
-        if self.regime.is_suspected() {
+        self.intake.scatter.clear();
+        if self.regime.suspected_since().is_some() {
             self.enter(Event::SuspicionCleared);
         }
     }

@@ -2,17 +2,20 @@
 
 use super::regime::Event;
 use super::state::{Fitting, History, Schedule, Tracker};
-use crate::estimation::{Lag, Noise};
+use crate::estimation::Noise;
 use crate::evidence::{INERTIA_SPREAD, SWITCH_SIZE};
 use crate::identify::problem::Problem;
 use crate::identify::segment::{NOISE_MEMORY, Prior};
-use crate::identify::timing::Timing;
 
 /// The prior of a new law is this much wider than the switch that is looked for.
 pub(super) const PRIOR_WIDTH: f64 = 3.0;
 
 /// Share of the variance of a switch's acceleration that a new law's process noise begins with.
 const UNEXPLAINED: f64 = 0.1;
+
+/// An estimate of the inertia that is beyond these times the old one is that of a change too large for its
+/// linearisation.
+const SAME_INERTIA: std::ops::Range<f64> = 0.3..3.0;
 
 impl Tracker {
     /// The record from sample `start` on is another law's: the weak rows begin with it, and no other fit is under way.
@@ -31,6 +34,7 @@ impl Tracker {
         let law = &self.monitor.law;
         let noise = Noise { sensor: law.noise.sensor, process: process.max(law.noise.process) };
         self.belief.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
+        keep_inertia(problem, &law.all, &mut self.belief.from);
         self.belief.samples = NOISE_MEMORY;
         let prior = Prior {
             centre: &self.belief.centre,
@@ -55,19 +59,16 @@ impl Tracker {
         self.enter(Event::StateLost);
     }
 
-    /// What is assumed of when F acted follows what the record of the present law tells.
+    /// What is assumed of when F acted follows what the record of the present law tells, where no effect that the law
+    /// lacks explains it as well.
     pub fn correct_timing(&mut self, problem: &mut Problem) {
-        let Some(corrected) = self.corrected_timing(problem, &self.segment.timing.lag) else { return };
+        let lag = self.segment.timing.lag;
+        let lacks = self.segment.missing.is_some_and(|missing| missing.evidence > lag.evidence());
+        let corrected = problem.timing.corrected(&lag, self.record_length());
+        let Some(corrected) = corrected.filter(|_| self.is_refining() && !lacks) else { return };
         let before = std::mem::replace(&mut problem.timing, corrected);
         self.window.set_timing(corrected.hold, corrected.lag - before.lag);
         self.begin_under_another_timing(problem, corrected.late() - before.late());
-    }
-
-    /// When F acted where the record of the present law says `lag`, and no effect that it lacks explains that as well.
-    pub(super) fn corrected_timing(&self, problem: &Problem, lag: &Lag) -> Option<Timing> {
-        let lacks = self.segment.effect_evidence() > lag.evidence;
-        let corrected = problem.timing.corrected(lag, self.record_length());
-        corrected.filter(|_| self.is_refining() && !lacks)
     }
 
     /// F acts so many samples later than was assumed: the laws move along, and the record is fitted anew.
@@ -94,5 +95,15 @@ impl Tracker {
     pub(super) fn refute_law(&mut self) {
         (self.history.refuted_at, self.schedule.next_guess) = (self.window.end(), 0);
         self.enter(Event::LawRefuted);
+    }
+}
+
+/// A linear estimate of the change may turn the inertia around: it then stays what it was.
+fn keep_inertia(problem: &Problem, old: &[f64], new: &mut [f64]) {
+    if let Some(index) = problem.free_inertia() {
+        let ratio = new[index] / old[problem.inertia];
+        if !SAME_INERTIA.contains(&ratio) {
+            new[index] = old[problem.inertia];
+        }
     }
 }

@@ -7,7 +7,6 @@
 use super::regime::{Event, PostAlarm, Recognition, Validated};
 use super::sighting::Sight;
 use super::state::{Fitting, Setup, Tracker};
-use crate::estimation::TWENTY_TO_ONE;
 use crate::identify::change::false_alarm_level;
 use crate::identify::library::{Mixture, ROOM, SavedLaw, SavedLaws, SavedLawsError, Verdict, Weighed};
 use crate::identify::problem::Problem;
@@ -21,8 +20,14 @@ const AT_ALARM: f64 = 0.05;
 /// The same on trial, where the state is known from the new record alone.
 const ON_TRIAL: f64 = 0.25;
 
+/// Evidence against the next best known law, in false-alarm levels.
+const AMONG_KNOWN: f64 = 0.15;
+
 /// The bank goes on after an alarm for this many times as long as it had watched the switch.
 const POST_ALARM: u64 = 3;
+
+/// Evidence of any other law at which a recognised one is left, in false-alarm levels.
+const CONTRADICTED: f64 = 0.15;
 
 /// Samples of known laws' trials in a step, all together: the budget of a law that has yet to converge.
 pub(super) const TRIAL_BUDGET: usize = 40;
@@ -45,9 +50,7 @@ impl Tracker {
         let Some(post_alarm) = self.regime.post_alarm() else { return };
         let monitor = &mut self.monitor;
         while monitor.law.next < self.window.ready() {
-            let number = monitor.law.next;
-            let (observation, shifts) = (self.window.observation(number), self.window.shifts(number));
-            let innovations = monitor.law.step(setup.problem, &observation, shifts);
+            let innovations = monitor.law.step(setup.problem, &self.window.observation(monitor.law.next));
             monitor.bank.step(&monitor.law.run.map, &innovations);
             monitor.law.next += 1;
         }
@@ -81,7 +84,7 @@ impl Tracker {
         }
         let (known, any, place) = best;
         let level = false_alarm_level(setup.settings);
-        let place = place.filter(|_| known - any > AT_ALARM * level && known - next.0 > TWENTY_TO_ONE)?;
+        let place = place.filter(|_| known - any > AT_ALARM * level && known - next.0 > AMONG_KNOWN * level)?;
         Some(Sight { place, mixture: Mixture::of(known - any, next.2.map(|rival| (rival, known - next.0))) })
     }
 
@@ -104,11 +107,11 @@ impl Tracker {
     fn heed(&mut self, setup: Setup, verdict: Option<Verdict>) {
         let level = false_alarm_level(setup.settings);
         let stands_out =
-            |verdict: &Verdict| verdict.against_any > ON_TRIAL * level && verdict.against_known() > TWENTY_TO_ONE;
+            |verdict: &Verdict| verdict.against_any > ON_TRIAL * level && verdict.against_known() > AMONG_KNOWN * level;
         let found = verdict.filter(stands_out).map(Sight::from);
         match (self.regime.recognition().map(|recognition| recognition.place), found) {
             (Some(place), Some(found)) if place == found.place => self.enter(Event::RecognitionConfirmed),
-            (Some(place), _) if self.is_contradicted(place, verdict.is_some()) => {
+            (Some(place), _) if self.is_contradicted(place, verdict.is_some(), level) => {
                 self.withdraw(setup.problem, self.segment.start);
                 self.library.in_sight = found;
             }
@@ -123,8 +126,8 @@ impl Tracker {
     }
 
     /// Whether the record rules the recognised law out, or what has just been weighed speaks for another one.
-    fn is_contradicted(&self, place: usize, weighed: bool) -> bool {
-        let against = |verdict: Verdict| verdict.against_any.min(verdict.against_known()) < -TWENTY_TO_ONE;
+    fn is_contradicted(&self, place: usize, weighed: bool, level: f64) -> bool {
+        let against = |verdict: Verdict| verdict.against_any.min(verdict.against_known()) < -CONTRADICTED * level;
         let Tracker { library, .. } = self;
         let verdict = library.trials.on(place, &library.known);
         library.trials.is_running() && verdict.is_none_or(|verdict| weighed && against(verdict))
@@ -197,6 +200,15 @@ impl Tracker {
         wrong.into_iter().for_each(|place| self.library.trials.rule_out(place));
     }
 
+    /// Whether the law in use was recognised and never was the record's: it has held for a shorter time than it has
+    /// been left by now, or against another law all the while there is no such evidence of a switch as an alarm asks.
+    /// `beyond` is by how much it passes the threshold.
+    pub(super) fn was_never_right(&mut self, instant: u64, now: u64, beyond: f64) -> bool {
+        let Some(Recognition { place, .. }) = self.regime.recognition() else { return false };
+        let against = self.library.trials.evidence_against(place, &mut self.library.known, &self.window);
+        self.segment.length(instant) < now - instant || against.is_some_and(|against| against > beyond)
+    }
+
     /// The number of the known law that the segment's is, or a new one.
     pub(super) fn number_law(&mut self, settings: &Settings) -> u32 {
         let known = &mut self.library.known;
@@ -240,6 +252,21 @@ impl Tracker {
             let Tracker { library, segment, belief, .. } = self;
             library.known.keep(law.number, &segment.estimate(), samples, &belief.spread, recognised);
         }
+    }
+
+    /// Leaves a recognised law that the segment's own estimate contradicts, once its trial is over; returns whether it
+    /// did.
+    pub(super) fn leave(&mut self, setup: Setup) -> bool {
+        let library = &mut self.library;
+        let recognition = self.regime.recognition().filter(|_| !library.trials.is_running());
+        let Some(Recognition { place, .. }) = recognition else { return false };
+        let weighed = library.known.weigh(place, Some(&self.segment.coefficients), self.segment.record());
+        let against_any = (weighed.known - weighed.any) / self.segment.fit.overdispersion;
+        let contradicted = against_any < -CONTRADICTED * false_alarm_level(setup.settings);
+        if contradicted {
+            self.withdraw(setup.problem, self.segment.start);
+        }
+        contradicted
     }
 
     /// Puts the known laws on trial over a record that no alarm began, as soon as it has two samples.

@@ -31,6 +31,8 @@ pub(super) enum Regime {
         law: Validated,
         /// Which known law it is, where it was recognised.
         recognition: Option<Recognition>,
+        /// Number of the sample from which on the law in use is not renewed.
+        since: u64,
     },
     /// The law before does not hold any more; that of the record is not validated yet.
     ReIdentifying {
@@ -115,14 +117,18 @@ pub(super) enum Event {
         after_another: bool,
     },
     /// The log Bayes factor of a change passes half the decision threshold.
-    SuspicionRaised,
+    SuspicionRaised {
+        /// Number of the sample from which on the law in use is not renewed.
+        since: u64,
+    },
     /// It is below half the decision threshold again.
     SuspicionCleared,
     /// It passes the decision threshold.
     SwitchFound(Option<PostAlarm>),
     /// The hypotheses of the last switch have no more to say on known laws.
     PostAlarmEnded,
-    /// The law in use does not explain its record any more, and no switch does: several laws share it.
+    /// The law in use does not explain its record any more, and no switch does: several laws share it, or another one
+    /// explains it whole.
     LawRefuted,
     /// The state under the law in use has left the finite numbers.
     StateLost,
@@ -157,11 +163,12 @@ impl Regime {
             (Recognised { law, recognition }, RecognitionWeighed(mixture)) => {
                 Recognised { law, recognition: Recognition { mixture, ..recognition } }
             }
-            (SwitchSuspected { law, recognition: Some(recognition) }, RecognitionConfirmed) => {
-                SwitchSuspected { law, recognition: Some(Recognition { confirmed: true, ..recognition }) }
+            (SwitchSuspected { law, recognition: Some(recognition), since }, RecognitionConfirmed) => {
+                let recognition = Some(Recognition { confirmed: true, ..recognition });
+                SwitchSuspected { law, recognition, since }
             }
-            (SwitchSuspected { law, recognition: Some(recognition) }, RecognitionWeighed(mixture)) => {
-                SwitchSuspected { law, recognition: Some(Recognition { mixture, ..recognition }) }
+            (SwitchSuspected { law, recognition: Some(recognition), since }, RecognitionWeighed(mixture)) => {
+                SwitchSuspected { law, recognition: Some(Recognition { mixture, ..recognition }), since }
             }
             (
                 Recognised { .. } | SwitchSuspected { recognition: Some(_), .. },
@@ -172,12 +179,12 @@ impl Regime {
                 RecognitionRefuted { after_another: false },
             ) => Acquiring,
 
-            (Tracking { law }, SuspicionRaised) => SwitchSuspected { law, recognition: None },
-            (Recognised { law, recognition }, SuspicionRaised) => {
-                SwitchSuspected { law, recognition: Some(recognition) }
+            (Tracking { law }, SuspicionRaised { since }) => SwitchSuspected { law, recognition: None, since },
+            (Recognised { law, recognition }, SuspicionRaised { since }) => {
+                SwitchSuspected { law, recognition: Some(recognition), since }
             }
-            (SwitchSuspected { law, recognition: None }, SuspicionCleared) => Tracking { law },
-            (SwitchSuspected { law, recognition: Some(recognition) }, SuspicionCleared) => {
+            (SwitchSuspected { law, recognition: None, .. }, SuspicionCleared) => Tracking { law },
+            (SwitchSuspected { law, recognition: Some(recognition), .. }, SuspicionCleared) => {
                 Recognised { law, recognition }
             }
 
@@ -267,9 +274,17 @@ impl Regime {
         self.recognition().is_some_and(|recognition| !recognition.confirmed)
     }
 
-    /// Whether a switch is suspected.
-    pub(super) fn is_suspected(&self) -> bool {
-        matches!(self, Regime::SwitchSuspected { .. })
+    /// Whether a validated constant law is in use that nothing speaks against.
+    pub(super) fn is_unsuspected(&self) -> bool {
+        matches!(self, Regime::Tracking { .. } | Regime::Recognised { .. })
+    }
+
+    /// The sample from which on the law in use is not renewed, while a switch is suspected.
+    pub(super) fn suspected_since(&self) -> Option<u64> {
+        match self {
+            Regime::SwitchSuspected { since, .. } => Some(*since),
+            _ => None,
+        }
     }
 
     /// The time after an alarm in which the bank of hypotheses goes on.
@@ -314,8 +329,8 @@ mod tests {
             Regime::Acquiring,
             Regime::Tracking { law: LAW },
             Regime::Recognised { law: LAW, recognition: recognition() },
-            Regime::SwitchSuspected { law: LAW, recognition: None },
-            Regime::SwitchSuspected { law: LAW, recognition: Some(recognition()) },
+            Regime::SwitchSuspected { law: LAW, recognition: None, since: 40 },
+            Regime::SwitchSuspected { law: LAW, recognition: Some(recognition()), since: 40 },
             Regime::ReIdentifying { post_alarm: Some(PostAlarm { until: 50, left: Some(3) }) },
             drifting(true, Some(2.0)),
         ]
@@ -329,7 +344,7 @@ mod tests {
             Event::RecognitionWeighed(Mixture::of(1.0, None)),
             Event::RecognitionRefuted { after_another: true },
             Event::RecognitionRefuted { after_another: false },
-            Event::SuspicionRaised,
+            Event::SuspicionRaised { since: 40 },
             Event::SuspicionCleared,
             SWITCH,
             Event::PostAlarmEnded,
@@ -375,7 +390,7 @@ mod tests {
         let later = Validated { number: 9, since: 7.0 };
         let tracking = Regime::Acquiring.after(Event::LawValidated(LAW));
         let again = tracking
-            .after(Event::SuspicionRaised)
+            .after(Event::SuspicionRaised { since: 40 })
             .after(Event::LawValidated(later))
             .after(Event::SuspicionCleared)
             .after(Event::LawValidated(later));
@@ -385,8 +400,9 @@ mod tests {
 
     #[test]
     fn a_recognised_law_stays_recognised_under_suspicion() {
-        let suspected = Regime::Recognised { law: LAW, recognition: recognition() }.after(Event::SuspicionRaised);
-        assert!(suspected.is_unconfirmed() && suspected.is_suspected());
+        let suspected =
+            Regime::Recognised { law: LAW, recognition: recognition() }.after(Event::SuspicionRaised { since: 40 });
+        assert!(suspected.is_unconfirmed() && suspected.suspected_since() == Some(40));
         let confirmed = suspected.after(Event::RecognitionConfirmed).after(Event::SuspicionCleared);
         let recognition = Recognition { confirmed: true, ..recognition() };
         assert_eq!(confirmed, Regime::Recognised { law: LAW, recognition });

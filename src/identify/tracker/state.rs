@@ -7,7 +7,7 @@ use crate::estimation::DifferenceNoise;
 use crate::evidence::{Bank, SWITCH_SIZE};
 use crate::identify::change::{EmpiricalNull, LawInUse, Prediction};
 use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
-use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition};
+use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition, Scatter};
 use crate::identify::functional::WeakForm;
 use crate::identify::problem::Problem;
 use crate::identify::segment::{MotionScales, Segment, WeakStart};
@@ -72,6 +72,7 @@ pub struct Tracker {
 pub(super) struct Intake {
     pub(super) excitation: ExcitationGate,
     pub(super) quarantine: Quarantine,
+    pub(super) scatter: Scatter,
     pub(super) after_outage: AfterOutage,
     /// Whether an alarm waits for the decision between another law and an offset.
     pub(super) undecided: bool,
@@ -114,6 +115,8 @@ pub(super) struct Monitor {
     pub(super) prediction: Prediction,
     /// Since which sample the evidence of a switch is more than chance brings now and then.
     pub(super) unusual_since: Option<u64>,
+    /// At which sample a switch was first suspected since the law in use was renewed.
+    pub(super) suspected_at: Option<u64>,
     /// Every free term: what a switch may move.
     pub(super) every_term: Vec<bool>,
 }
@@ -144,6 +147,8 @@ pub(super) struct History {
     pub(super) refuted_at: u64,
     /// Runs in a row after which the segment seemed to hold several laws.
     pub(super) mixed_runs: u32,
+    /// Since which sample the segment's record has been explained by another law than the one in use, run by run.
+    pub(super) contradicted_since: Option<u64>,
 }
 
 impl Monitor {
@@ -163,6 +168,7 @@ impl Tracker {
             intake: Intake {
                 excitation: ExcitationGate::default(),
                 quarantine: Quarantine::new(),
+                scatter: Scatter::default(),
                 after_outage: AfterOutage::default(),
                 undecided: false,
                 force: Repetition::default(),
@@ -182,6 +188,7 @@ impl Tracker {
                 empirical_null: EmpiricalNull::default(),
                 prediction: Prediction::new(settings),
                 unusual_since: None,
+                suspected_at: None,
                 every_term: vec![true; n],
             },
             belief: ChangeBelief {

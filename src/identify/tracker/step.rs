@@ -80,7 +80,7 @@ impl Tracker {
             let number = self.monitor.law.next;
             let observation = self.window.observation(number);
             let monitor = &mut self.monitor;
-            let innovations = monitor.law.step(setup.problem, &observation, self.window.shifts(number));
+            let innovations = monitor.law.step(setup.problem, &observation);
             if !monitor.law.run.filter.state().is_finite() {
                 self.lose();
                 return;
@@ -128,22 +128,29 @@ impl Tracker {
         }
     }
 
-    /// Whether what comes after an outage may have an offset: no law must be fitted to that.
-    fn may_be_off(&self) -> bool {
-        self.intake.after_outage.is_open() && self.regime.law().is_some()
+    /// Whether a suspicion is so young that the law in use must not be renewed.
+    fn is_in_suspense(&self) -> bool {
+        // what comes after an outage may have an offset, and no law must be fitted to that
+        if self.intake.after_outage.is_open() && self.regime.law().is_some() {
+            return true;
+        }
+        self.regime.suspected_since().is_some_and(|since| self.window.end() < since + SUSPENSE)
     }
 
     fn refine(&mut self, setup: Setup) {
         let young = !self.regime.is_valid() || self.record_length() < YOUNG;
         let converging = self.segment.fit.explains && !self.segment.settled();
         let budget = BUDGET[usize::from(young || converging)];
-        if self.may_be_off() || !self.segment.refine(setup.problem, setup.settings, &self.window, budget) {
+        if self.is_in_suspense() || !self.segment.refine(setup.problem, setup.settings, &self.window, budget) {
             return;
         }
-        if self.give_up_guess() {
+        if self.give_up_guess() || self.leave(setup) {
             return;
         }
         self.published.missing = self.segment.missing;
+        let contradicted = self.monitor.law.running && self.segment.contradicts(&self.monitor.law.all);
+        let since = self.history.contradicted_since.unwrap_or(self.segment.closed_at());
+        self.history.contradicted_since = contradicted.then_some(since);
         let mixed = self.is_mixed();
         let trusted = self.segment.settled() && self.segment.stated_error() < TRUSTED && !mixed;
         self.make_known(setup, trusted);
@@ -187,6 +194,7 @@ impl Tracker {
     /// they are carried over only between laws as near to each other as those that have stood their stability check.
     fn monitor_new_law(&mut self, problem: &Problem, proven: bool) {
         let was_running = self.monitor.law.running;
+        self.monitor.suspected_at = None;
         match was_running {
             true => self.carry_hypotheses(problem, proven),
             false => self.end_post_alarm(),

@@ -7,8 +7,7 @@ use crate::identify::change::Decision;
 use crate::identify::drift::INSTANTS;
 use crate::identify::problem::Problem;
 
-/// A linear estimate of a change that moves a coefficient by more stds of a switch than this is none to begin with. The
-/// inertia's std being 0.3 of it, what is left keeps its sign.
+/// A linear estimate of a change that moves a coefficient by more stds of a switch than this is none to begin with.
 const PLAUSIBLE: f64 = 2.0;
 
 impl Tracker {
@@ -26,7 +25,7 @@ impl Tracker {
         let deviates = self.monitor.prediction.deviates(setup.settings, self.now());
         let alarms = suspect.evidence > threshold || deviates;
         self.intake.undecided &= alarms;
-        if alarms && (self.is_fault(suspect, threshold) || self.is_lag(setup.problem, suspect, threshold)) {
+        if alarms && self.is_fault(suspect, threshold) {
             return;
         }
         if alarms {
@@ -35,24 +34,17 @@ impl Tracker {
                 None => self.switch(setup.problem, suspect, threshold),
             }
         } else if suspect.evidence > 0.5 * threshold {
-            self.enter(Event::SuspicionRaised);
-        } else if self.regime.is_suspected() {
+            self.suspect();
+        } else if self.regime.suspected_since().is_some() {
             self.enter(Event::SuspicionCleared);
         }
     }
 
-    /// Whether F acted at another time than is assumed, by all that the law in use has followed: that is told rather
-    /// than a switch where it stands out more.
-    fn is_lag(&mut self, problem: &Problem, suspect: &Suspect, threshold: f64) -> bool {
-        let lag = self.monitor.law.tell_lag();
-        let stands_out = problem.timing.odds(&lag) > suspect.evidence - threshold;
-        let is_lag = stands_out && self.corrected_timing(problem, &lag).is_some();
-        if is_lag {
-            let timing = &mut self.segment.timing;
-            timing.lag = lag;
-            timing.slope.copy_from_slice(&self.monitor.law.lag_slope);
+    fn suspect(&mut self) {
+        if self.regime.is_unsuspected() {
+            let since = *self.monitor.suspected_at.get_or_insert(self.window.end());
+            self.enter(Event::SuspicionRaised { since });
         }
-        is_lag
     }
 
     /// What the law in use has to its credit.
@@ -70,6 +62,21 @@ impl Tracker {
         }
     }
 
+    /// Whether another law, known by now, explains all of the record, and did so when the law in use had not been left
+    /// yet.
+    fn is_superseded(&self, instant: u64) -> bool {
+        self.segment.is_validated() && self.history.contradicted_since.is_some_and(|since| since < instant)
+    }
+
+    /// The law in use never was the record's: the one that is comes into use with its next run. What spoke against the
+    /// one before says nothing of a switch.
+    fn supersede(&mut self) {
+        self.monitor.stop();
+        self.monitor.bank.clear();
+        self.monitor.empirical_null.clear();
+        self.refute_law();
+    }
+
     /// Ends the segment; only data from after the switch enters the new law.
     fn switch(&mut self, problem: &Problem, suspect: &Suspect, threshold: f64) {
         let bank = &mut self.monitor.bank;
@@ -80,8 +87,11 @@ impl Tracker {
         let start = (self.monitor.bank.after(&suspect, threshold) + 1).min(last);
         let time = |number: u64| self.window.sample(number).t;
         let distance = self.monitor.bank.distance_of_switch(time(instant), self.now(), time);
-        if self.regime.is_unconfirmed() {
+        if self.regime.is_unconfirmed() || self.was_never_right(instant, last, suspect.evidence - threshold) {
             return self.take_back(problem);
+        }
+        if self.is_superseded(instant) {
+            return self.supersede();
         }
         self.intake.after_outage.end();
         self.keep_law(problem);
