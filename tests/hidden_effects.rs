@@ -151,8 +151,6 @@ fn two_hidden_effects_are_found() {
     assert_share(&visible(settings.collect()), 8, 0.8, Outcome::is_right);
 }
 
-/// Effects and numbers are drawn when the test runs, so that nothing can be made to fit them. Some 22 of 36 can be seen
-/// at all; where 96 % of those are found in the long run, chance takes more than a fifth of them once in 800 runs.
 /// What holds the target predicts it by itself: a filtered velocity beside the law's damper was named for a force that
 /// has no name, F³ and a position-dependent inertia never beside another effect.
 #[test]
@@ -171,6 +169,8 @@ fn what_holds_the_target_is_told_by_what_it_explains() {
     assert_share(&outcomes, 3, 1.0, Outcome::is_right);
 }
 
+/// Effects and numbers are drawn when the test runs, so that nothing can be made to fit them. Some 22 of 36 can be seen
+/// at all; where 96 % of those are found in the long run, chance takes more than a fifth of them once in 800 runs.
 #[test]
 fn effects_that_nobody_knows_before_are_found() {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_nanos() as u64;
