@@ -87,3 +87,43 @@ fn a_law_has_honest_stds_before_a_lag_is_told_and_stays_valid_when_it_is() {
         assert!(worst < BEYOND && valid > 500, "{seed}: {worst} std, valid in {valid}");
     }
 }
+
+/// A plant with the terms given or the whole library, one switch at 20 s, whose samples are `spoilt`.
+fn with_a_switch(builtin: Builtin, library: bool, seed: u64, spoilt: impl Fn(&[Sample]) -> Vec<Sample>) -> Identifier {
+    let mut scenario = builtin.random(seed).with_noise(NOISE);
+    scenario.stages.truncate(2);
+    (scenario.stages[1].start, scenario.duration) = (20.0, 24.0);
+    let given = Model::of("plant", builtin.terms().into_iter().map(|term| (term, Given::Fit)));
+    let model = if library { Model::cubic_library() } else { given };
+    let mut identifier = Identifier::new(&model, Settings::default()).unwrap();
+    for sample in spoilt(&samples(&scenario)) {
+        identifier.step(sample).unwrap();
+        let switches = identifier.output().switch_count;
+        assert!(switches == 0 || sample.t >= 20.0, "{} {seed}: a switch at {}", builtin.id(), sample.t);
+    }
+    identifier
+}
+
+/// Under a wrong hold the law's error is taken for process noise, under which a lag is hardly known: with all error in
+/// the sensors it is.
+#[test]
+fn a_wrong_hold_at_coarse_steps_hides_no_switch() {
+    for (library, seed, every) in [(false, 8214, 20), (true, 8204, 20), (true, 8218, 20), (false, 8207, 50)] {
+        let coarse = |samples: &[Sample]| samples.iter().step_by(every).copied().collect();
+        let identifier = with_a_switch(Builtin::DuffingSine, library, seed, coarse);
+        let output = identifier.output();
+        assert!(output.switch_count == 1 && output.hold == Hold::Linear, "{seed}: {output:?}");
+    }
+}
+
+#[test]
+fn a_motion_that_comes_late_under_one_sine_is_no_switch_and_hides_none() {
+    let late = |samples: &[Sample]| {
+        samples.windows(2).map(|pair| Sample { q: pair[0].q, qd: pair[0].qd, ..pair[1] }).collect()
+    };
+    for (builtin, library, seed) in [(Builtin::VanDerPolSine, false, 8206), (Builtin::DuffingSine, true, 8211)] {
+        let identifier = with_a_switch(builtin, library, seed, late);
+        let output = identifier.output();
+        assert_eq!((output.switch_count, output.sensors[0]), (1, SensorState::Late), "{seed}: {output:?}");
+    }
+}

@@ -5,3 +5,9 @@ pub const TWENTY_TO_ONE: f64 = 3.0;
 
 /// Samples that a mean square is taken over: its std is then √(2 ÷ 4000), 2 % of it.
 pub const SAMPLES_OF_A_VARIANCE: f64 = 4000.0;
+
+/// ln(eᵃ + eᵇ).
+pub fn log_sum(a: f64, b: f64) -> f64 {
+    let (most, least) = if a > b { (a, b) } else { (b, a) };
+    if least == f64::NEG_INFINITY { most } else { most + (least - most).exp().ln_1p() }
+}

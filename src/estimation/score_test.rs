@@ -8,6 +8,7 @@
 use super::filter::{Channel, Innovation};
 use super::information::{Information, Solution};
 use super::pass::{Observation, Pass, gains};
+use super::track::Track;
 use crate::law::{Catalogue, Effect, Entry, Motion, State, Term};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -49,20 +50,38 @@ pub struct Lag {
     pub samples: f64,
     /// Std of that; infinite where the motion says nothing.
     pub std: f64,
+    /// Log-likelihood that it gains over none, nats.
+    pub evidence: f64,
 }
 
 impl Lag {
     /// Nothing is said.
-    pub const UNKNOWN: Lag = Lag { samples: 0.0, std: f64::INFINITY };
+    pub const UNKNOWN: Lag = Lag { samples: 0.0, std: f64::INFINITY, evidence: 0.0 };
 
-    /// Log-likelihood that it gains over none, nats.
-    pub fn evidence(&self) -> f64 {
-        0.5 * (self.samples / self.std).powi(2)
+    /// What a record of Gaussian scatter says.
+    pub fn of(samples: f64, std: f64) -> Lag {
+        Lag { samples, std, evidence: 0.5 * (samples / std).powi(2) }
     }
 
-    /// Whether it is certain that there is one.
-    pub fn is_told(&self) -> bool {
-        self.evidence() > NAMED
+    /// Log-likelihood that a lag of so many samples gains over none, nats.
+    pub fn evidence_of(&self, samples: f64) -> f64 {
+        self.evidence - 0.5 * ((self.samples - samples) / self.std).powi(2)
+    }
+}
+
+/// What a run says of when F acted, and how well it explains its record with its coefficients at the maximum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Told {
+    /// The lag, against none in the same run.
+    pub lag: Lag,
+    /// Log-likelihood without a lag, nats.
+    pub without: f64,
+}
+
+impl Told {
+    /// Log-likelihood with the lag, nats.
+    pub fn with(&self) -> f64 {
+        self.without + self.lag.evidence
     }
 }
 
@@ -70,14 +89,25 @@ impl Lag {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScoreTest {
     candidates: Vec<Candidate>,
+    own: Own,
+    before: State,
+}
+
+/// When F acted, beside a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LagTest {
     /// F as it was a sample before and as it is a sample later, each less what it is: their coefficients are F's lag,
     /// and by how much it acts too early.
     lags: [Sums; 2],
+    own: Own,
+}
+
+/// What a run says of the law's own terms.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Own {
     solution: Solution,
     active: Vec<bool>,
-    own_score: Vec<f64>,
-    before: State,
-    row: Vec<f64>,
+    score: Vec<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -114,20 +144,11 @@ impl ScoreTest {
         let candidates = entries.filter(|(_, entry)| entry.term.is_pointwise() && absent(&entry.term));
         let candidate =
             |(entry, found): (usize, &crate::law::Entry)| Candidate { entry, term: found.term, sums: Sums::new(n) };
-        ScoreTest {
-            candidates: candidates.map(candidate).collect(),
-            lags: [Sums::new(n), Sums::new(n)],
-            solution: Solution::none(n),
-            active: vec![true; n],
-            own_score: vec![0.0; n],
-            before: State::default(),
-            row: vec![0.0; n],
-        }
+        ScoreTest { candidates: candidates.map(candidate).collect(), own: Own::new(n), before: State::default() }
     }
 
     /// Begins beside a run; inner parameters follow the largest motion seen.
     pub fn begin(&mut self, state: State, largest: [f64; 2]) {
-        self.lags.iter_mut().for_each(Sums::clear);
         for candidate in &mut self.candidates {
             candidate.sums.clear();
             candidate.term = scaled(candidate.term, largest);
@@ -135,14 +156,12 @@ impl ScoreTest {
         self.before = state;
     }
 
-    /// Takes the sample that the run has just taken, under the law `motion`; `shifts` is what F was a sample before and
-    /// will be a sample later, less what it is.
+    /// Takes the sample that the run has just taken, under the law `motion`.
     pub fn step(
         &mut self,
         motion: &Motion,
         pass: &Pass,
         observation: &Observation,
-        shifts: [f64; 2],
         innovations: &[Option<Innovation>; 2],
     ) {
         let state = pass.filter.state();
@@ -156,27 +175,13 @@ impl ScoreTest {
             let push = -(force + term.mass(state.q) * acceleration) * inverse_mass;
             candidate.sums.carry(pass, push, &gains);
         }
-        for (sums, shift) in self.lags.iter_mut().zip(shifts) {
-            sums.carry(pass, shift * inverse_mass, &gains);
-        }
         self.before = state;
-        self.sum(pass, innovations);
-    }
-
-    fn sum(&mut self, pass: &Pass, innovations: &[Option<Innovation>; 2]) {
-        for channel in Channel::ALL {
-            let Some(innovation) = &innovations[channel as usize] else { continue };
-            self.row.copy_from_slice(pass.expected(channel));
-            let all = self.candidates.iter_mut().map(|candidate| &mut candidate.sums).chain(&mut self.lags);
-            all.for_each(|sums| sums.add(channel, innovation, &self.row));
-        }
+        self.candidates.iter_mut().for_each(|candidate| candidate.sums.take(pass, innovations));
     }
 
     /// Solves for the law's own terms, of which `own` is what the run says.
     pub fn end(&mut self, own: &Information, active: &[bool]) {
-        self.active.copy_from_slice(active);
-        self.own_score.copy_from_slice(&own.score);
-        self.solution.solve(own, active);
+        self.own.solve(own, active);
     }
 
     /// The candidate with the most evidence, `overdispersion` being what the law's lasting error makes of a nat; none
@@ -184,7 +189,7 @@ impl ScoreTest {
     pub fn missing(&self, overdispersion: f64) -> Option<Missing> {
         let price = (self.candidates.len().max(1) as f64).ln();
         let evidence = |candidate: &Candidate| {
-            let (coefficient, gain, _) = candidate.sums.gain(&self.solution, &self.active, &self.own_score);
+            let (coefficient, gain, _) = candidate.sums.gain(&self.own);
             let allowed = Catalogue::ENTRIES[candidate.entry].sign.allows(coefficient);
             if allowed { gain / overdispersion.max(1.0) - price } else { 0.0 }
         };
@@ -192,21 +197,88 @@ impl ScoreTest {
             self.candidates.iter().map(|candidate| Missing { entry: candidate.entry, evidence: evidence(candidate) });
         all.max_by(|a, b| a.evidence.total_cmp(&b.evidence)).filter(|missing| missing.evidence > NAMED)
     }
+}
 
-    /// When F acted against when it is taken to have; `slope` becomes what a lag of one sample makes of the free
-    /// coefficients, n.
-    pub fn lag(&self, overdispersion: f64, slope: &mut [f64]) -> Lag {
-        let lag = |sums: &Sums, sign: f64| {
-            let (samples, _, information) = sums.gain(&self.solution, &self.active, &self.own_score);
-            Lag { samples: sign * samples, std: (overdispersion.max(1.0) / information).sqrt() }
-        };
-        let [late, early] = [lag(&self.lags[0], 1.0), lag(&self.lags[1], -1.0)];
-        let is_late = late.evidence() >= early.evidence();
-        let (sums, sign) = if is_late { (&self.lags[0], 1.0) } else { (&self.lags[1], -1.0) };
-        for (row, slope) in slope.iter_mut().enumerate() {
-            *slope = if self.active[row] { -sign * sums.shared(row, &self.solution, &self.active) } else { 0.0 };
+impl LagTest {
+    /// Beside `n` free terms.
+    pub fn new(n: usize) -> LagTest {
+        LagTest { lags: [Sums::new(n), Sums::new(n)], own: Own::new(n) }
+    }
+
+    /// Begins beside a run.
+    pub fn begin(&mut self) {
+        self.lags.iter_mut().for_each(Sums::clear);
+    }
+
+    /// Takes the sample that the run has just taken, under the law `motion`; `shifts` is what F was a sample before and
+    /// will be a sample later, less what it is.
+    pub fn step(&mut self, motion: &Motion, pass: &Pass, shifts: [f64; 2], innovations: &[Option<Innovation>; 2]) {
+        let inverse_mass = motion.mass(pass.filter.mean[0]).recip();
+        let gains = gains(innovations);
+        for (sums, shift) in self.lags.iter_mut().zip(shifts) {
+            sums.carry(pass, shift * inverse_mass, &gains);
+            sums.take(pass, innovations);
         }
-        if is_late { late } else { early }
+    }
+
+    /// The coefficients have become those plus `step`.
+    pub fn shift(&mut self, step: &[f64]) {
+        for sums in &mut self.lags {
+            let moved: f64 = sums.cross.iter().zip(step).map(|(cross, step)| cross * step).sum();
+            sums.score -= moved;
+        }
+    }
+
+    /// When F acted against when it is taken to have, by a run of that track which says `own` of the law's terms;
+    /// `slope` becomes what a lag of one sample makes of the free coefficients, n.
+    pub fn told(
+        &mut self,
+        own: &Information,
+        active: &[bool],
+        track: &Track,
+        overdispersion: f64,
+        slope: &mut [f64],
+    ) -> Told {
+        self.own.solve(own, active);
+        let solved = self.lags.each_ref().map(|sums| sums.gain(&self.own));
+        let (place, sign) = if solved[0].1 >= solved[1].1 { (0, 1.0) } else { (1, -1.0) };
+        let (samples, gain, information) = solved[place];
+        for (row, slope) in slope.iter_mut().enumerate() {
+            *slope = if active[row] { -sign * self.lags[place].shared(row, &self.own) } else { 0.0 };
+        }
+        // what the coefficients' step and the lag take off the squares, from which the noise is known
+        let step = self.own.gain();
+        let squares = (track.squares[0] + track.squares[1]).max(f64::MIN_POSITIVE);
+        let left = |gain: f64| (1.0 - 2.0 * gain / squares).max(f64::MIN_POSITIVE);
+        let gained = |gain: f64| -0.5 * track.total() * left(gain).ln();
+        let overdispersion = overdispersion.max(1.0);
+        let variance = overdispersion * left(step + gain) * squares / (track.total() * information);
+        let evidence = (gained(step + gain) - gained(step)) / overdispersion;
+        let lag = Lag { samples: sign * samples, std: variance.sqrt(), evidence };
+        let lag = if information > 0.0 { lag } else { Lag::UNKNOWN };
+        Told { lag, without: track.log_likelihood() + gained(step) }
+    }
+}
+
+impl Own {
+    fn new(n: usize) -> Own {
+        Own { solution: Solution::none(n), active: vec![true; n], score: vec![0.0; n] }
+    }
+
+    fn solve(&mut self, own: &Information, active: &[bool]) {
+        self.active.copy_from_slice(active);
+        self.score.copy_from_slice(&own.score);
+        self.solution.solve(own, active);
+    }
+
+    /// Log-likelihood that the law's own terms gain at the maximum, nats.
+    fn gain(&self) -> f64 {
+        0.5 * self.determined().map(|row| self.solution.step[row] * self.score[row]).sum::<f64>()
+    }
+
+    /// The terms that the law has and its record determines.
+    fn determined(&self) -> impl Iterator<Item = usize> {
+        (0..self.active.len()).filter(|index| self.active[*index] && self.solution.determined[*index])
     }
 }
 
@@ -225,6 +297,15 @@ impl Sums {
         (self.rows, self.sensitivity) = pass.carry(self.sensitivity, push, gains);
     }
 
+    /// Takes the innovations of a sample of the run.
+    fn take(&mut self, pass: &Pass, innovations: &[Option<Innovation>; 2]) {
+        for channel in Channel::ALL {
+            if let Some(innovation) = &innovations[channel as usize] {
+                self.add(channel, innovation, pass.expected(channel));
+            }
+        }
+    }
+
     /// Takes the innovation of a channel, of which the law's terms expect `own`.
     fn add(&mut self, channel: Channel, innovation: &Innovation, own: &[f64]) {
         let row = self.rows[channel as usize];
@@ -235,12 +316,12 @@ impl Sums {
     }
 
     /// (coefficient, gain in log-likelihood, information of its own) beside the law's own terms.
-    fn gain(&self, own: &Solution, active: &[bool], own_score: &[f64]) -> (f64, f64, f64) {
+    fn gain(&self, own: &Own) -> (f64, f64, f64) {
         let (mut information, mut score) = (self.information, self.score);
-        for row in determined(own, active) {
-            let shared = self.shared(row, own, active);
+        for row in own.determined() {
+            let shared = self.shared(row, own);
             information -= self.cross[row] * shared;
-            score -= shared * own_score[row];
+            score -= shared * own.score[row];
         }
         match information > OWN * self.information {
             true => (score / information, 0.5 * score * score / information, information),
@@ -249,15 +330,10 @@ impl Sums {
     }
 
     /// Row of M⁻¹c: how much of the coefficient is one of the law's own.
-    fn shared(&self, row: usize, own: &Solution, active: &[bool]) -> f64 {
+    fn shared(&self, row: usize, own: &Own) -> f64 {
         let n = self.cross.len();
-        determined(own, active).map(|column| own.covariance[row * n + column] * self.cross[column]).sum()
+        own.determined().map(|column| own.solution.covariance[row * n + column] * self.cross[column]).sum()
     }
-}
-
-/// The terms that the law has and its record determines.
-fn determined(own: &Solution, active: &[bool]) -> impl Iterator<Item = usize> {
-    (0..active.len()).filter(|index| active[*index] && own.determined[*index])
 }
 
 /// The term with inner parameters that suit a motion of this size.

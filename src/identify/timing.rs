@@ -3,16 +3,9 @@
 use super::report::SensorState;
 use super::sample::Sample;
 use super::settings::Channels;
-use crate::estimation::{Lag, TWENTY_TO_ONE};
+use crate::estimation::{Lag, TWENTY_TO_ONE, log_sum};
 use crate::law::Hold;
 use serde::{Deserialize, Serialize};
-
-/// A lag is taken for that of a hold or of a late channel, which are far likelier than any other, from this std on, in
-/// samples: two of them are four apart …
-const TOLD: f64 = 0.125;
-
-/// … and within so many.
-const OWN: f64 = 3.0;
 
 /// Samples that F may act later and earlier than it comes: by one, and by what a hold adds to that.
 const LATEST: f64 = 1.5;
@@ -20,6 +13,9 @@ const EARLIEST: f64 = -1.0;
 
 /// Std of a lag that nobody has told yet, in samples: that of a hold.
 const UNTOLD: f64 = 0.5;
+
+/// What else than is assumed F may do: six multiples of half a sample, and any lag.
+const RIVALS: usize = 7;
 
 /// What is assumed of F.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,39 +46,72 @@ impl Timing {
 
     /// What is assumed once a record of so many samples tells of a lag.
     pub fn corrected(&self, found: &Lag, samples: u64) -> Option<Timing> {
-        let is_told = found.is_told() && samples >= 2 * self.told_by;
-        if !is_told || self.hold == Hold::BandLimited {
+        if samples < 2 * self.told_by || self.hold == Hold::BandLimited || self.odds(found) < TWENTY_TO_ONE {
             return None;
         }
-        let late = self.late() + found.samples;
-        let nearest = 0.5 * (2.0 * late).round();
-        let (late, std) = match found.std < TOLD && (late - nearest).abs() < OWN * found.std {
-            true => (nearest, 0.0),
-            false => (late, found.std),
-        };
+        let likeliest = self.likeliest(found);
+        let (late, std) = (self.late() + likeliest.moved, likeliest.std);
         let hold = if (late - 0.5).fract() == 0.0 { Hold::Zero } else { Hold::Linear };
         let lag = late - if hold == Hold::Zero { 0.5 } else { 0.0 };
-        let is_new = (EARLIEST..=LATEST).contains(&lag) && late != self.late();
+        let is_new = (EARLIEST..=LATEST).contains(&lag);
         is_new.then_some(Timing { hold, lag, std, told_by: samples, is_confirmed: false })
     }
 
+    /// What else F does by such a record: a hold or a late channel where one stands out from the others, else a lag of
+    /// its own.
+    fn likeliest(&self, found: &Lag) -> Rival {
+        let mut rivals = self.rivals(found);
+        let own = rivals[RIVALS - 1];
+        let apart = &mut rivals[..RIVALS - 1];
+        apart.sort_unstable_by(|a, b| b.odds.total_cmp(&a.odds));
+        let stands_out = apart[0].odds > own.odds && apart[0].odds - apart[1].odds > TWENTY_TO_ONE;
+        if stands_out { apart[0] } else { own }
+    }
+
+    /// Log-odds by a record that F acts at another time than is assumed, nats.
+    pub fn odds(&self, found: &Lag) -> f64 {
+        self.rivals(found).iter().map(|rival| rival.odds).fold(f64::NEG_INFINITY, log_sum)
+    }
+
     /// Mean square of the lag beyond what is assumed that a record saying `found` leaves open, in squares of a sample.
-    /// Before any record what was said is right at odds of twenty to one, and a lag is normal about none else; one
-    /// that was told is.
     pub fn left_open(&self, found: &Lag) -> f64 {
         if self.hold == Hold::BandLimited {
             return 0.0;
         }
-        let prior = if self.std > 0.0 { self.std } else { UNTOLD }.powi(2);
-        let precision = found.std.powi(-2);
-        let variance = (precision + prior.recip()).recip();
-        let mean = variance * precision * found.samples;
-        let square = variance + mean * mean;
         if self.std > 0.0 {
-            return square;
+            return self.own(found, self.std).square();
         }
-        let gain = 0.5 * (mean * mean / variance + (variance / prior).ln());
-        square / (1.0 + (TWENTY_TO_ONE - gain).exp())
+        let rivals = self.rivals(found);
+        let most = rivals.iter().map(|rival| rival.odds).fold(0.0, f64::max);
+        let share = |odds: f64| (odds - most).exp();
+        let all = share(0.0) + rivals.iter().map(|rival| share(rival.odds)).sum::<f64>();
+        rivals.iter().map(|rival| share(rival.odds) * rival.square()).sum::<f64>() / all
+    }
+
+    /// What else F may do by a record that says `found`. What is assumed is right at odds of twenty to one against a
+    /// hold or channels that come late, which are multiples of half a sample, and against a lag of any size; both are
+    /// normal about it.
+    fn rivals(&self, found: &Lag) -> [Rival; RIVALS] {
+        let moves: [f64; RIVALS - 1] = std::array::from_fn(|place| EARLIEST + 0.5 * place as f64 - self.late());
+        let apart = |moved: f64| if moved == 0.0 { f64::NEG_INFINITY } else { -0.5 * (moved / UNTOLD).powi(2) };
+        let all = moves.into_iter().map(apart).fold(f64::NEG_INFINITY, log_sum);
+        let own = self.own(found, UNTOLD);
+        std::array::from_fn(|place| match moves.get(place) {
+            Some(&moved) => {
+                let odds = apart(moved) - all + found.evidence_of(moved) - TWENTY_TO_ONE;
+                Rival { moved, std: 0.0, odds }
+            }
+            None => own,
+        })
+    }
+
+    /// A lag of any size, normal with the std `prior` before the record.
+    fn own(&self, found: &Lag, prior: f64) -> Rival {
+        let variance = (found.std.powi(-2) + prior.powi(-2)).recip();
+        let moved = variance * found.std.powi(-2) * found.samples;
+        let misfit = 0.5 * found.samples * found.samples / (found.std * found.std + prior * prior);
+        let odds = found.evidence - misfit + (variance.sqrt() / prior).ln() - TWENTY_TO_ONE;
+        Rival { moved, std: variance.sqrt(), odds }
     }
 
     /// Says which of the channels measured come late, where they do nothing worse and a law has been valid with that.
@@ -96,6 +125,23 @@ impl Timing {
         };
         let said = sensors.iter_mut().zip(late).filter(|(state, late)| *late && **state == SensorState::Ok);
         said.for_each(|(state, _)| *state = SensorState::Late);
+    }
+}
+
+/// What F may do instead of what is assumed.
+#[derive(Clone, Copy, Debug)]
+struct Rival {
+    /// By how many samples F then acts later, and the std of that.
+    moved: f64,
+    std: f64,
+    /// Log-odds against what is assumed.
+    odds: f64,
+}
+
+impl Rival {
+    /// Mean square of the lag.
+    fn square(&self) -> f64 {
+        self.moved * self.moved + self.std * self.std
     }
 }
 
@@ -135,7 +181,7 @@ mod tests {
     use super::*;
 
     fn found(samples: f64) -> Lag {
-        Lag { samples, std: 0.02 }
+        Lag::of(samples, 0.02)
     }
 
     #[test]
@@ -146,12 +192,24 @@ mod tests {
         assert_eq!(after(held, 0.98), Some((Hold::Zero, 1.0)));
         assert_eq!(after(held, -1.03), Some((Hold::Zero, -1.0)));
         assert_eq!(after(Timing::new(Hold::Linear), 0.5), Some((Hold::Zero, 0.0)));
-        assert_eq!(after(held, -0.25), Some((Hold::Linear, 0.25)), "a force that is late by a time of its own");
+        let own = after(held, -0.25).map(|(hold, lag)| (hold, (100.0 * lag).round()));
+        assert_eq!(own, Some((Hold::Linear, 25.0)), "a force that is late by a time of its own");
         assert_eq!(after(held, 0.05), None, "chance");
         assert_eq!(after(held, 5.0), None, "more than can be set right");
         assert_eq!(after(Timing::new(Hold::BandLimited), 1.0), None);
-        let [seldom, unsure] = [0.25, 0.2].map(|std| held.corrected(&Lag { samples: 0.98, std }, 1000));
-        assert_eq!((seldom, unsure.map(|new| (new.hold, new.lag, new.std))), (None, Some((Hold::Linear, 1.48, 0.2))));
+    }
+
+    #[test]
+    fn a_hold_is_likelier_than_a_late_channel_and_that_than_any_lag() {
+        let told = |samples, std| Timing::new(Hold::Zero).corrected(&Lag::of(samples, std), 1000);
+        let found = |samples, std| told(samples, std).map(|new| (new.hold, new.lag, new.std));
+        assert_eq!(found(-0.5, 0.14), None, "6.4 nats");
+        assert_eq!(found(-0.5, 0.13), Some((Hold::Linear, 0.0, 0.0)), "7.4 nats");
+        assert_eq!(found(1.0, 0.27), None, "6.9 nats");
+        assert_eq!(found(1.0, 0.16), Some((Hold::Zero, 1.0, 0.0)), "19.5 nats");
+        assert!(found(1.0, 0.23).is_some_and(|(.., std)| std > 0.0), "9.5 nats: half a sample is no less likely");
+        assert!(found(-0.25, 0.07).is_none(), "6.4 nats");
+        assert!(found(-0.25, 0.05).is_some_and(|(.., std)| std > 0.0), "12.5 nats");
     }
 
     #[test]
@@ -165,7 +223,7 @@ mod tests {
     fn what_is_left_open_is_the_prior_before_a_record_and_the_lag_itself_after_it() {
         let held = Timing::new(Hold::Zero);
         let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.01;
-        assert!(near(held.left_open(&Lag::UNKNOWN), 0.25 / (1.0 + TWENTY_TO_ONE.exp())));
+        assert!(near(held.left_open(&Lag::UNKNOWN), 0.0295), "{}", held.left_open(&Lag::UNKNOWN));
         assert!(near(held.left_open(&found(0.3)), 0.09), "{}", held.left_open(&found(0.3)));
         assert!(held.left_open(&found(0.0)) < 1e-6, "{}", held.left_open(&found(0.0)));
         let told = held.corrected(&found(-0.25), 1000).unwrap();

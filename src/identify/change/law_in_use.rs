@@ -2,7 +2,7 @@
 //! law.
 
 use super::adaptive_noise::AdaptiveNoise;
-use crate::estimation::{Innovation, Noise, Observation, Pass};
+use crate::estimation::{Innovation, Lag, LagTest, Noise, Observation, Pass};
 use crate::identify::library::{KnownLaw, Trials};
 use crate::identify::problem::Problem;
 use crate::identify::segment::{MotionScales, Segment};
@@ -25,6 +25,10 @@ const LONGEST_ERROR: f64 = 1000.0;
 pub struct LawInUse {
     /// Its filter run, at the head of the stream.
     pub run: Pass,
+    /// When F acted, by that run.
+    lag: LagTest,
+    /// What a sample of that makes of the free coefficients, as last told.
+    pub lag_slope: Vec<f64>,
     /// All coefficients.
     pub all: Vec<f64>,
     /// Which free terms it has.
@@ -61,6 +65,8 @@ impl LawInUse {
         let n = problem.n();
         LawInUse {
             run: Pass::new(n).gated(),
+            lag: LagTest::new(n),
+            lag_slope: vec![0.0; n],
             all: problem.known.clone(),
             active: vec![true; n],
             noise: Noise { sensor: [1.0; 2], process: 1.0 },
@@ -78,11 +84,13 @@ impl LawInUse {
         }
     }
 
-    /// Takes a sample; returns what it says of a switch, readings that do not count included.
-    pub fn step(&mut self, problem: &Problem, observation: &Observation) -> [Option<Innovation>; 2] {
+    /// Takes a sample; returns what it says of a switch, readings that do not count included. `shifts` is what F was a
+    /// sample before and will be a sample later, less what it is.
+    pub fn step(&mut self, problem: &Problem, observation: &Observation, shifts: [f64; 2]) -> [Option<Innovation>; 2] {
         let motion = problem.motion(&self.all);
         let noise = self.noise_now();
         let innovations = self.run.step(&motion, &problem.free_terms, &noise, observation);
+        self.lag.step(&motion, &self.run, shifts, &innovations);
         self.adaptive.add(&innovations, &observation.measured);
         self.follow_slopes(observation.dt, problem.free_inertia());
         let [q, qd] = innovations;
@@ -117,6 +125,12 @@ impl LawInUse {
         self.caution * variance.max(0.0) * self.lasting
     }
 
+    /// When F acted by all of its record up to now.
+    pub fn tell_lag(&mut self) -> Lag {
+        let LawInUse { run, lag, lag_slope, active, overdispersion, .. } = self;
+        lag.told(&run.information, active, &run.track, *overdispersion, lag_slope).lag
+    }
+
     /// F acts so many samples later than was assumed, each of which makes that of the free coefficients.
     pub fn begin_later(&mut self, problem: &Problem, slope: &[f64], samples: f64) {
         for (index, slope) in problem.free.iter().zip(slope) {
@@ -126,7 +140,7 @@ impl LawInUse {
 
     /// Takes over the segment's estimate and the run that led to it.
     pub fn adopt(&mut self, segment: &mut Segment, window: &Window) {
-        segment.hand_over(window, &mut self.run);
+        segment.hand_over(window, &mut self.run, &mut self.lag);
         self.all.copy_from_slice(&segment.all);
         self.active.copy_from_slice(&segment.active);
         self.adaptive.refer(&self.noise, &segment.noise);
@@ -177,6 +191,7 @@ impl LawInUse {
         (self.overdispersion, self.dispersed_at) = (1.0, window.ready());
         (self.explains, self.proven) = (true, true);
         trials.hand_over(place, window, &mut self.run);
+        self.lag.begin();
         self.run.information.merge(&law.information);
         self.all.copy_from_slice(&problem.known);
         problem.scatter(&law.coefficients, &mut self.all);

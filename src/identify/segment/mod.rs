@@ -16,6 +16,6 @@ mod weak_start;
 
 pub use motion_scales::MotionScales;
 pub use prior::Prior;
-pub use refinement::GROWTH;
+pub use refinement::{GROWTH, IN_THE_SENSORS};
 pub use state::{NOISE_MEMORY, Segment};
 pub use weak_start::{Guess, WeakStart};

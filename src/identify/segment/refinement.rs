@@ -9,12 +9,13 @@
 use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
 use super::prior::{InertiaPrior, Prior};
-use super::state::{NOISE_MEMORY, Runs, Segment};
-use crate::estimation::{Lag, Noise, Pass};
+use super::state::{InTheSensors, NOISE_MEMORY, Run, Runs, Segment};
+use crate::estimation::{Filter, Lag, LagTest, Noise, Observation, Pass};
 use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
+use crate::law::{Motion, Term};
 
 /// A run that has caught up is closed only when the record has grown by this fraction since the last one: what it adds
 /// to the information is then about as small …
@@ -30,6 +31,29 @@ const LOOK_AGAIN: f64 = 1.4;
 /// The record of a segment is folded into a prior when it fills this fraction of the window: the run that folds still
 /// has a tenth of it to catch up in.
 const FULL: f64 = 0.9;
+
+/// Process noise of a run with all error in the sensors, relative to that of the segment.
+pub const IN_THE_SENSORS: f64 = 1e-6;
+
+impl InTheSensors {
+    /// Begins beside a run, where one is asked for.
+    fn begin(&mut self, filter: Filter, noise: &Noise, running: bool) {
+        self.running = running;
+        if running {
+            self.noise = Noise { process: IN_THE_SENSORS * noise.process, ..*noise };
+            self.filter_run.begin(filter);
+            self.lag.begin();
+        }
+    }
+
+    /// Takes the sample that the run has taken.
+    fn take(&mut self, motion: &Motion, free: &[Term], observation: &Observation, shifts: [f64; 2]) {
+        if self.running {
+            let innovations = self.filter_run.step(motion, free, &self.noise, observation);
+            self.lag.step(motion, &self.filter_run, shifts, &innovations);
+        }
+    }
+}
 
 impl Segment {
     /// Begins a stage at sample `start` from the coefficients `from` and these noise levels; before any data the
@@ -123,9 +147,11 @@ impl Segment {
         let Segment { run, score_test, convergence, all, noise, .. } = self;
         let motion = problem.motion(all);
         let innovations = run.filter_run.step(&motion, &problem.free_terms, noise, observation);
+        let shifts = window.shifts(number);
+        run.lag.step(&motion, &run.filter_run, shifts, &innovations);
         if score_test.looking {
-            let shifts = window.shifts(number);
-            score_test.candidates.step(&motion, &run.filter_run, observation, shifts, &innovations);
+            score_test.candidates.step(&motion, &run.filter_run, observation, &innovations);
+            score_test.in_the_sensors.take(&motion, &problem.free_terms, observation, shifts);
         }
         run.scales.add(problem, all, &run.filter_run, observation);
         run.sandwich.step(&run.filter_run.information);
@@ -141,8 +167,9 @@ impl Segment {
 
     /// The run that was just closed, at the head of the stream and linear about the new coefficients; the caller gets
     /// it in exchange for another one's room. The next run begins.
-    pub fn hand_over(&mut self, window: &Window, live: &mut Pass) {
+    pub fn hand_over(&mut self, window: &Window, live: &mut Pass, lag: &mut LagTest) {
         std::mem::swap(&mut self.run.filter_run, live);
+        std::mem::swap(&mut self.run.lag, lag);
         live.information.clone_from_slices(&self.information);
         self.begin_run(window);
     }
@@ -180,8 +207,28 @@ impl Segment {
             let candidates = &mut self.score_test.candidates;
             candidates.end(&self.run.filter_run.information, &self.active);
             self.missing = candidates.missing(self.fit.overdispersion);
-            self.timing.lag = candidates.lag(self.fit.overdispersion, &mut self.timing.slope);
             self.score_test.next_look = (LOOK_AGAIN * self.length(self.run.next) as f64) as u64;
+        }
+        if self.settled() && (self.score_test.looking || self.fit.explains) {
+            self.tell_lag();
+        }
+    }
+
+    /// When F acted, by the run that explains the record better with a lag, against the better one without.
+    fn tell_lag(&mut self) {
+        let Segment { score_test, timing, fit, run, active, .. } = self;
+        let Run { lag, filter_run, .. } = run;
+        let (own, track) = (&filter_run.information, &filter_run.track);
+        let under = lag.told(own, active, track, fit.overdispersion, &mut timing.slope);
+        timing.lag = under.lag;
+        let InTheSensors { lag, filter_run, slope, running, .. } = &mut score_test.in_the_sensors;
+        if !(score_test.looking && *running && filter_run.track.count == track.count) {
+            return;
+        }
+        let told = lag.told(&filter_run.information, active, &filter_run.track, 1.0, slope);
+        if told.with() > under.with() {
+            timing.lag = Lag { evidence: told.with() - told.without.max(under.without), ..told.lag };
+            timing.slope.copy_from_slice(slope);
         }
     }
 
@@ -241,7 +288,7 @@ impl Segment {
             *value += samples * slope;
         }
         problem.scatter(&self.coefficients, &mut self.all);
-        self.timing.lag.samples -= samples;
+        self.timing.lag = Lag::of(self.timing.lag.samples - samples, self.timing.lag.std);
         self.timing.open = problem.timing.left_open(&self.timing.lag);
         self.constancy.clear();
         self.begin_run(window);
@@ -252,6 +299,7 @@ impl Segment {
         self.information.shift(&self.step);
         self.known.information.shift(&self.step);
         self.run.filter_run.information.shift(&self.step);
+        self.run.lag.shift(&self.step);
         if self.run.checkpoint.at.is_some() {
             self.run.checkpoint.information.shift(&self.step);
         }
@@ -276,10 +324,12 @@ impl Segment {
         let long = length as f64 > 0.6 * FULL * window.capacity() as f64;
         self.run.checkpoint.at = long.then_some(self.start + length / 2);
         self.run.filter_run.begin(window.initial_state(self.start, &self.noise));
+        self.run.lag.begin();
         self.run.next = self.start + 1;
         self.score_test.looking = self.settled() && length >= self.score_test.next_look;
         if self.score_test.looking {
             self.score_test.candidates.begin(self.run.filter_run.filter.state(), self.run.largest);
+            self.score_test.in_the_sensors.begin(self.run.filter_run.filter, &self.noise, !self.fit.explains);
         }
         self.run.scales.clear();
         self.convergence.begin(self.start, length);

@@ -3,7 +3,7 @@
 use super::convergence::Convergence;
 use super::motion_scales::MotionScales;
 use super::prior::InertiaPrior;
-use crate::estimation::{Information, Lag, Missing, Noise, Pass, ScoreTest, Solution, TermSelection};
+use crate::estimation::{Information, Lag, LagTest, Missing, Noise, Pass, ScoreTest, Solution, TermSelection};
 use crate::identify::library::Estimate;
 use crate::identify::problem::Problem;
 use crate::identify::validation::{Constancy, SandwichFactor, Stability};
@@ -112,6 +112,8 @@ pub(super) struct Known {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Run {
     pub(super) filter_run: Pass,
+    /// When F acted, by that run.
+    pub(super) lag: LagTest,
     /// Number of the sample that comes next.
     pub(super) next: u64,
     /// Number of the sample that the last run ended with.
@@ -138,6 +140,20 @@ pub(super) struct MissingEffects {
     pub(super) looking: bool,
     /// Length of the record from which the next run looks.
     pub(super) next_look: u64,
+    /// Beside a run that looks, where the law's error is taken for process noise: with all error in the sensors the
+    /// record tells when F acted.
+    pub(super) in_the_sensors: InTheSensors,
+}
+
+/// A run with all error in the sensors.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct InTheSensors {
+    pub(super) filter_run: Pass,
+    pub(super) noise: Noise,
+    pub(super) lag: LagTest,
+    pub(super) slope: Vec<f64>,
+    /// Whether there is one.
+    pub(super) running: bool,
 }
 
 impl Fit {
@@ -180,6 +196,7 @@ impl Segment {
             },
             run: Run {
                 filter_run: Pass::new(n).gated(),
+                lag: LagTest::new(n),
                 next: 0,
                 closed_at: 0,
                 largest: [0.0; 2],
@@ -187,7 +204,18 @@ impl Segment {
                 sandwich: SandwichFactor::new(n),
                 checkpoint: Checkpoint { at: None, information: Information::none(n) },
             },
-            score_test: MissingEffects { candidates: ScoreTest::new(&problem.terms, n), looking: false, next_look: 0 },
+            score_test: MissingEffects {
+                candidates: ScoreTest::new(&problem.terms, n),
+                looking: false,
+                next_look: 0,
+                in_the_sensors: InTheSensors {
+                    filter_run: Pass::new(n),
+                    noise: Noise { sensor: [1.0; 2], process: 1.0 },
+                    lag: LagTest::new(n),
+                    slope: vec![0.0; n],
+                    running: false,
+                },
+            },
             convergence: Convergence::new(n),
             selection: TermSelection::new(n),
             stability: Stability::new(problem.terms.len()),

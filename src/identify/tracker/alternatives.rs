@@ -5,7 +5,7 @@ use super::state::{FRESH_START, Fitting, NOTHING_KNOWN, Setup, Tracker};
 use crate::estimation::{Noise, TWENTY_TO_ONE};
 use crate::evidence::INERTIA_SPREAD;
 use crate::identify::problem::Problem;
-use crate::identify::segment::{Guess, Prior};
+use crate::identify::segment::{Guess, IN_THE_SENSORS, Prior};
 
 /// Runs after which a fit that has not settled is given up: nine decades of process noise take six of them …
 const PATIENCE: u32 = 40;
@@ -25,9 +25,6 @@ const START_ERROR_WITHOUT_Q: f64 = 1.0;
 
 /// A first law lies within this many stds of the weak rows' coefficients.
 const START_STDS: f64 = 10.0;
-
-/// Process noise of a fit with all error in the sensors, relative to that of the segment.
-const IN_THE_SENSORS: f64 = 1e-6;
 
 /// What the latest record must explain better than the whole one to replace it, nats per measurement: the noise may
 /// have changed …

@@ -2,10 +2,11 @@
 
 use super::regime::Event;
 use super::state::{Fitting, History, Schedule, Tracker};
-use crate::estimation::Noise;
+use crate::estimation::{Lag, Noise};
 use crate::evidence::{INERTIA_SPREAD, SWITCH_SIZE};
 use crate::identify::problem::Problem;
 use crate::identify::segment::{NOISE_MEMORY, Prior};
+use crate::identify::timing::Timing;
 
 /// The prior of a new law is this much wider than the switch that is looked for.
 pub(super) const PRIOR_WIDTH: f64 = 3.0;
@@ -59,16 +60,19 @@ impl Tracker {
         self.enter(Event::StateLost);
     }
 
-    /// What is assumed of when F acted follows what the record of the present law tells, where no effect that the law
-    /// lacks explains it as well.
+    /// What is assumed of when F acted follows what the record of the present law tells.
     pub fn correct_timing(&mut self, problem: &mut Problem) {
-        let lag = self.segment.timing.lag;
-        let lacks = self.segment.missing.is_some_and(|missing| missing.evidence > lag.evidence());
-        let corrected = problem.timing.corrected(&lag, self.record_length());
-        let Some(corrected) = corrected.filter(|_| self.is_refining() && !lacks) else { return };
+        let Some(corrected) = self.corrected_timing(problem, &self.segment.timing.lag) else { return };
         let before = std::mem::replace(&mut problem.timing, corrected);
         self.window.set_timing(corrected.hold, corrected.lag - before.lag);
         self.begin_under_another_timing(problem, corrected.late() - before.late());
+    }
+
+    /// When F acted where the record of the present law says `lag`, and no effect that it lacks explains that as well.
+    pub(super) fn corrected_timing(&self, problem: &Problem, lag: &Lag) -> Option<Timing> {
+        let lacks = self.segment.missing.is_some_and(|missing| missing.evidence > lag.evidence);
+        let corrected = problem.timing.corrected(lag, self.record_length());
+        corrected.filter(|_| self.is_refining() && !lacks)
     }
 
     /// F acts so many samples later than was assumed: the laws move along, and the record is fitted anew.

@@ -50,7 +50,9 @@ impl Tracker {
         let Some(post_alarm) = self.regime.post_alarm() else { return };
         let monitor = &mut self.monitor;
         while monitor.law.next < self.window.ready() {
-            let innovations = monitor.law.step(setup.problem, &self.window.observation(monitor.law.next));
+            let number = monitor.law.next;
+            let (observation, shifts) = (self.window.observation(number), self.window.shifts(number));
+            let innovations = monitor.law.step(setup.problem, &observation, shifts);
             monitor.bank.step(&monitor.law.run.map, &innovations);
             monitor.law.next += 1;
         }

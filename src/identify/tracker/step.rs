@@ -80,7 +80,7 @@ impl Tracker {
             let number = self.monitor.law.next;
             let observation = self.window.observation(number);
             let monitor = &mut self.monitor;
-            let innovations = monitor.law.step(setup.problem, &observation);
+            let innovations = monitor.law.step(setup.problem, &observation, self.window.shifts(number));
             if !monitor.law.run.filter.state().is_finite() {
                 self.lose();
                 return;

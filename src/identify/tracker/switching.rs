@@ -25,7 +25,7 @@ impl Tracker {
         let deviates = self.monitor.prediction.deviates(setup.settings, self.now());
         let alarms = suspect.evidence > threshold || deviates;
         self.intake.undecided &= alarms;
-        if alarms && self.is_fault(suspect, threshold) {
+        if alarms && (self.is_fault(suspect, threshold) || self.is_lag(setup.problem, suspect, threshold)) {
             return;
         }
         if alarms {
@@ -38,6 +38,20 @@ impl Tracker {
         } else if self.regime.suspected_since().is_some() {
             self.enter(Event::SuspicionCleared);
         }
+    }
+
+    /// Whether F acted at another time than is assumed, by all that the law in use has followed: that is told rather
+    /// than a switch where it stands out more.
+    fn is_lag(&mut self, problem: &Problem, suspect: &Suspect, threshold: f64) -> bool {
+        let lag = self.monitor.law.tell_lag();
+        let stands_out = problem.timing.odds(&lag) > suspect.evidence - threshold;
+        let is_lag = stands_out && self.corrected_timing(problem, &lag).is_some();
+        if is_lag {
+            let timing = &mut self.segment.timing;
+            timing.lag = lag;
+            timing.slope.copy_from_slice(&self.monitor.law.lag_slope);
+        }
+        is_lag
     }
 
     fn suspect(&mut self) {
