@@ -339,8 +339,9 @@ impl Hypothesis {
         let louder = if self.kind.is_louder(channel) { LOUDER * LOUDER } else { 1.0 };
         let variance = column[index] + offset * column[2] + louder * law.noise.sensor[index];
         let residual = value.value - self.mean[index] - offset * self.mean[2];
-        let faulty = faulty(residual, law.noise.sensor[index].sqrt());
+        let std = law.noise.sensor[index].sqrt();
         if self.kind.sticks(channel) {
+            let faulty = faulty(residual, std);
             self.log += match value.repeats {
                 Some(_) => 0.0,
                 None if self.age == 0 => faulty,
@@ -350,7 +351,7 @@ impl Hypothesis {
         }
         let repeats = value.repeats.unwrap_or(0.0);
         let start = value.start.max(SHARED * self.bursts[1 - index].begun());
-        self.log += self.bursts[index].take(working(residual, variance), faulty, start) - repeats;
+        self.log += self.bursts[index].take(working(residual, variance), residual, std, start) - repeats;
         if self.bursts[index].is_on() {
             return false;
         }

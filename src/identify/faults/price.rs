@@ -1,10 +1,14 @@
 //! What a reading costs under a working and under a faulty sensor, as logarithms of densities.
 
+use crate::estimation::log_sum;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// A faulty reading's scale in std of a working one: what is nearer costs about the same as a working one.
 const SCALE: f64 = 3.0;
+
+/// A reading this many std off is as far as any.
+const FAR: f64 = 1e100;
 
 /// Readings that a burst has had when it is found in the record.
 const SOME: f64 = 10.0;
@@ -23,38 +27,53 @@ pub fn faulty(residual: f64, std: f64) -> f64 {
     -(2.0 * scale).ln() - beyond - 2.0 * beyond.ln_1p()
 }
 
-/// ln(eᵃ + eᵇ).
-pub fn log_sum(a: f64, b: f64) -> f64 {
-    let (most, least) = if a > b { (a, b) } else { (b, a) };
-    if least == f64::NEG_INFINITY { most } else { most + (least - most).exp().ln_1p() }
-}
-
 /// Whether a channel works or is in a burst of faulty readings: a chain of two states.
+///
+/// How wide a burst's readings are nobody knows before its first; that one has the density [`faulty`]. Of those after
+/// it the burst knows: Laplace draws of a size whose logarithm is uniform have, after n of them with the sum A of their
+/// magnitudes, the predictive density n Aⁿ ÷ (2 (A + |residual|)ⁿ⁺¹). One in n + 2 is of another size all the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Burst {
     /// Probability of the burst after the last reading.
     pub probability: f64,
     /// Readings that it has had.
     age: f64,
+    /// Sum of their magnitudes, in std of a working sensor.
+    sum: f64,
 }
 
 impl Burst {
     /// A burst that has had some readings already.
     pub fn going_on() -> Burst {
-        Burst { probability: 1.0, age: SOME }
+        Burst { probability: 1.0, age: SOME, sum: SOME * SCALE }
     }
 
-    /// Takes a reading by its log-densities under a working and a faulty sensor; `start` is the probability that a
-    /// burst begins with a reading. One that has lasted for n readings ends with the next at 1 ÷ (n + 2). Returns the
-    /// reading's log-density.
-    pub fn take(&mut self, working: f64, faulty: f64, start: f64) -> f64 {
+    /// Takes a reading by its log-density under a working sensor and its residual, in a channel of that std; `start` is
+    /// the probability that a burst begins with a reading. One that has lasted for n readings ends with the next at 1 ÷
+    /// (n + 2). Returns the reading's log-density.
+    pub fn take(&mut self, working: f64, residual: f64, std: f64, start: f64) -> f64 {
         let (burst, ends) = (self.probability, (self.age + 2.0).recip());
-        let faulty = faulty + ((1.0 - burst) * start + burst * (1.0 - ends)).ln();
+        let begins = faulty(residual, std) + ((1.0 - burst) * start).ln();
+        let goes_on = self.density(residual, std) + (burst * (1.0 - ends)).ln();
+        let faulty = log_sum(begins, goes_on);
         let working = working + ((1.0 - burst) * (1.0 - start) + burst * ends).ln();
         let total = log_sum(working, faulty);
         self.probability = (faulty - total).exp();
-        self.age = if self.is_on() { self.age + 1.0 } else { 0.0 };
+        let size = (residual.abs() / std).min(FAR);
+        (self.age, self.sum) = if self.is_on() { (self.age + 1.0, self.sum + size) } else { (0.0, 0.0) };
         total
+    }
+
+    /// Log-density of the next reading of the burst.
+    fn density(&self, residual: f64, std: f64) -> f64 {
+        let wide = faulty(residual, std);
+        if self.sum == 0.0 {
+            return wide;
+        }
+        let (n, other) = (self.age, (self.age + 2.0).recip());
+        let beyond = ((residual.abs() / std).min(FAR) / self.sum).ln_1p();
+        let own = (0.5 * n / (self.sum * std)).ln() - (n + 1.0) * beyond;
+        log_sum(wide + other.ln(), own + (1.0 - other).ln())
     }
 
     /// Probability that the burst began with the last reading.
@@ -89,7 +108,7 @@ mod tests {
         let mut burst = Burst::default();
         let mut states = Vec::new();
         for residual in [0.5, 9.0, -40.0, 1e300, 0.3, -0.4, 0.2, 0.1, 0.6, -0.7] {
-            burst.take(working(residual, 1.0), faulty(residual, 1.0), 1e-9);
+            burst.take(working(residual, 1.0), residual, 1.0, 1e-9);
             states.push(burst.is_on());
         }
         assert_eq!(states[..4], [false, true, true, true]);
@@ -97,9 +116,18 @@ mod tests {
     }
 
     #[test]
+    fn a_burst_learns_how_wide_its_readings_are() {
+        let mut burst = Burst::default();
+        let costs = [30.0, -45.0, 20.0, -30.0, 40.0, -15.0, 30.0]
+            .map(|residual| burst.take(working(residual, 1.0), residual, 1.0, 1e-9));
+        let known = (2.0 * 30.0_f64).ln() + 1.0;
+        assert!(costs[6] > faulty(30.0, 1.0) + 2.0 && costs[6] > -known - 0.5, "{costs:?}");
+    }
+
+    #[test]
     fn five_stds_are_no_fault_of_a_sensor_that_never_failed() {
         let mut burst = Burst::default();
-        burst.take(working(5.0, 1.0), faulty(5.0, 1.0), 1e-9);
+        burst.take(working(5.0, 1.0), 5.0, 1.0, 1e-9);
         assert!(!burst.is_on());
     }
 }

@@ -1,8 +1,8 @@
 //! All hypotheses on the same readings: whether the law or a sensor is the likelier, and by how much.
 
 use super::hypothesis::{Expected, Hypothesis, Kind, Value};
-use super::price::{Burst, log_sum};
-use crate::estimation::{Channel, Filter, TWENTY_TO_ONE};
+use super::price::Burst;
+use crate::estimation::{Channel, Filter, TWENTY_TO_ONE, log_sum};
 use crate::law::Drive;
 use serde::{Deserialize, Serialize};
 
