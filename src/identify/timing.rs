@@ -89,8 +89,8 @@ impl Timing {
     }
 
     /// What else F may do by a record that says `found`. What is assumed is right at odds of twenty to one against a
-    /// hold or channels that come late, which are multiples of half a sample, and against a lag of any size; both are
-    /// normal about it.
+    /// hold or channels that come late, which are multiples of half a sample, and these at as much against a lag of any
+    /// size; both are normal about it.
     fn rivals(&self, found: &Lag) -> [Rival; RIVALS] {
         let moves: [f64; RIVALS - 1] = std::array::from_fn(|place| EARLIEST + 0.5 * place as f64 - self.late());
         let apart = |moved: f64| if moved == 0.0 { f64::NEG_INFINITY } else { -0.5 * (moved / UNTOLD).powi(2) };
@@ -110,7 +110,7 @@ impl Timing {
         let variance = (found.std.powi(-2) + prior.powi(-2)).recip();
         let moved = variance * found.std.powi(-2) * found.samples;
         let misfit = 0.5 * found.samples * found.samples / (found.std * found.std + prior * prior);
-        let odds = found.evidence - misfit + (variance.sqrt() / prior).ln() - TWENTY_TO_ONE;
+        let odds = found.evidence - misfit + (variance.sqrt() / prior).ln() - 2.0 * TWENTY_TO_ONE;
         Rival { moved, std: variance.sqrt(), odds }
     }
 
@@ -223,7 +223,7 @@ mod tests {
     fn what_is_left_open_is_the_prior_before_a_record_and_the_lag_itself_after_it() {
         let held = Timing::new(Hold::Zero);
         let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.01;
-        assert!(near(held.left_open(&Lag::UNKNOWN), 0.0295), "{}", held.left_open(&Lag::UNKNOWN));
+        assert!(near(held.left_open(&Lag::UNKNOWN), 0.0196), "{}", held.left_open(&Lag::UNKNOWN));
         assert!(near(held.left_open(&found(0.3)), 0.09), "{}", held.left_open(&found(0.3)));
         assert!(held.left_open(&found(0.0)) < 1e-6, "{}", held.left_open(&found(0.0)));
         let told = held.corrected(&found(-0.25), 1000).unwrap();
