@@ -37,6 +37,11 @@ pub struct Missing {
 }
 
 impl Missing {
+    /// Whether it explains enough to be named.
+    pub fn is_named(&self) -> bool {
+        self.evidence > NAMED
+    }
+
     /// The effect.
     pub fn effect(&self) -> &'static Entry {
         &Catalogue::ENTRIES[self.entry]
@@ -61,6 +66,13 @@ impl Lag {
     /// What a record of Gaussian scatter says.
     pub fn of(samples: f64, std: f64) -> Lag {
         Lag { samples, std, evidence: 0.5 * (samples / std).powi(2) }
+    }
+
+    /// What it says where whatever is assumed is known to that std only.
+    pub fn blurred(&self, std: f64) -> Lag {
+        let variance = self.std * self.std + std * std;
+        let share = if self.std.is_finite() { self.std * self.std / variance } else { 1.0 };
+        Lag { std: variance.sqrt(), evidence: share * self.evidence, ..*self }
     }
 
     /// Log-likelihood that a lag of so many samples gains over none, nats.
@@ -184,9 +196,9 @@ impl ScoreTest {
         self.own.solve(own, active);
     }
 
-    /// The candidate with the most evidence, `overdispersion` being what the law's lasting error makes of a nat; none
-    /// below the evidence at which one is named, or with a sign that physics does not allow.
-    pub fn missing(&self, overdispersion: f64) -> Option<Missing> {
+    /// The candidate with the most evidence, `overdispersion` being what the law's lasting error makes of a nat; one
+    /// with a sign that physics does not allow has none.
+    pub fn likeliest(&self, overdispersion: f64) -> Option<Missing> {
         let price = (self.candidates.len().max(1) as f64).ln();
         let evidence = |candidate: &Candidate| {
             let (coefficient, gain, _) = candidate.sums.gain(&self.own);
@@ -195,7 +207,7 @@ impl ScoreTest {
         };
         let all =
             self.candidates.iter().map(|candidate| Missing { entry: candidate.entry, evidence: evidence(candidate) });
-        all.max_by(|a, b| a.evidence.total_cmp(&b.evidence)).filter(|missing| missing.evidence > NAMED)
+        all.max_by(|a, b| a.evidence.total_cmp(&b.evidence))
     }
 }
 
@@ -240,6 +252,7 @@ impl LagTest {
         slope: &mut [f64],
     ) -> Told {
         self.own.solve(own, active);
+        let track = track.no_quieter();
         let solved = self.lags.each_ref().map(|sums| sums.gain(&self.own));
         let (place, sign) = if solved[0].1 >= solved[1].1 { (0, 1.0) } else { (1, -1.0) };
         let (samples, gain, information) = solved[place];

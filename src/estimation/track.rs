@@ -24,6 +24,11 @@ impl Track {
         self.log_variance[channel as usize].add(innovation.variance);
     }
 
+    /// The same with no channel quieter than was stated: less than its noise's floor is rounding and integration.
+    pub fn no_quieter(&self) -> Track {
+        Track { squares: [0, 1].map(|channel| self.squares[channel].max(self.count[channel])), ..*self }
+    }
+
     /// Mean of ε²/s in the channel: by how much its stated variance is too small; 1 where nothing was measured.
     pub fn scale(&self, channel: Channel) -> f64 {
         let count = self.count[channel as usize];

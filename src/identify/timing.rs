@@ -14,6 +14,10 @@ const EARLIEST: f64 = -1.0;
 /// Std of a lag that nobody has told yet, in samples: that of a hold.
 const UNTOLD: f64 = 0.5;
 
+/// Std of what any hold or late channel is in truth, in samples: clocks and the integration between samples are no
+/// better, and without noise a record would tell a lag of that size.
+const EXACT: f64 = 0.01;
+
 /// What else than is assumed F may do: six multiples of half a sample, and any lag.
 const RIVALS: usize = 7;
 
@@ -92,6 +96,7 @@ impl Timing {
     /// hold or channels that come late, which are multiples of half a sample, and these at as much against a lag of any
     /// size; both are normal about it.
     fn rivals(&self, found: &Lag) -> [Rival; RIVALS] {
+        let found = &found.blurred(EXACT);
         let moves: [f64; RIVALS - 1] = std::array::from_fn(|place| EARLIEST + 0.5 * place as f64 - self.late());
         let apart = |moved: f64| if moved == 0.0 { f64::NEG_INFINITY } else { -0.5 * (moved / UNTOLD).powi(2) };
         let all = moves.into_iter().map(apart).fold(f64::NEG_INFINITY, log_sum);

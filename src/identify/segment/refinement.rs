@@ -10,7 +10,7 @@ use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
 use super::prior::{InertiaPrior, Prior};
 use super::state::{InTheSensors, NOISE_MEMORY, Run, Runs, Segment};
-use crate::estimation::{Filter, Lag, LagTest, Noise, Observation, Pass};
+use crate::estimation::{Filter, Lag, LagTest, Missing, Noise, Observation, Pass};
 use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
@@ -91,7 +91,7 @@ impl Segment {
         self.fit.gain = f64::INFINITY;
         (self.missing, self.timing.lag, self.timing.open) = (None, Lag::UNKNOWN, 0.0);
         self.timing.slope.fill(0.0);
-        self.score_test.next_look = 0;
+        (self.score_test.likeliest, self.score_test.next_look) = (None, 0);
         self.convergence.clear();
         self.run.largest = [0.0; 2];
         self.begin_run(window);
@@ -206,12 +206,20 @@ impl Segment {
         if self.score_test.looking {
             let candidates = &mut self.score_test.candidates;
             candidates.end(&self.run.filter_run.information, &self.active);
-            self.missing = candidates.missing(self.fit.overdispersion);
+            self.score_test.likeliest = candidates.likeliest(self.fit.overdispersion);
+            self.missing = self.score_test.likeliest.filter(Missing::is_named);
             self.score_test.next_look = (LOOK_AGAIN * self.length(self.run.next) as f64) as u64;
         }
         if self.settled() && (self.score_test.looking || self.fit.explains) {
             self.tell_lag();
         }
+    }
+
+    /// Log-likelihood that the likeliest of the effects that the law lacks gains, named or not, nats: since it was last
+    /// looked for that has grown as the record has.
+    pub fn effect_evidence(&self) -> f64 {
+        let grown = LOOK_AGAIN * self.length(self.run.next) as f64 / self.score_test.next_look.max(1) as f64;
+        self.score_test.likeliest.map_or(0.0, |effect| grown.max(1.0) * effect.evidence)
     }
 
     /// When F acted, by the run that explains the record better with a lag, against the better one without.

@@ -138,6 +138,8 @@ pub(super) struct MissingEffects {
     pub(super) candidates: ScoreTest,
     /// Whether the run under way looks for them.
     pub(super) looking: bool,
+    /// The effect that explained most when it was last looked, named or not.
+    pub(super) likeliest: Option<Missing>,
     /// Length of the record from which the next run looks.
     pub(super) next_look: u64,
     /// Beside a run that looks, where the law's error is taken for process noise: with all error in the sensors the
@@ -207,6 +209,7 @@ impl Segment {
             score_test: MissingEffects {
                 candidates: ScoreTest::new(&problem.terms, n),
                 looking: false,
+                likeliest: None,
                 next_look: 0,
                 in_the_sensors: InTheSensors {
                     filter_run: Pass::new(n),

@@ -70,7 +70,7 @@ impl Tracker {
 
     /// When F acted where the record of the present law says `lag`, and no effect that it lacks explains that as well.
     pub(super) fn corrected_timing(&self, problem: &Problem, lag: &Lag) -> Option<Timing> {
-        let lacks = self.segment.missing.is_some_and(|missing| missing.evidence > lag.evidence);
+        let lacks = self.segment.effect_evidence() > lag.evidence;
         let corrected = problem.timing.corrected(lag, self.record_length());
         corrected.filter(|_| self.is_refining() && !lacks)
     }
