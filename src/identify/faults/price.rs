@@ -118,10 +118,10 @@ mod tests {
     #[test]
     fn a_burst_learns_how_wide_its_readings_are() {
         let mut burst = Burst::default();
-        let costs = [30.0, -45.0, 20.0, -30.0, 40.0, -15.0, 30.0]
+        let costs = [3e4, -4.5e4, 2e4, -3e4, 4e4, -1.5e4, 3e4]
             .map(|residual| burst.take(working(residual, 1.0), residual, 1.0, 1e-9));
-        let known = (2.0 * 30.0_f64).ln() + 1.0;
-        assert!(costs[6] > faulty(30.0, 1.0) + 2.0 && costs[6] > -known - 0.5, "{costs:?}");
+        let known = (2.0 * 3e4_f64).ln() + 1.0;
+        assert!(costs[6] > faulty(3e4, 1.0) + 2.0 && costs[6] > -known - 0.5, "{costs:?}");
     }
 
     #[test]
