@@ -93,7 +93,7 @@ impl Equation {
         nuisance: bool,
     ) -> Equation {
         let right = match target {
-            Target::Inertia => record.measured_inertia(timing.hold),
+            Target::Inertia => record.measured_inertia(),
             Target::Force => record.force(timing),
         };
         let mut left = Vec::new();
@@ -143,7 +143,7 @@ impl Equation {
 
     /// The same with the inertia term of another record as its target.
     pub(in crate::diagnose) fn for_motion(&self, record: &Record) -> Equation {
-        let right = record.measured_inertia(self.timing.hold);
+        let right = record.measured_inertia();
         let spread = [0, 1, 2].map(|which| spread(&right[which], self.functions[which]));
         Equation { right, spread, ..self.clone() }
     }

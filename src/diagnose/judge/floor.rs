@@ -6,7 +6,6 @@ use super::held_out::Folds;
 use super::record::{Column, Record, Timing};
 use super::windows::{COUNT, PRINCIPAL};
 use crate::diagnose::motion::Motion;
-use crate::law::Hold;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -167,7 +166,7 @@ fn mean_square_difference(a: &[f64], b: &[f64]) -> f64 {
 
 /// Propagated noise ÷ signal of the measured inertia term over windows of the principal length.
 pub(in crate::diagnose) fn noise_share(bootstrap: &Bootstrap<Record>) -> f64 {
-    let Bootstrap { truth, draws } = bootstrap.map(|record| record.measured_inertia(Hold::Linear)[PRINCIPAL].clone());
+    let Bootstrap { truth, draws } = bootstrap.map(|record| record.measured_inertia()[PRINCIPAL].clone());
     let added = draws.iter().map(|draw| mean_square_difference(draw, &truth));
     let noise = added.sum::<f64>() / draws.len().max(1) as f64;
     (noise / mean_square_difference(&truth, &vec![0.0; truth.len()])).sqrt()

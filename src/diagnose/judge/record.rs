@@ -116,38 +116,36 @@ impl Record {
         self.windows.iter().zip(column).for_each(|(windows, rows)| windows.add(order, cells, factor, rows));
     }
 
-    /// ∫ φ q̈ dt = −∫ φ' q̇ dt = ∫ φ'' q dt of the readings: of q̇ where it is measured, else of q. Under a force that
-    /// is held q̇ is a straight line between readings, which no smoothed motion is.
-    pub(in crate::diagnose) fn measured_inertia(&self, hold: Hold) -> Column {
+    /// ∫ φ q̈ dt = −∫ φ' q̇ dt = ∫ φ'' q dt of the readings: of q̇ where it is measured, on straight lines, which every
+    /// force then is taken over ([`Nodes::between_velocities`]); else of q.
+    pub(in crate::diagnose) fn measured_inertia(&self) -> Column {
         let reads = |(index, number, _): &(usize, usize, Nodes)| self.motions[*index].tracks[*number].read[1];
-        let is_straight = |piece: &(usize, usize, Nodes)| hold == Hold::Zero && reads(piece);
         let velocity = |piece: &(usize, usize, Nodes)| {
             let (index, number, nodes) = piece;
-            let motion = &self.motions[*index];
-            if is_straight(piece) { nodes.straight(motion, *number) } else { nodes.integrals(&nodes.qd) }
+            if reads(piece) { nodes.straight(&self.motions[*index], *number) } else { nodes.integrals(&nodes.qd) }
         };
         let mut column = self.column(1, velocity, -1.0);
-        for (channel, order, factor) in [(0, 2, 1.0), (1, 1, -1.0)] {
-            let own = |piece: &(usize, usize, Nodes)| {
-                let (index, number, nodes) = piece;
-                let taken = usize::from(reads(piece));
-                if taken == channel && !is_straight(piece) {
-                    nodes.remainder(&self.motions[*index], *number, channel)
-                } else {
-                    vec![[0.0; 2]; nodes.cells()]
-                }
-            };
-            self.add(order, &self.nodes.iter().map(own).collect(), factor, &mut column);
-        }
+        let beyond = |piece: &(usize, usize, Nodes)| {
+            let (index, number, nodes) = piece;
+            match reads(piece) {
+                true => vec![[0.0; 2]; nodes.cells()],
+                false => nodes.remainder(&self.motions[*index], *number),
+            }
+        };
+        self.add(2, &self.nodes.iter().map(beyond).collect(), 1.0, &mut column);
         column
     }
 
-    fn excitation(&self, (index, number, nodes): &(usize, usize, Nodes), timing: Timing) -> Vec<f64> {
+    fn impulse(&self, (index, number, _): &(usize, usize, Nodes), hold: Hold) -> &Impulse {
         let piece = &self.motions[*index].pieces[*number];
         let place = self.nodes.iter().position(|(own, other, _)| (own, other) == (index, number)).unwrap_or(0);
-        let impulses = self.impulses[timing.hold as usize].get_or_init(|| vec![OnceCell::new(); self.nodes.len()]);
-        let impulse = impulses[place].get_or_init(|| Impulse::new(piece, timing.hold));
-        let delayed = nodes.excitation(impulse, timing.delay);
+        let impulses = self.impulses[hold as usize].get_or_init(|| vec![OnceCell::new(); self.nodes.len()]);
+        impulses[place].get_or_init(|| Impulse::new(piece, hold))
+    }
+
+    fn excitation(&self, piece: &(usize, usize, Nodes), timing: Timing) -> Vec<f64> {
+        let nodes = &piece.2;
+        let delayed = nodes.excitation(self.impulse(piece, timing.hold), timing.delay);
         match Effect::lag(timing.lag) {
             Some(lag) => {
                 let behind = term_series(Term::Effect(lag), &[], &nodes.trajectory(&delayed));
@@ -157,21 +155,35 @@ impl Record {
         }
     }
 
+    /// Integrals of the excitation over the cells.
+    fn impulses(&self, piece: &(usize, usize, Nodes), timing: Timing) -> Vec<[f64; 2]> {
+        let nodes = &piece.2;
+        if self.is_output || timing.lag != 0.0 {
+            return self.integrals(nodes, self.excitation(piece, timing));
+        }
+        nodes.integrals(&nodes.excitation_between_velocities(self.impulse(piece, timing.hold), timing.delay))
+    }
+
+    /// Integrals of a force over the cells, as the readings of q̇ show it where q̈ is theirs.
+    fn integrals(&self, nodes: &Nodes, values: Vec<f64>) -> Vec<[f64; 2]> {
+        if self.is_output { nodes.integrals(&values) } else { nodes.integrals(&nodes.between_velocities(values)) }
+    }
+
     /// ∫ φ F dt.
     pub(in crate::diagnose) fn force(&self, timing: Timing) -> Column {
-        self.column(0, |piece| piece.2.integrals(&self.excitation(piece, timing)), 1.0)
+        self.column(0, |piece| self.impulses(piece, timing), 1.0)
     }
 
     /// ∫ φ' F dt: what a little more delay adds to the force.
     pub(in crate::diagnose) fn force_slope(&self, timing: Timing) -> Column {
-        self.column(1, |piece| piece.2.integrals(&self.excitation(piece, timing)), 1.0)
+        self.column(1, |piece| self.impulses(piece, timing), 1.0)
     }
 
     /// ∫ φ f dt of a term.
     pub(in crate::diagnose) fn term(&self, term: Term, timing: Timing) -> Column {
         match term {
             Term::Inertia if self.is_output => self.column(1, |(.., nodes)| nodes.integrals(&nodes.qd), -1.0),
-            Term::Inertia => self.measured_inertia(timing.hold),
+            Term::Inertia => self.measured_inertia(),
             // whatever the timing and the inner parameters, it is the same every time
             _ if !term.uses_excitation() && term.inner_values().is_empty() => {
                 let known =
@@ -187,7 +199,7 @@ impl Record {
     }
 
     fn integrated(&self, term: Term, timing: Timing) -> Column {
-        self.column(0, |piece| piece.2.integrals(&self.series(term, piece, timing)), 1.0)
+        self.column(0, |piece| self.integrals(&piece.2, self.series(term, piece, timing)), 1.0)
     }
 
     /// Number of pieces.
@@ -199,7 +211,7 @@ impl Record {
     pub(super) fn acting(&self, value: impl Fn(usize, f64) -> f64) -> Column {
         let mut column = [0, 1, 2].map(|which| vec![0.0; self.windows[which].rows()]);
         let own = |(index, (.., nodes)): (usize, &(usize, usize, Nodes))| {
-            nodes.integrals(&nodes.elapsed().map(|t| value(index, t)).collect::<Vec<f64>>())
+            self.integrals(nodes, nodes.elapsed().map(|t| value(index, t)).collect())
         };
         self.add(0, &self.nodes.iter().enumerate().map(own).collect(), 1.0, &mut column);
         column
@@ -218,7 +230,7 @@ impl Record {
                 let slope: f64 = slopes.filter(|slope| slope.is_finite()).sum();
                 slope * (2.0 * (t - from) / (to - from) - 1.0).powi(power as i32)
             };
-            nodes.integrals(&nodes.states().map(value).collect::<Vec<f64>>())
+            self.integrals(nodes, nodes.states().map(value).collect())
         };
         self.column(0, own, 1.0)
     }
@@ -266,5 +278,52 @@ impl Record {
             if is_output { sensor_noise(&pieces)[0] } else { rounding(&pieces, 0).sqrt() }
         };
         self.motions.iter().map(as_position).fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    /// q̈ + ω² q = F under a force that is held between readings, 15 of them in a period: t, q, q̇, F. A sensor's noise
+    /// is a thousandth of the motion.
+    fn held(omega: f64) -> [Vec<f64>; 4] {
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let mut noise = || -> f64 { StandardNormal.sample(&mut random) };
+        let h = std::f64::consts::TAU / omega / 15.0;
+        let (sin, cos) = (omega * h).sin_cos();
+        let mut readings: [Vec<f64>; 4] = Default::default();
+        let (mut q, mut qd) = (0.3, 0.0);
+        for k in 0..2000 {
+            let t = h * f64::from(k);
+            let force = (0.7 * omega * t).sin() + 0.5 * (1.3 * omega * t + 0.01 * t * t).cos();
+            let read = [t, q + 1e-4 * noise(), qd + 3e-4 * noise(), force];
+            readings.iter_mut().zip(read).for_each(|(channel, value)| channel.push(value));
+            let rest = force / (omega * omega);
+            (q, qd) = (rest + (q - rest) * cos + qd * sin / omega, qd * cos - (q - rest) * omega * sin);
+        }
+        readings
+    }
+
+    #[test]
+    fn a_law_holds_between_coarse_readings_of_a_velocity_under_a_held_force() {
+        let omega = 3.0;
+        let [t, q, qd, force] = held(omega);
+        let recording = Recording::new("held", t, Some(q), Some(qd), Some(force)).unwrap();
+        let record = Record::new(&[&recording], &[]).unwrap();
+        assert_eq!(record.motions[0].tracks[0].read, [true; 2]);
+        let timing = Timing { hold: Hold::Zero, delay: 0.0, lag: 0.0 };
+        let [inertia, spring] = [Term::Inertia, Term::power(1, 0)].map(|term| record.term(term, timing));
+        let force = record.force(timing);
+        for which in 1..COUNT {
+            let rows = inertia[which].iter().zip(&spring[which]).zip(&force[which]);
+            let [left, all] = rows.fold([0.0; 2], |[left, all], ((inertia, spring), force)| {
+                [left + (inertia + omega * omega * spring - force).powi(2), all + force * force]
+            });
+            assert!((left / all).sqrt() < 8e-3, "{} of F over windows {which}", (left / all).sqrt());
+        }
     }
 }

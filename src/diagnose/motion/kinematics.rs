@@ -3,17 +3,24 @@
 //! q̇ read at t is s ẋ(t − τ) + b: its regression on the smoothed ẋ(t − τ), ẍ(t − τ) and 1 gives s, τ and b. What
 //! smoothing takes of the motion it must take of q̇ too, else s comes out too large: the integral of q̇ goes through
 //! the same smoother as q. A q̇ that is computed from q, by differences and whatever filter, has the noise of q in it:
-//! what is left of q̇ is then a linear function of what is left of q.
+//! what is left of q̇ is then a linear function of what is left of q. Some of that it is of any q̇, for both are set
+//! against the motion that the noisy q shows; how much, the smoothed motion tells when it is read and smoothed again.
 
 use super::spline::{Sensors, Spline};
 use super::track::Track;
 use crate::diagnose::piece::Piece;
 use nalgebra::{DMatrix, DVector};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 
 /// Samples before and after an instant whose noise of q a derivative may hold.
 const BEFORE: usize = 8;
 /// … and after it.
 const AFTER: usize = 2;
+
+/// … both, and the instant itself.
+const AROUND: usize = BEFORE + AFTER + 1;
 
 /// Share of what is left of q̇ that q's own noise must explain where q̇ is computed from q.
 const SHARED: f64 = 0.5;
@@ -70,6 +77,9 @@ impl Kinematics {
         let spread: f64 = right.iter().map(|value| (value - mean).powi(2)).sum();
         let std = found.std(&rows, &residuals);
         let scale = found.solution[0];
+        let filter = Regression::of(&filtered(tracks), &right)?;
+        let left_of_both = Left::of(pieces, tracks, filter.residuals(&filtered(tracks), &right))?;
+        let of_its_own = Left::of_its_own(tracks, pieces, sensors, &filter);
         Some(Kinematics {
             lag: lag + found.solution[1] / scale,
             lag_std: std[1] / scale.abs(),
@@ -78,7 +88,7 @@ impl Kinematics {
             offset: found.solution[2],
             offset_std: std[2],
             explained: 1.0 - left / spread,
-            is_derivative: shared(pieces, tracks, &residuals)? > SHARED,
+            is_derivative: left_of_both.shared(&of_its_own)? > SHARED,
         })
         .filter(|found| found.lag.is_finite() && found.scale.is_finite())
     }
@@ -95,33 +105,96 @@ fn late(tracks: &[Track], lag: f64) -> Vec<[f64; 3]> {
     tracks.iter().flat_map(|track| track.states.iter().map(row)).collect()
 }
 
+/// ẋ, ẍ, x⃛ and 1 at every sample: what any filter that is short against the motion makes of its velocity.
+fn filtered(tracks: &[Track]) -> Vec<[f64; 4]> {
+    tracks.iter().flat_map(|track| track.states.iter().map(|[_, v, a, j]| [*v, *a, *j, 1.0])).collect()
+}
+
 /// The readings of q̇ through the smoother through which q went.
 fn smoothed(piece: &Piece, track: &Track, sensors: Sensors) -> Option<Vec<f64>> {
     let velocity = piece.measured()[1]?;
+    let slope = slopes(&piece.t, velocity);
     let mut integral = vec![0.0];
-    for (t, qd) in piece.t.windows(2).zip(velocity.windows(2)) {
-        integral.push(integral[integral.len() - 1] + 0.5 * (t[1] - t[0]) * (qd[0] + qd[1]));
+    for k in 0..piece.len() - 1 {
+        let h = piece.t[k + 1] - piece.t[k];
+        let area = 0.5 * h * (velocity[k] + velocity[k + 1] + h / 6.0 * (slope[k] - slope[k + 1]));
+        integral.push(integral[k] + area);
     }
     let spline = Spline::new(&piece.t, sensors, [true, false], [&track.doubt[0], &[]]);
     Some(spline.smooth([Some(&integral), None]).iter().map(|state| state[1]).collect())
 }
 
-/// Share of what is left of q̇ that what is left of q explains.
-fn shared(pieces: &[Piece], tracks: &[Track], left: &[f64]) -> Option<f64> {
-    let (mut rows, mut right, mut first) = (Vec::new(), Vec::new(), 0);
-    for (piece, track) in pieces.iter().zip(tracks) {
-        let q = piece.measured()[0]?;
-        let noise: Vec<f64> = q.iter().zip(&track.states).map(|(q, state)| q - state[0]).collect();
-        let windows = noise.windows(BEFORE + AFTER + 1).enumerate();
-        for (k, window) in windows {
-            rows.push(<[f64; BEFORE + AFTER + 1]>::try_from(window).ok()?);
-            right.push(left[first + k + BEFORE]);
+/// Slopes of values at instants, of the parabola through a reading and those beside it.
+fn slopes(t: &[f64], values: &[f64]) -> Vec<f64> {
+    let chord = |k: usize| (values[k + 1] - values[k]) / (t[k + 1] - t[k]);
+    let last = values.len() - 1;
+    let at = |k: usize| match k {
+        0 => chord(0),
+        k if k == last => chord(last - 1),
+        k => {
+            let [before, after] = [t[k] - t[k - 1], t[k + 1] - t[k]];
+            (after * chord(k - 1) + before * chord(k)) / (before + after)
         }
-        first += noise.len();
+    };
+    (0..values.len()).map(at).collect()
+}
+
+/// What smoothing leaves of the readings: of q piece by piece, of q̇ end to end.
+struct Left {
+    q: Vec<Vec<f64>>,
+    qd: Vec<f64>,
+}
+
+impl Left {
+    fn of(pieces: &[Piece], tracks: &[Track], qd: Vec<f64>) -> Option<Left> {
+        let own = |(piece, track): (&Piece, &Track)| {
+            let q = piece.measured()[0]?;
+            Some(q.iter().zip(&track.states).map(|(q, state)| q - state[0]).collect())
+        };
+        Some(Left { q: pieces.iter().zip(tracks).map(own).collect::<Option<_>>()?, qd })
     }
-    let total: f64 = right.iter().map(|value| value * value).sum();
-    let found = Regression::of(&rows, &right)?;
-    Some(1.0 - found.left / total.max(f64::MIN_POSITIVE))
+
+    /// What it would be of a q̇ of its own, `filter` being what it reads: the smoothed motion, read and smoothed again.
+    fn of_its_own(tracks: &[Track], pieces: &[Piece], sensors: Sensors, filter: &Regression) -> Left {
+        let mut random = ChaCha8Rng::seed_from_u64(0);
+        let mut read = |state: &[f64; 4]| {
+            let draw: f64 = StandardNormal.sample(&mut random);
+            state[0] + sensors.noise[0] * draw
+        };
+        let (mut left, mut again) = (Vec::new(), Vec::new());
+        for (piece, track) in pieces.iter().zip(tracks) {
+            let q: Vec<f64> = track.states.iter().map(&mut read).collect();
+            let spline = Spline::new(&piece.t, sensors, [true, false], [&track.doubt[0], &[]]);
+            let states = spline.smooth([Some(&q), None]);
+            left.push(q.iter().zip(&states).map(|(q, state)| q - state[0]).collect());
+            again.push(Track { states, ..track.clone() });
+        }
+        let qd = filter.expected(&filtered(tracks));
+        Left { q: left, qd: filter.residuals(&filtered(&again), &qd) }
+    }
+
+    /// What is left of q about an instant, for what is left of q̇ then.
+    fn rows(&self) -> (Vec<[f64; AROUND]>, Vec<f64>) {
+        let (mut rows, mut right, mut first) = (Vec::new(), Vec::new(), 0);
+        for noise in &self.q {
+            let windows = noise.windows(AROUND).filter_map(|window| <[f64; AROUND]>::try_from(window).ok());
+            rows.extend(windows);
+            right.extend_from_slice(&self.qd[first + BEFORE..][..(noise.len() + 1).saturating_sub(AROUND)]);
+            first += noise.len();
+        }
+        (rows, right)
+    }
+
+    /// Share of what is left of q̇ that what is left of q explains, beyond what it does because both are set against the
+    /// motion that the noisy q shows.
+    fn shared(&self, of_its_own: &Left) -> Option<f64> {
+        let (rows, right) = of_its_own.rows();
+        let expected = Regression::of(&rows, &right)?;
+        let (rows, right) = self.rows();
+        let own = expected.residuals(&rows, &right);
+        let total: f64 = own.iter().map(|value| value * value).sum();
+        Some(1.0 - Regression::of(&rows, &own)?.left / total.max(f64::MIN_POSITIVE))
+    }
 }
 
 /// Least squares, columns scaled.
@@ -166,8 +239,12 @@ impl Regression {
         squares.iter().map(|square| square.sqrt()).collect()
     }
 
-    fn residuals<const P: usize>(&self, rows: &[[f64; P]], right: &[f64]) -> Vec<f64> {
+    fn expected<const P: usize>(&self, rows: &[[f64; P]]) -> Vec<f64> {
         let expected = |row: &[f64; P]| row.iter().zip(self.solution.iter()).map(|(a, b)| a * b).sum::<f64>();
-        rows.iter().zip(right).map(|(row, value)| value - expected(row)).collect()
+        rows.iter().map(expected).collect()
+    }
+
+    fn residuals<const P: usize>(&self, rows: &[[f64; P]], right: &[f64]) -> Vec<f64> {
+        self.expected(rows).iter().zip(right).map(|(expected, value)| value - expected).collect()
     }
 }

@@ -25,6 +25,8 @@ pub(in crate::diagnose) struct Nodes {
     pub(in crate::diagnose) qd: Vec<f64>,
     /// Acceleration, m/s².
     pub(in crate::diagnose) qdd: Vec<f64>,
+    /// Where q̇ is read, in nodes from the first one's beginning; empty where it is not.
+    velocities: Vec<f64>,
 }
 
 impl Nodes {
@@ -36,7 +38,9 @@ impl Nodes {
         let per_cell = (cell * last as f64 / duration).ceil().max(1.0) as usize;
         let width = cell / per_cell as f64;
         let count = (duration / cell).floor() as usize * per_cell;
-        let mut nodes = Nodes { start: piece.t[0], width, per_cell, t: vec![], q: vec![], qd: vec![], qdd: vec![] };
+        let start = piece.t[0];
+        let (t, q, qd, qdd, velocities) = Default::default();
+        let mut nodes = Nodes { start, width, per_cell, t, q, qd, qdd, velocities };
         let mut k = 0;
         for index in 0..count {
             let t = nodes.start + (index as f64 + 0.5) * width;
@@ -49,6 +53,9 @@ impl Nodes {
             nodes.qd.push(qd);
             nodes.qdd.push(qdd);
         }
+        let lag = motion.sensors.lag(1);
+        let read = taken(motion, number, 1).map(|k| (piece.t[k] - lag - nodes.start) / width);
+        nodes.velocities = read.filter(|place| *place > 0.0 && *place < count as f64).collect();
         nodes
     }
 
@@ -94,16 +101,48 @@ impl Nodes {
         values.chunks_exact(self.per_cell).map(sum).collect()
     }
 
-    /// What the readings of a channel have beyond the smoothed motion, a straight line from reading to reading,
-    /// integrated over the cells: with it the smoothed motion is the measured one again, without what smoothing may
-    /// take from it.
-    pub(in crate::diagnose) fn remainder(&self, motion: &Motion, number: usize, channel: usize) -> Vec<[f64; 2]> {
-        let sensors = &motion.sensors;
-        let own = |state: &[f64; 4]| sensors.reading(channel, state);
-        self.integrals(&self.followed(motion, number, channel, own))
+    /// Means of a force from one reading of q̇ to the next: what q̇ on straight lines between them shows of it, exactly,
+    /// however it varies there. As it is where q̇ is not read.
+    pub(in crate::diagnose) fn between_velocities(&self, values: Vec<f64>) -> Vec<f64> {
+        if self.velocities.is_empty() {
+            return values;
+        }
+        let last = values.len() - 1;
+        let mut sums = vec![0.0];
+        values.iter().for_each(|value| sums.push(sums[sums.len() - 1] + value));
+        self.means(|place| {
+            let node = (place as usize).min(last);
+            let part = place - node as f64;
+            let slope = 0.5 * (values[(node + 1).min(last)] - values[node.saturating_sub(1)]);
+            sums[node] + part * (values[node] + 0.5 * slope * (part - 1.0))
+        })
     }
 
-    /// The readings of q̇ on straight lines, integrated over the cells: what q̇ does under a force that is held.
+    /// The same of the excitation `delay` s ago, which may jump at a reading.
+    pub(in crate::diagnose) fn excitation_between_velocities(&self, force: &Impulse, delay: f64) -> Vec<f64> {
+        if self.velocities.is_empty() {
+            return self.excitation(force, delay);
+        }
+        let mut near = 0;
+        self.means(|place| force.until(self.start + place * self.width - delay, &mut near) / self.width)
+    }
+
+    /// Means between readings of q̇ of what has this integral up to a place, in nodes.
+    fn means(&self, mut until: impl FnMut(f64) -> f64) -> Vec<f64> {
+        let count = self.t.len();
+        let places = [0.0].into_iter().chain(self.velocities.iter().copied()).chain([count as f64]);
+        let points: Vec<[f64; 2]> = places.map(|place| [place, until(place)]).collect();
+        let edges = lines(&points, (0..=count).map(|edge| edge as f64));
+        edges.windows(2).map(|edges| edges[1] - edges[0]).collect()
+    }
+
+    /// What the readings of q have beyond the smoothed motion, a straight line from reading to reading, integrated over
+    /// the cells: with it the smoothed motion is the measured one again, without what smoothing may take from it.
+    pub(in crate::diagnose) fn remainder(&self, motion: &Motion, number: usize) -> Vec<[f64; 2]> {
+        self.integrals(&self.followed(motion, number, 0, |state| motion.sensors.reading(0, state)))
+    }
+
+    /// The readings of q̇ on straight lines, integrated over the cells.
     pub(in crate::diagnose) fn straight(&self, motion: &Motion, number: usize) -> Vec<[f64; 2]> {
         self.integrals(&self.followed(motion, number, 1, |_| 0.0))
     }
@@ -113,30 +152,40 @@ impl Nodes {
     fn followed(&self, motion: &Motion, number: usize, channel: usize, than: impl Fn(&[f64; 4]) -> f64) -> Vec<f64> {
         let (piece, track, sensors) = (&motion.pieces[number], &motion.tracks[number], &motion.sensors);
         let Some(values) = readings(piece, track.read)[channel] else { return vec![0.0; self.t.len()] };
-        let doubt = |k: usize| track.doubt[channel].get(k).copied().unwrap_or(1.0);
-        let taken = (0..piece.len()).filter(|k| doubt(*k) < UNREAD);
         let point = |k: usize| {
             let state = &track.states[k];
             let smoothed = sensors.reading(channel, state);
-            let beyond = (values[k] / sensors.unit(channel) - smoothed) / doubt(k);
+            let beyond = (values[k] / sensors.unit(channel) - smoothed) / doubt(motion, number, channel, k);
             [piece.t[k] - sensors.lag(channel), smoothed + beyond - than(state)]
         };
-        self.interpolated(&taken.map(point).collect::<Vec<_>>())
+        lines(&taken(motion, number, channel).map(point).collect::<Vec<_>>(), self.t.iter().copied())
     }
+}
 
-    /// Values at the nodes on straight lines between points [t, value]; the first and the last value beyond them.
-    fn interpolated(&self, points: &[[f64; 2]]) -> Vec<f64> {
-        let mut k = 0;
-        let at = |t: &f64| {
-            while k + 1 < points.len() && points[k + 1][0] <= *t {
-                k += 1;
-            }
-            let [from, value] = points.get(k).copied().unwrap_or_default();
-            let [to, next] = points.get(k + 1).copied().unwrap_or([f64::INFINITY, value]);
-            value + (next - value) * ((t - from) / (to - from)).max(0.0)
-        };
-        self.t.iter().map(at).collect()
-    }
+/// Factor on the variance of a reading.
+fn doubt(motion: &Motion, number: usize, channel: usize, k: usize) -> f64 {
+    motion.tracks[number].doubt[channel].get(k).copied().unwrap_or(1.0)
+}
+
+/// The readings of a channel that are taken; none where it is not read.
+fn taken(motion: &Motion, number: usize, channel: usize) -> impl Iterator<Item = usize> {
+    let piece = &motion.pieces[number];
+    let count = readings(piece, motion.tracks[number].read)[channel].map_or(0, <[f64]>::len);
+    (0..count).filter(move |k| doubt(motion, number, channel, *k) < UNREAD)
+}
+
+/// Straight lines between points [t, value] at instants in their order; the first and the last value beyond them.
+fn lines(points: &[[f64; 2]], instants: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut k = 0;
+    let at = |t: f64| {
+        while k + 1 < points.len() && points[k + 1][0] <= t {
+            k += 1;
+        }
+        let [from, value] = points.get(k).copied().unwrap_or_default();
+        let [to, next] = points.get(k + 1).copied().unwrap_or([f64::INFINITY, value]);
+        value + (next - value) * ((t - from) / (to - from)).max(0.0)
+    };
+    instants.map(at).collect()
 }
 
 /// ∫ F dt from the first reading of a piece on. Before it and after the last one the excitation counts as they are.

@@ -17,9 +17,9 @@ const RATIO: f64 = 1.5;
 /// little more noise in.
 const MARGIN: f64 = 1.5;
 
-/// −2 ln likelihood by which a q̇ that comes late must be likelier than a punctual one, as most are: chance gives it
-/// once in 10⁴.
-const LATE: f64 = 15.0;
+/// −2 ln likelihood by which a q̇ that comes late must be likelier than a punctual one, as most are, and one that reads
+/// another scale than one that is calibrated: chance gives it once in 10⁴.
+const PRICE: f64 = 15.0;
 
 /// Samples from which the cutoff is chosen, at most.
 const LOOKED_AT: usize = 4000;
@@ -72,9 +72,16 @@ impl Motion {
         let both = [true, true];
         let late = Sensors { lag: kinematics.lag, scale: kinematics.scale, ..self.sensors };
         let late = likeliest(&self.pieces, late, both);
-        let punctual = Sensors { lag: 0.0, ..late };
-        let deviance = |sensors: Sensors| deviance(&self.pieces, sensors, both);
-        let sensors = if deviance(punctual) < deviance(late) + LATE { punctual } else { late };
+        let of = |[lag, scale]: [f64; 2]| Sensors { lag, scale, ..late };
+        let priced = |by: f64, values: [f64; 2]| (deviance(&self.pieces, of(values), both) + by * PRICE, values);
+        let all = [
+            priced(0.0, [0.0, 1.0]),
+            priced(1.0, [late.lag, 1.0]),
+            priced(1.0, [0.0, late.scale]),
+            priced(2.0, [late.lag, late.scale]),
+        ];
+        let likeliest = all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        let sensors = likeliest.map_or(late, |(_, values)| of(values));
         let tracks = follow(&self.pieces, sensors, both);
         Motion { kinematics: Some(kinematics), sensors, tracks, ..self }
     }
@@ -174,4 +181,30 @@ fn likeliest(pieces: &[Piece], sensors: Sensors, read: [bool; 2]) -> Sensors {
     let best = cutoffs.map(|cutoff| (at(cutoff), cutoff)).min_by(|a, b| a.0.total_cmp(&b.0));
     let cutoff = best.map_or(top, |(_, cutoff)| cutoff);
     Sensors { cutoff: (MARGIN * cutoff).min(top), ..sensors }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::{Distribution, StandardNormal};
+
+    #[test]
+    fn a_velocity_of_its_own_is_none_of_a_noisy_displacement_however_coarse() {
+        for per_period in [25.0, 60.0, 400.0] {
+            let mut random = ChaCha8Rng::seed_from_u64(1);
+            let mut noise = || -> f64 { StandardNormal.sample(&mut random) };
+            let t: Vec<f64> = (0..4000).map(|k| std::f64::consts::TAU / per_period * f64::from(k)).collect();
+            let q: Vec<f64> = t.iter().map(|t| t.sin() + 0.3 * (2.7 * t).cos() + 1e-3 * noise()).collect();
+            let own: Vec<f64> = t.iter().map(|t| t.cos() - 0.81 * (2.7 * t).sin() + 1e-3 * noise()).collect();
+            let between = |k: usize| (q[k.min(3998) + 1] - q[k.max(1) - 1]) / (t[k.min(3998) + 1] - t[k.max(1) - 1]);
+            let computed: Vec<f64> = (0..4000).map(between).collect();
+            let is_derivative = |qd: Vec<f64>| {
+                let recording = Recording::new("q", t.clone(), Some(q.clone()), Some(qd), None).unwrap();
+                Motion::of(&recording, Hold::Linear).unwrap().kinematics.unwrap().is_derivative
+            };
+            assert_eq!((is_derivative(own), is_derivative(computed)), (false, true), "{per_period} a period");
+        }
+    }
 }
