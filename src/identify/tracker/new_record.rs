@@ -14,10 +14,6 @@ pub(super) const PRIOR_WIDTH: f64 = 3.0;
 /// Share of the variance of a switch's acceleration that a new law's process noise begins with.
 const UNEXPLAINED: f64 = 0.1;
 
-/// An estimate of the inertia that is beyond these times the old one is that of a change too large for its
-/// linearisation.
-const SAME_INERTIA: std::ops::Range<f64> = 0.3..3.0;
-
 impl Tracker {
     /// The record from sample `start` on is another law's: the weak rows begin with it, and no other fit is under way.
     pub(super) fn begin_weak_rows(&mut self, start: u64) {
@@ -35,7 +31,6 @@ impl Tracker {
         let law = &self.monitor.law;
         let noise = Noise { sensor: law.noise.sensor, process: process.max(law.noise.process) };
         self.belief.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
-        keep_inertia(problem, &law.all, &mut self.belief.from);
         self.belief.samples = NOISE_MEMORY;
         let prior = Prior {
             centre: &self.belief.centre,
@@ -99,15 +94,5 @@ impl Tracker {
     pub(super) fn refute_law(&mut self) {
         (self.history.refuted_at, self.schedule.next_guess) = (self.window.end(), 0);
         self.enter(Event::LawRefuted);
-    }
-}
-
-/// A linear estimate of the change may turn the inertia around: it then stays what it was.
-fn keep_inertia(problem: &Problem, old: &[f64], new: &mut [f64]) {
-    if let Some(index) = problem.free_inertia() {
-        let ratio = new[index] / old[problem.inertia];
-        if !SAME_INERTIA.contains(&ratio) {
-            new[index] = old[problem.inertia];
-        }
     }
 }

@@ -7,7 +7,8 @@ use crate::identify::change::Decision;
 use crate::identify::drift::INSTANTS;
 use crate::identify::problem::Problem;
 
-/// A linear estimate of a change that moves a coefficient by more stds of a switch than this is none to begin with.
+/// A linear estimate of a change that moves a coefficient by more stds of a switch than this is none to begin with. The
+/// inertia's std being 0.3 of it, what is left keeps its sign.
 const PLAUSIBLE: f64 = 2.0;
 
 impl Tracker {
