@@ -232,11 +232,6 @@ impl Segment {
         end.saturating_sub(self.start)
     }
 
-    /// What the record of the pass just closed says about `coefficients`, without the prior; until the next one begins.
-    pub fn record(&self) -> &Information {
-        &self.run.filter_run.information
-    }
-
     /// Number of the sample that the last pass ended with.
     pub fn closed_at(&self) -> u64 {
         self.run.closed_at

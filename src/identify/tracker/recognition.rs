@@ -256,21 +256,6 @@ impl Tracker {
         }
     }
 
-    /// Leaves a recognised law that the segment's own estimate contradicts, once its trial is over; returns whether it
-    /// did.
-    pub(super) fn leave(&mut self, setup: Setup) -> bool {
-        let library = &mut self.library;
-        let recognition = self.regime.recognition().filter(|_| !library.trials.is_running());
-        let Some(Recognition { place, .. }) = recognition else { return false };
-        let weighed = library.known.weigh(place, Some(&self.segment.coefficients), self.segment.record());
-        let against_any = (weighed.known - weighed.any) / self.segment.fit.overdispersion;
-        let contradicted = against_any < -CONTRADICTED * false_alarm_level(setup.settings);
-        if contradicted {
-            self.withdraw(setup.problem, self.segment.start);
-        }
-        contradicted
-    }
-
     /// Puts the known laws on trial over a record that no alarm began, as soon as it has two samples.
     pub(super) fn begin_trial(&mut self, setup: Setup) {
         let settings = setup.settings;

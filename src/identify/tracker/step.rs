@@ -144,7 +144,7 @@ impl Tracker {
         if self.is_in_suspense() || !self.segment.refine(setup.problem, setup.settings, &self.window, budget) {
             return;
         }
-        if self.give_up_guess() || self.leave(setup) {
+        if self.give_up_guess() {
             return;
         }
         self.published.missing = self.segment.missing;
