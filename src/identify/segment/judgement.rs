@@ -12,9 +12,6 @@ pub(super) const SETTLED: f64 = 1.0;
 /// Runs in a row that may leave what can be integrated: each is repeated with a thousand times the process noise.
 const LOST: u32 = 6;
 
-/// Sensor variance ÷ that of the law before from which on the record may hold an error that is none of the sensors'.
-const LOUDER: f64 = 1.3;
-
 impl Segment {
     /// Whether the last runs agree: the estimate is at the likelihood's maximum, to within a fraction of its std.
     pub fn settled(&self) -> bool {
@@ -48,12 +45,9 @@ impl Segment {
         self.stands() && self.stated_error() < VALIDATED
     }
 
-    /// Whether nothing speaks against the law: no error that lasts, none that the sensors seem to have since it began,
-    /// no estimate that a longer record contradicted.
+    /// Whether nothing speaks against the law: no error that lasts, no estimate that a longer record contradicted.
     pub fn is_beyond_doubt(&self) -> bool {
-        let known = self.known.weight > 0.0;
-        let louder = self.noise.sensor.iter().zip(self.known.noise).any(|(now, before)| *now > LOUDER * before);
-        self.fit.explains && self.fit.overdispersion == 1.0 && !(known && louder) && !self.constancy.broken
+        self.fit.explains && self.fit.overdispersion == 1.0 && !self.constancy.broken
     }
 
     /// Whether both fits found one law in the same record.
