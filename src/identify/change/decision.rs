@@ -19,7 +19,7 @@ const UNUSUAL: f64 = 5.0;
 /// be its own error, which the evidence takes for white.
 const UNPROVEN: f64 = 10.0;
 
-/// Samples for which a suspicion keeps the law in use from being renewed: what comes may belong to another law.
+/// Samples for which unusual evidence keeps the law in use from being renewed: what comes may belong to another law.
 pub const SUSPENSE: u64 = 1000;
 
 /// What a law in use has to its credit when a switch is weighed against it.

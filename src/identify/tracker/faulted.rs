@@ -170,7 +170,7 @@ impl Tracker {
         self.monitor.empirical_null.clear();
         self.monitor.unusual_since = None;
         self.intake.scatter.clear();
-        if self.regime.suspected_since().is_some() {
+        if self.regime.is_suspected() {
             self.enter(Event::SuspicionCleared);
         }
     }

@@ -31,8 +31,6 @@ pub(super) enum Regime {
         law: Validated,
         /// Which known law it is, where it was recognised.
         recognition: Option<Recognition>,
-        /// Number of the sample from which on the law in use is not renewed.
-        since: u64,
     },
     /// The law before does not hold any more; that of the record is not validated yet.
     ReIdentifying {
@@ -117,10 +115,7 @@ pub(super) enum Event {
         after_another: bool,
     },
     /// The log Bayes factor of a change passes half the decision threshold.
-    SuspicionRaised {
-        /// Number of the sample from which on the law in use is not renewed.
-        since: u64,
-    },
+    SuspicionRaised,
     /// It is below half the decision threshold again.
     SuspicionCleared,
     /// It passes the decision threshold.
@@ -163,12 +158,11 @@ impl Regime {
             (Recognised { law, recognition }, RecognitionWeighed(mixture)) => {
                 Recognised { law, recognition: Recognition { mixture, ..recognition } }
             }
-            (SwitchSuspected { law, recognition: Some(recognition), since }, RecognitionConfirmed) => {
-                let recognition = Some(Recognition { confirmed: true, ..recognition });
-                SwitchSuspected { law, recognition, since }
+            (SwitchSuspected { law, recognition: Some(recognition) }, RecognitionConfirmed) => {
+                SwitchSuspected { law, recognition: Some(Recognition { confirmed: true, ..recognition }) }
             }
-            (SwitchSuspected { law, recognition: Some(recognition), since }, RecognitionWeighed(mixture)) => {
-                SwitchSuspected { law, recognition: Some(Recognition { mixture, ..recognition }), since }
+            (SwitchSuspected { law, recognition: Some(recognition) }, RecognitionWeighed(mixture)) => {
+                SwitchSuspected { law, recognition: Some(Recognition { mixture, ..recognition }) }
             }
             (
                 Recognised { .. } | SwitchSuspected { recognition: Some(_), .. },
@@ -179,12 +173,12 @@ impl Regime {
                 RecognitionRefuted { after_another: false },
             ) => Acquiring,
 
-            (Tracking { law }, SuspicionRaised { since }) => SwitchSuspected { law, recognition: None, since },
-            (Recognised { law, recognition }, SuspicionRaised { since }) => {
-                SwitchSuspected { law, recognition: Some(recognition), since }
+            (Tracking { law }, SuspicionRaised) => SwitchSuspected { law, recognition: None },
+            (Recognised { law, recognition }, SuspicionRaised) => {
+                SwitchSuspected { law, recognition: Some(recognition) }
             }
-            (SwitchSuspected { law, recognition: None, .. }, SuspicionCleared) => Tracking { law },
-            (SwitchSuspected { law, recognition: Some(recognition), .. }, SuspicionCleared) => {
+            (SwitchSuspected { law, recognition: None }, SuspicionCleared) => Tracking { law },
+            (SwitchSuspected { law, recognition: Some(recognition) }, SuspicionCleared) => {
                 Recognised { law, recognition }
             }
 
@@ -274,17 +268,9 @@ impl Regime {
         self.recognition().is_some_and(|recognition| !recognition.confirmed)
     }
 
-    /// Whether a validated constant law is in use that nothing speaks against.
-    pub(super) fn is_unsuspected(&self) -> bool {
-        matches!(self, Regime::Tracking { .. } | Regime::Recognised { .. })
-    }
-
-    /// The sample from which on the law in use is not renewed, while a switch is suspected.
-    pub(super) fn suspected_since(&self) -> Option<u64> {
-        match self {
-            Regime::SwitchSuspected { since, .. } => Some(*since),
-            _ => None,
-        }
+    /// Whether a switch is suspected.
+    pub(super) fn is_suspected(&self) -> bool {
+        matches!(self, Regime::SwitchSuspected { .. })
     }
 
     /// The time after an alarm in which the bank of hypotheses goes on.
@@ -329,8 +315,8 @@ mod tests {
             Regime::Acquiring,
             Regime::Tracking { law: LAW },
             Regime::Recognised { law: LAW, recognition: recognition() },
-            Regime::SwitchSuspected { law: LAW, recognition: None, since: 40 },
-            Regime::SwitchSuspected { law: LAW, recognition: Some(recognition()), since: 40 },
+            Regime::SwitchSuspected { law: LAW, recognition: None },
+            Regime::SwitchSuspected { law: LAW, recognition: Some(recognition()) },
             Regime::ReIdentifying { post_alarm: Some(PostAlarm { until: 50, left: Some(3) }) },
             drifting(true, Some(2.0)),
         ]
@@ -344,7 +330,7 @@ mod tests {
             Event::RecognitionWeighed(Mixture::of(1.0, None)),
             Event::RecognitionRefuted { after_another: true },
             Event::RecognitionRefuted { after_another: false },
-            Event::SuspicionRaised { since: 40 },
+            Event::SuspicionRaised,
             Event::SuspicionCleared,
             SWITCH,
             Event::PostAlarmEnded,
@@ -390,7 +376,7 @@ mod tests {
         let later = Validated { number: 9, since: 7.0 };
         let tracking = Regime::Acquiring.after(Event::LawValidated(LAW));
         let again = tracking
-            .after(Event::SuspicionRaised { since: 40 })
+            .after(Event::SuspicionRaised)
             .after(Event::LawValidated(later))
             .after(Event::SuspicionCleared)
             .after(Event::LawValidated(later));
@@ -400,9 +386,8 @@ mod tests {
 
     #[test]
     fn a_recognised_law_stays_recognised_under_suspicion() {
-        let suspected =
-            Regime::Recognised { law: LAW, recognition: recognition() }.after(Event::SuspicionRaised { since: 40 });
-        assert!(suspected.is_unconfirmed() && suspected.suspected_since() == Some(40));
+        let suspected = Regime::Recognised { law: LAW, recognition: recognition() }.after(Event::SuspicionRaised);
+        assert!(suspected.is_unconfirmed() && suspected.is_suspected());
         let confirmed = suspected.after(Event::RecognitionConfirmed).after(Event::SuspicionCleared);
         let recognition = Recognition { confirmed: true, ..recognition() };
         assert_eq!(confirmed, Regime::Recognised { law: LAW, recognition });

@@ -115,8 +115,6 @@ pub(super) struct Monitor {
     pub(super) prediction: Prediction,
     /// Since which sample the evidence of a switch is more than chance brings now and then.
     pub(super) unusual_since: Option<u64>,
-    /// At which sample a switch was first suspected since the law in use was renewed.
-    pub(super) suspected_at: Option<u64>,
     /// Every free term: what a switch may move.
     pub(super) every_term: Vec<bool>,
 }
@@ -188,7 +186,6 @@ impl Tracker {
                 empirical_null: EmpiricalNull::default(),
                 prediction: Prediction::new(settings),
                 unusual_since: None,
-                suspected_at: None,
                 every_term: vec![true; n],
             },
             belief: ChangeBelief {

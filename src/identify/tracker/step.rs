@@ -128,20 +128,16 @@ impl Tracker {
         }
     }
 
-    /// Whether a suspicion is so young that the law in use must not be renewed.
-    fn is_in_suspense(&self) -> bool {
-        // what comes after an outage may have an offset, and no law must be fitted to that
-        if self.intake.after_outage.is_open() && self.regime.law().is_some() {
-            return true;
-        }
-        self.regime.suspected_since().is_some_and(|since| self.window.end() < since + SUSPENSE)
+    /// Whether what comes after an outage may have an offset: no law must be fitted to that.
+    fn may_be_off(&self) -> bool {
+        self.intake.after_outage.is_open() && self.regime.law().is_some()
     }
 
     fn refine(&mut self, setup: Setup) {
         let young = !self.regime.is_valid() || self.record_length() < YOUNG;
         let converging = self.segment.fit.explains && !self.segment.settled();
         let budget = BUDGET[usize::from(young || converging)];
-        if self.is_in_suspense() || !self.segment.refine(setup.problem, setup.settings, &self.window, budget) {
+        if self.may_be_off() || !self.segment.refine(setup.problem, setup.settings, &self.window, budget) {
             return;
         }
         if self.give_up_guess() {
@@ -194,7 +190,6 @@ impl Tracker {
     /// they are carried over only between laws as near to each other as those that have stood their stability check.
     fn monitor_new_law(&mut self, problem: &Problem, proven: bool) {
         let was_running = self.monitor.law.running;
-        self.monitor.suspected_at = None;
         match was_running {
             true => self.carry_hypotheses(problem, proven),
             false => self.end_post_alarm(),

@@ -35,8 +35,8 @@ impl Tracker {
                 None => self.switch(setup.problem, suspect, threshold),
             }
         } else if suspect.evidence > 0.5 * threshold {
-            self.suspect();
-        } else if self.regime.suspected_since().is_some() {
+            self.enter(Event::SuspicionRaised);
+        } else if self.regime.is_suspected() {
             self.enter(Event::SuspicionCleared);
         }
     }
@@ -53,13 +53,6 @@ impl Tracker {
             timing.slope.copy_from_slice(&self.monitor.law.lag_slope);
         }
         is_lag
-    }
-
-    fn suspect(&mut self) {
-        if self.regime.is_unsuspected() {
-            let since = *self.monitor.suspected_at.get_or_insert(self.window.end());
-            self.enter(Event::SuspicionRaised { since });
-        }
     }
 
     /// What the law in use has to its credit.
