@@ -14,9 +14,6 @@ const WITHIN: f64 = 5.0;
 /// Log-probability that a sensor comes back with an offset: one outage in a hundred.
 const COMES_BACK_OFF: f64 = -4.6;
 
-/// Time after the outage at which an offset is first looked for without an alarm, s; it doubles from then on.
-const FIRST_LOOK: f64 = 0.25;
-
 /// The offset of one channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Offset {
@@ -34,7 +31,7 @@ pub struct AfterOutage {
     offsets: [Offset; 2],
     /// Time since the outage, s; `None` where there was none of late.
     since: Option<f64>,
-    /// Time since the outage from which an offset, or what is left of it, is taken off, s.
+    /// Time since the outage from which what is left of an offset that was found is taken off, s.
     due: f64,
     /// What has been taken off since the outage, and of which channel.
     taken: Option<(Channel, f64)>,
@@ -94,7 +91,7 @@ impl AfterOutage {
     /// An outage ends with this sample; `size` is what an offset may be by channel, std.
     pub fn begin(&mut self, size: [f64; 2], map: &IntervalMap, innovations: &[Option<Innovation>; 2]) {
         self.offsets = size.map(|size| Offset { variance: size * size, ..Offset::default() });
-        (self.since, self.due, self.taken) = (Some(0.0), FIRST_LOOK, None);
+        (self.since, self.due, self.taken) = (Some(0.0), f64::INFINITY, None);
         if innovations.iter().all(|innovation| innovation.is_none()) {
             // the motion was not followed over the outage: its state is what was read
             for (channel, offset) in self.offsets.iter_mut().enumerate() {
@@ -127,14 +124,9 @@ impl AfterOutage {
         }
     }
 
-    /// Whether it is time to look for an offset, or for what is left of one.
+    /// Whether it is time to take off what is left of an offset.
     pub fn is_due(&self) -> bool {
         self.since.is_some_and(|since| since >= self.due)
-    }
-
-    /// Looks again when twice the time has passed.
-    pub fn look_later(&mut self) {
-        self.due *= 2.0;
     }
 
     /// Whether an offset has been taken off since the outage.

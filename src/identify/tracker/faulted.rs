@@ -57,17 +57,14 @@ impl Tracker {
             }
         }
         if intake.after_outage.is_due() {
-            self.look_for_offset();
+            self.take_off_the_rest();
         }
     }
 
-    /// An offset that stands out is taken off before anything alarms, and what is left of one that was found.
-    fn look_for_offset(&mut self) {
-        let Some(returned) = self.intake.after_outage.likeliest() else { return };
-        let stands_out = returned.evidence > DECISIVE && returned.against_other > DECISIVE;
-        match stands_out || self.intake.after_outage.is_found() {
-            true => self.correct_offset(&returned),
-            false => self.intake.after_outage.look_later(),
+    /// What is left of an offset that was found is taken off.
+    fn take_off_the_rest(&mut self) {
+        if let Some(returned) = self.intake.after_outage.likeliest() {
+            self.correct_offset(&returned);
         }
     }
 
