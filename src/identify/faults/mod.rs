@@ -14,7 +14,6 @@
 //! - `weighing`: all of them on the same readings;
 //! - `quarantine`: readings held, and what is let through;
 //! - `excitation`: a reading of F that leaves its course and returns;
-//! - `scatter`: a burst too small for any one reading to be unexpected;
 //! - `after_outage`: whether a sensor came back from an outage with an offset;
 //! - `clock`: time stamps that are none.
 
@@ -25,7 +24,6 @@ mod hypothesis;
 mod price;
 mod quarantine;
 mod repetition;
-mod scatter;
 mod weighing;
 
 pub use after_outage::{AfterOutage, Returned};
@@ -34,4 +32,3 @@ pub use excitation::ExcitationGate;
 pub use hypothesis::Expected;
 pub use quarantine::Quarantine;
 pub use repetition::Repetition;
-pub use scatter::Scatter;

@@ -10,9 +10,6 @@ const SCALE: f64 = 3.0;
 /// A reading this many std off is as far as any.
 const FAR: f64 = 1e100;
 
-/// Readings that a burst has had when it is found in the record.
-const SOME: f64 = 10.0;
-
 /// Log-density of a Gaussian residual.
 pub fn working(residual: f64, variance: f64) -> f64 {
     -0.5 * (residual * residual / variance + (TAU * variance).ln())
@@ -43,11 +40,6 @@ pub struct Burst {
 }
 
 impl Burst {
-    /// A burst that has had some readings already.
-    pub fn going_on() -> Burst {
-        Burst { probability: 1.0, age: SOME, sum: SOME * SCALE }
-    }
-
     /// Takes a reading by its log-density under a working sensor and its residual, in a channel of that std; `start` is
     /// the probability that a burst begins with a reading. One that has lasted for n readings ends with the next at 1 ÷
     /// (n + 2). Returns the reading's log-density.

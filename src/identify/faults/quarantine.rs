@@ -1,7 +1,6 @@
 //! Readings held until what happened has a name, and those that are let through.
 
 use super::hypothesis::{Expected, Kind, Value};
-use super::price::Burst;
 use super::repetition::Repetition;
 use super::weighing::{Verdict, Weighing};
 use crate::estimation::{Channel, Filter, OUTLYING};
@@ -70,8 +69,6 @@ pub struct Quarantine {
     squares: [f64; 2],
     /// Samples that are let through because the law was named.
     decided: u32,
-    /// Bursts that the record showed before any reading was unexpected.
-    found: Option<[Burst; 2]>,
     /// What is taken off the readings of q and q̇.
     offset: [f64; 2],
     sensors: [SensorState; 3],
@@ -105,7 +102,6 @@ impl Quarantine {
             samples: 0.0,
             squares: [0.0; 2],
             decided: 0,
-            found: None,
             offset: [0.0; 2],
             sensors: [SensorState::Ok; 3],
         }
@@ -182,11 +178,6 @@ impl Quarantine {
         self.count > 0 && self.weighing.law_against_fault() > 0.0
     }
 
-    /// A burst has been found in readings that were let through: it may go on.
-    pub fn go_on_in(&mut self, bursts: [Burst; 2]) {
-        self.found = Some(bursts);
-    }
-
     /// An offset of the channel has been found in readings that were let through.
     pub fn take_off(&mut self, channel: Channel, offset: f64) {
         self.offset[channel as usize] += offset;
@@ -243,11 +234,6 @@ impl Quarantine {
     }
 
     fn weigh(&mut self, arrival: &Arrival, law: &Expected, filter: &Filter) {
-        if let Some(bursts) = self.found.take() {
-            self.weighing.begin(filter, law, arrival.dt, OVER, [0.0; 2]);
-            self.weighing.begin_bursts(bursts);
-            self.stance = Stance::Named(0);
-        }
         self.calm_down();
         let calm = self.stance == Stance::Calm;
         // while readings wait the law in use is behind them
@@ -421,7 +407,7 @@ impl Quarantine {
         for number in 0..self.count {
             self.let_through(self.held[number]);
         }
-        (self.count, self.stance, self.decided, self.found) = (0, Stance::Calm, 0, None);
+        (self.count, self.stance, self.decided) = (0, Stance::Calm, 0);
         self.weighing.forget_held();
     }
 

@@ -41,7 +41,6 @@ impl Tracker {
     /// Takes what the law in use makes of a sample, number `number`, for the hypotheses of faults that no single
     /// reading shows.
     pub(super) fn weigh_faults(&mut self, number: u64, innovations: &[Option<Innovation>; 2]) {
-        self.intake.scatter.take(innovations);
         let Tracker { intake, window, monitor, .. } = self;
         let law = &monitor.law;
         let outage = window.ends_outage(number);
@@ -72,11 +71,6 @@ impl Tracker {
     pub(super) fn is_fault(&mut self, suspect: &Suspect, threshold: f64) -> bool {
         if !self.monitor.law.explains {
             return false;
-        }
-        if self.intake.scatter.evidence() > suspect.evidence + TWENTY_TO_ONE {
-            self.intake.quarantine.go_on_in(self.intake.scatter.bursts());
-            self.clear_suspicion();
-            return true;
         }
         if self.is_excitation_stuck() {
             self.lose_excitation();
@@ -166,7 +160,6 @@ impl Tracker {
         self.monitor.bank.clear();
         self.monitor.empirical_null.clear();
         self.monitor.unusual_since = None;
-        self.intake.scatter.clear();
         if self.regime.is_suspected() {
             self.enter(Event::SuspicionCleared);
         }

@@ -7,7 +7,7 @@ use crate::estimation::DifferenceNoise;
 use crate::evidence::{Bank, SWITCH_SIZE};
 use crate::identify::change::{EmpiricalNull, LawInUse, Prediction};
 use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
-use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition, Scatter};
+use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition};
 use crate::identify::functional::WeakForm;
 use crate::identify::problem::Problem;
 use crate::identify::segment::{MotionScales, Segment, WeakStart};
@@ -72,7 +72,6 @@ pub struct Tracker {
 pub(super) struct Intake {
     pub(super) excitation: ExcitationGate,
     pub(super) quarantine: Quarantine,
-    pub(super) scatter: Scatter,
     pub(super) after_outage: AfterOutage,
     /// Whether an alarm waits for the decision between another law and an offset.
     pub(super) undecided: bool,
@@ -166,7 +165,6 @@ impl Tracker {
             intake: Intake {
                 excitation: ExcitationGate::default(),
                 quarantine: Quarantine::new(),
-                scatter: Scatter::default(),
                 after_outage: AfterOutage::default(),
                 undecided: false,
                 force: Repetition::default(),
