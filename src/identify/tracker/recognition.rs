@@ -7,6 +7,7 @@
 use super::regime::{Event, PostAlarm, Recognition, Validated};
 use super::sighting::Sight;
 use super::state::{Fitting, Setup, Tracker};
+use crate::estimation::TWENTY_TO_ONE;
 use crate::identify::change::false_alarm_level;
 use crate::identify::library::{Mixture, ROOM, SavedLaw, SavedLaws, SavedLawsError, Verdict, Weighed};
 use crate::identify::problem::Problem;
@@ -20,14 +21,8 @@ const AT_ALARM: f64 = 0.05;
 /// The same on trial, where the state is known from the new record alone.
 const ON_TRIAL: f64 = 0.25;
 
-/// Evidence against the next best known law, in false-alarm levels.
-const AMONG_KNOWN: f64 = 0.15;
-
 /// The bank goes on after an alarm for this many times as long as it had watched the switch.
 const POST_ALARM: u64 = 3;
-
-/// Evidence of any other law at which a recognised one is left, in false-alarm levels.
-const CONTRADICTED: f64 = 0.15;
 
 /// Samples of known laws' trials in a step, all together: the budget of a law that has yet to converge.
 pub(super) const TRIAL_BUDGET: usize = 40;
@@ -86,7 +81,7 @@ impl Tracker {
         }
         let (known, any, place) = best;
         let level = false_alarm_level(setup.settings);
-        let place = place.filter(|_| known - any > AT_ALARM * level && known - next.0 > AMONG_KNOWN * level)?;
+        let place = place.filter(|_| known - any > AT_ALARM * level && known - next.0 > TWENTY_TO_ONE)?;
         Some(Sight { place, mixture: Mixture::of(known - any, next.2.map(|rival| (rival, known - next.0))) })
     }
 
@@ -109,11 +104,11 @@ impl Tracker {
     fn heed(&mut self, setup: Setup, verdict: Option<Verdict>) {
         let level = false_alarm_level(setup.settings);
         let stands_out =
-            |verdict: &Verdict| verdict.against_any > ON_TRIAL * level && verdict.against_known() > AMONG_KNOWN * level;
+            |verdict: &Verdict| verdict.against_any > ON_TRIAL * level && verdict.against_known() > TWENTY_TO_ONE;
         let found = verdict.filter(stands_out).map(Sight::from);
         match (self.regime.recognition().map(|recognition| recognition.place), found) {
             (Some(place), Some(found)) if place == found.place => self.enter(Event::RecognitionConfirmed),
-            (Some(place), _) if self.is_contradicted(place, verdict.is_some(), level) => {
+            (Some(place), _) if self.is_contradicted(place, verdict.is_some()) => {
                 self.withdraw(setup.problem, self.segment.start);
                 self.library.in_sight = found;
             }
@@ -128,8 +123,8 @@ impl Tracker {
     }
 
     /// Whether the record rules the recognised law out, or what has just been weighed speaks for another one.
-    fn is_contradicted(&self, place: usize, weighed: bool, level: f64) -> bool {
-        let against = |verdict: Verdict| verdict.against_any.min(verdict.against_known()) < -CONTRADICTED * level;
+    fn is_contradicted(&self, place: usize, weighed: bool) -> bool {
+        let against = |verdict: Verdict| verdict.against_any.min(verdict.against_known()) < -TWENTY_TO_ONE;
         let Tracker { library, .. } = self;
         let verdict = library.trials.on(place, &library.known);
         library.trials.is_running() && verdict.is_none_or(|verdict| weighed && against(verdict))
