@@ -201,7 +201,7 @@ impl Loop {
     }
 
     /// The internal state there: z, and beyond it the play.
-    fn state(&self, Place { direction, way }: Place) -> f64 {
+    pub(super) fn state(&self, Place { direction, way }: Place) -> f64 {
         let ratio = self.ratio(way);
         let play = (way + self.gap).clamp(-self.gap, self.gap);
         self.limit * direction * (ratio + play)

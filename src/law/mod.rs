@@ -60,7 +60,7 @@ pub use motion::{Motion, State};
 pub use named_laws::NamedLaw;
 pub use own::Own;
 pub(crate) use quadrature::GAUSS;
-pub use series::{Trajectory, term_series};
+pub use series::{Trajectory, forgets, term_series};
 pub(crate) use term::raised;
 pub use term::{Monomial, Term, TermError};
 pub use text::equation;

@@ -4,10 +4,13 @@ use super::effect::Effect;
 use super::expression::Expression;
 use super::history::Samples;
 use super::hold::Hold;
-use super::hysteresis_loop::Loop;
+use super::hysteresis_loop::{Loop, Place};
 use super::memory::{LARGEST, lagged, parts};
 use super::motion::State;
 use super::term::Term;
+
+/// Share of what a loop can store that no reading would show.
+const FORGOTTEN: f64 = 0.01;
 
 /// A motion at instants, measured or estimated; all slices are of one length.
 #[derive(Clone, Copy, Debug)]
@@ -123,16 +126,32 @@ fn followed(t: &[f64], u: &[f64], first: f64, time: f64) -> Vec<f64> {
     u.first().map(|_| first).into_iter().chain(others).collect()
 }
 
+/// From which sample on the series of a term is the same whatever was stored in a loop when the motion began: two that
+/// began with nearly the most either way are then alike within [`FORGOTTEN`]. None where they never are; 0 for a term
+/// that is no loop.
+pub fn forgets(term: Term, trajectory: &Trajectory) -> Option<usize> {
+    let shape = term.effect().and_then(|effect| Some((Loop::of(effect)?, effect.largest_state()?)));
+    let Some((shape, most)) = shape.filter(|_| !trajectory.t.is_empty()) else { return Some(0) };
+    let nearly = (1.0 - FORGOTTEN) * most;
+    let [low, high] = [-nearly, nearly].map(|state| places(&shape, trajectory, state));
+    let apart = |(low, high): (&Place, &Place)| shape.state(*high) - shape.state(*low) > FORGOTTEN * most;
+    let last = low.iter().zip(&high).rposition(apart);
+    last.map_or(Some(0), |last| Some(last + 1).filter(|first| *first < low.len()))
+}
+
 /// The feature of a loop that begins with nothing stored.
 fn looped(shape: &Loop, trajectory: &Trajectory) -> Vec<f64> {
-    let mut place = shape.place(0.0, trajectory.qd[0]);
-    let mut series = vec![0.0];
+    places(shape, trajectory, 0.0).into_iter().map(|place| shape.feature(place)).collect()
+}
+
+/// Where on a loop a motion is that begins with this stored in it.
+fn places(shape: &Loop, trajectory: &Trajectory, state: f64) -> Vec<Place> {
+    let mut places = vec![shape.place(state, trajectory.qd[0])];
     for k in 0..trajectory.t.len() - 1 {
         let states = [trajectory.state(k), trajectory.state(k + 1)];
-        place = shape.followed(place, states, |share| trajectory.between(k, share).q);
-        series.push(shape.feature(place));
+        places.push(shape.followed(places[k], states, |share| trajectory.between(k, share).q));
     }
-    series
+    places
 }
 
 /// The internal states at sample `k + 1`.
@@ -260,5 +279,20 @@ mod tests {
         assert!(term_series(expression.term(3), &[], &trajectory)[0].is_nan());
         let empty = Trajectory { t: &[], q: &[], qd: &[], excitation: &[], hold: Hold::Zero };
         assert!(term_series(Term::Effect(effect("hysteresis", &[0.1, 1.0, 1.0])), &[], &empty).is_empty());
+    }
+
+    #[test]
+    fn a_loop_forgets_what_it_had_stored_once_it_has_slid_and_never_where_it_does_not() {
+        let t: Vec<f64> = (0..4000).map(|k| 0.01 * f64::from(k)).collect();
+        let qd: Vec<f64> = t.iter().map(|t| t.cos()).collect();
+        let q: Vec<f64> = t.iter().map(|t| t.sin()).collect();
+        let trajectory = Trajectory { t: &t, q: &q, qd: &qd, excitation: &t, hold: Hold::Linear };
+        let of = |id: &str, inner: &[f64]| forgets(Term::Effect(effect(id, inner)), &trajectory);
+        let soon = of("presliding_friction", &[0.05]).unwrap();
+        assert!((10..100).contains(&soon), "{soon}");
+        let later = of("friction_with_backlash", &[0.05, 0.4]).unwrap();
+        assert!(later > soon && later < 400, "{later}");
+        assert_eq!(of("friction_with_backlash", &[0.05, 1.5]), None, "a play wider than the motion");
+        assert_eq!(forgets(Term::Effect(Effect::CoulombFriction), &trajectory), Some(0));
     }
 }

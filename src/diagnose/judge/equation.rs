@@ -42,6 +42,9 @@ pub(in crate::diagnose) struct Equation {
     pub(in crate::diagnose) left: Vec<Column>,
     /// What each of them is to the target.
     roles: Vec<Role>,
+    /// By window length, equations that are none: they hold what a loop had stored before the record began, which nobody
+    /// knows. All of their columns are 0.
+    pub(super) void: [Vec<usize>; COUNT],
 }
 
 /// What a column is to the target.
@@ -81,7 +84,7 @@ impl Equation {
             });
             begun.into_iter().for_each(|(place, column)| equation.left[place] = column);
         }
-        equation
+        equation.voided()
     }
 
     /// The same on a record before which nothing moved.
@@ -113,8 +116,20 @@ impl Equation {
         let functions = [0, 1, 2].map(|which| record.windows[which].functions);
         let spread = [0, 1, 2].map(|which| spread(&right[which], functions[which]));
         let tells = [0, 1, 2].map(|which| record.windows[which].length >= record.sample_time);
+        let void = record.remembering(terms, timing);
         let terms = terms.to_vec();
-        Equation { terms, target, timing, right, spread, functions, tells, takes_delay, left, roles }
+        Equation { terms, target, timing, right, spread, functions, tells, takes_delay, left, roles, void }.voided()
+    }
+
+    /// With nothing in the equations that are none.
+    fn voided(mut self) -> Equation {
+        for which in 0..COUNT {
+            for row in &self.void[which] {
+                self.right[which][*row] = 0.0;
+                self.left.iter_mut().for_each(|column| column[which][*row] = 0.0);
+            }
+        }
+        self
     }
 
     /// Which column a term has; none where it is the target or stands in the excitation's.
@@ -138,19 +153,19 @@ impl Equation {
             equation.roles.insert(place, role(record, term, self.target));
         }
         equation.terms.push(term);
-        equation
+        equation.voided()
     }
 
     /// The same with the inertia term of another record as its target.
     pub(in crate::diagnose) fn for_motion(&self, record: &Record) -> Equation {
         let right = record.measured_inertia();
         let spread = [0, 1, 2].map(|which| spread(&right[which], self.functions[which]));
-        Equation { right, spread, ..self.clone() }
+        Equation { right, spread, ..self.clone() }.voided()
     }
 
     /// The same regressors for other rows, such as noise, that none of them holds.
     pub(in crate::diagnose) fn for_rows(&self, right: Column) -> Equation {
-        Equation { right, roles: vec![Role::Explains; self.left.len()], ..self.clone() }
+        Equation { right, roles: vec![Role::Explains; self.left.len()], ..self.clone() }.voided()
     }
 
     /// The same without the term of that position.

@@ -35,6 +35,8 @@ pub(in crate::diagnose) struct HeldOut {
     pub(in crate::diagnose) residuals: Column,
     /// RMS residual ÷ std of the target, by window length; NaN where nothing could be told.
     pub(in crate::diagnose) errors: [f64; COUNT],
+    /// By window length, equations that the law's loops leave void.
+    void: [Vec<usize>; COUNT],
 }
 
 impl Folds {
@@ -111,14 +113,16 @@ impl Folds {
 }
 
 impl HeldOut {
-    fn new(residuals: Column, equation: &Equation) -> HeldOut {
+    fn new(mut residuals: Column, equation: &Equation) -> HeldOut {
+        for (left, void) in residuals.iter_mut().zip(&equation.void) {
+            void.iter().for_each(|row| left[*row] = f64::NAN);
+        }
         let errors = [0, 1, 2].map(|which| {
             let told = || residuals[which].iter().filter(|value| value.is_finite());
-            let count = told().count();
-            let mean = told().map(|value| value * value).sum::<f64>() / count as f64;
-            if count < FEWEST || !equation.tells[which] { f64::NAN } else { mean.sqrt() / equation.spread[which] }
+            let tells = told().count() >= FEWEST && equation.tells[which];
+            if tells { mean_square(told()).sqrt() / equation.spread[which] } else { f64::NAN }
         });
-        HeldOut { residuals, errors }
+        HeldOut { residuals, errors, void: equation.void.clone() }
     }
 
     /// Errors of a law whose numbers are held, over all windows.
@@ -133,21 +137,39 @@ impl HeldOut {
 
     /// The same with errors no lower than a floor.
     pub(in crate::diagnose) fn no_lower(&self, floor: &[f64; COUNT]) -> HeldOut {
-        let errors = std::array::from_fn(|which| self.errors[which].max(floor[which].min(f64::INFINITY)));
-        HeldOut { residuals: self.residuals.clone(), errors }
+        let raised = |error: f64, floor: f64| if error.is_nan() { error } else { error.max(floor) };
+        let errors = std::array::from_fn(|which| raised(self.errors[which], floor[which]));
+        HeldOut { errors, ..self.clone() }
+    }
+
+    /// Own ÷ another's error over the equations that both tell; NaN where one tells none.
+    fn ratio(&self, before: &HeldOut, which: usize) -> f64 {
+        let ratio = self.errors[which] / before.errors[which];
+        if self.void[which] == before.void[which] {
+            return ratio;
+        }
+        let share = |one: &HeldOut, other: &HeldOut| {
+            let told = || one.residuals[which].iter().zip(&other.residuals[which]).filter(|(own, _)| own.is_finite());
+            let both = told().filter(|(_, other)| other.is_finite());
+            mean_square(both.map(|(own, _)| own)) / mean_square(told().map(|(own, _)| own))
+        };
+        ratio * (share(self, before) / share(before, self)).sqrt()
     }
 
     /// S = Σ ln(own error ÷ another's) over the window lengths that tell both; 0 where none does.
     pub(in crate::diagnose) fn score(&self, before: &HeldOut) -> f64 {
-        let ratios = self.errors.iter().zip(before.errors).map(|(after, before)| (after / before).ln());
-        ratios.filter(|ratio| !ratio.is_nan()).sum()
+        self.ratios(before).into_iter().map(f64::ln).sum()
     }
 
     /// Ratios own ÷ another's error, of the window lengths that tell both.
     pub(in crate::diagnose) fn ratios(&self, before: &HeldOut) -> Vec<f64> {
-        let ratios = self.errors.iter().zip(before.errors).map(|(after, before)| after / before);
-        ratios.filter(|ratio| !ratio.is_nan()).collect()
+        (0..COUNT).map(|which| self.ratio(before, which)).filter(|ratio| !ratio.is_nan()).collect()
     }
+}
+
+fn mean_square<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
+    let [sum, count] = values.fold([0.0; 2], |[sum, count], value| [sum + value * value, count + 1.0]);
+    sum / count
 }
 
 /// Sums that every candidate beside a law shares, so that one more column costs little: the weights are those of the

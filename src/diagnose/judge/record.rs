@@ -3,8 +3,11 @@
 use super::windows::{self, COUNT, Cells, Windows};
 use crate::diagnose::motion::{self, Impulse, Motion, Nodes, rounding, sensor_noise};
 use crate::identify::Recording;
-use crate::law::{Effect, Expression, Hold, Term, term_series};
+use crate::law::{Effect, Expression, Hold, Term, forgets, term_series};
 use std::cell::{OnceCell, RefCell};
+
+/// Parts of a piece in the first of which a loop is to forget what it had stored.
+const FOLDS: usize = 5;
 
 /// What a term is in every equation, by window length.
 pub(in crate::diagnose) type Column = [Vec<f64>; COUNT];
@@ -200,6 +203,22 @@ impl Record {
 
     fn integrated(&self, term: Term, timing: Timing) -> Column {
         self.column(0, |piece| self.integrals(&piece.2, self.series(term, piece, timing)), 1.0)
+    }
+
+    /// The equations that hold what a loop had stored when its piece began, by window length. What a piece does not make
+    /// it forget in its first fifth belongs to the law.
+    pub(super) fn remembering(&self, terms: &[Term], timing: Timing) -> [Vec<usize>; COUNT] {
+        let own = |piece: &(usize, usize, Nodes)| {
+            let nodes = &piece.2;
+            let loops = terms.iter().filter(|term| term.effect().is_some_and(|effect| effect.memory_length() > 0));
+            let excitation = if loops.clone().next().is_some() { self.excitation(piece, timing) } else { Vec::new() };
+            let cells =
+                loops.map(|term| forgets(*term, &nodes.trajectory(&excitation)).map(|node| nodes.cell_of(node)));
+            let soon = cells.flatten().filter(|cell| *cell <= nodes.cells() / FOLDS);
+            soon.max().unwrap_or(0)
+        };
+        let cells: Vec<usize> = self.nodes.iter().map(own).collect();
+        [0, 1, 2].map(|which| self.windows[which].before(&cells))
     }
 
     /// Number of pieces.

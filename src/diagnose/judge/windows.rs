@@ -76,6 +76,12 @@ impl Windows {
         self.places.len() * self.functions
     }
 
+    /// The equations whose windows begin before so many cells of their pieces.
+    pub(super) fn before(&self, cells: &[usize]) -> Vec<usize> {
+        let windows = (0..self.places.len()).filter(|window| self.places[*window].1 < cells[self.places[*window].0]);
+        windows.flat_map(|window| window * self.functions..(window + 1) * self.functions).collect()
+    }
+
     /// Where an equation's window has its middle, s.
     pub(super) fn centre(&self, row: usize) -> f64 {
         self.centres[row / self.functions]

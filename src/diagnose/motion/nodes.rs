@@ -64,6 +64,11 @@ impl Nodes {
         self.t.len() / self.per_cell
     }
 
+    /// The first cell that begins no earlier than a node.
+    pub(in crate::diagnose) fn cell_of(&self, node: usize) -> usize {
+        node.div_ceil(self.per_cell)
+    }
+
     /// Time, s, displacement and velocity at every node.
     pub(in crate::diagnose) fn states(&self) -> impl Iterator<Item = (f64, f64, f64)> {
         self.t.iter().zip(&self.q).zip(&self.qd).map(|((t, q), qd)| (*t, *q, *qd))
