@@ -169,8 +169,8 @@ fn what_holds_the_target_is_told_by_what_it_explains() {
     assert_share(&outcomes, 3, 1.0, Outcome::is_right);
 }
 
-/// Of complete laws no effect is named, nor are they called unexplained: a held force and a cubic spring read 26 times a
-/// period showed a position-dependent inertia at 130 std, and what a loop had stored before the record was an error.
+/// Of complete laws no effect is named, nor are they called unexplained: a held force and a cubic spring read 26 times
+/// a period showed a position-dependent inertia at 130 std, and what a loop had stored before the record was an error.
 #[test]
 fn what_reading_and_the_time_before_a_record_leave_is_no_effect() {
     let drawn = |id: &str, strength: f64, seed: u64| Setting {

@@ -42,8 +42,8 @@ pub(in crate::diagnose) struct Equation {
     pub(in crate::diagnose) left: Vec<Column>,
     /// What each of them is to the target.
     roles: Vec<Role>,
-    /// By window length, equations that are none: they hold what a loop had stored before the record began, which nobody
-    /// knows. All of their columns are 0.
+    /// By window length, equations that are none: they hold what a loop had stored before the record began, which
+    /// nobody knows. All of their columns are 0.
     pub(super) void: [Vec<usize>; COUNT],
 }
 

@@ -205,8 +205,8 @@ impl Record {
         self.column(0, |piece| self.integrals(&piece.2, self.series(term, piece, timing)), 1.0)
     }
 
-    /// The equations that hold what a loop had stored when its piece began, by window length. What a piece does not make
-    /// it forget in its first fifth belongs to the law.
+    /// The equations that hold what a loop had stored when its piece began, by window length. What a piece does not
+    /// make it forget in its first fifth belongs to the law.
     pub(super) fn remembering(&self, terms: &[Term], timing: Timing) -> [Vec<usize>; COUNT] {
         let own = |piece: &(usize, usize, Nodes)| {
             let nodes = &piece.2;

@@ -185,8 +185,8 @@ impl Left {
         (rows, right)
     }
 
-    /// Share of what is left of q̇ that what is left of q explains, beyond what it does because both are set against the
-    /// motion that the noisy q shows.
+    /// Share of what is left of q̇ that what is left of q explains, beyond what it does because both are set against
+    /// the motion that the noisy q shows.
     fn shared(&self, of_its_own: &Left) -> Option<f64> {
         let (rows, right) = of_its_own.rows();
         let expected = Regression::of(&rows, &right)?;

@@ -106,8 +106,8 @@ impl Nodes {
         values.chunks_exact(self.per_cell).map(sum).collect()
     }
 
-    /// Means of a force from one reading of q̇ to the next: what q̇ on straight lines between them shows of it, exactly,
-    /// however it varies there. As it is where q̇ is not read.
+    /// Means of a force from one reading of q̇ to the next: what q̇ on straight lines between them shows of it,
+    /// exactly, however it varies there. As it is where q̇ is not read.
     pub(in crate::diagnose) fn between_velocities(&self, values: Vec<f64>) -> Vec<f64> {
         if self.velocities.is_empty() {
             return values;
