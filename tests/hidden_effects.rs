@@ -165,8 +165,9 @@ fn what_holds_the_target_is_told_by_what_it_explains() {
         drawn(Secret::Outside(Outside::JumpingStiffness), 0.05, 0.01, 6317),
         drawn(both("bilinear_stiffness", "excitation_gain_nonlinearity"), 0.2, 0.001, 6314),
         drawn(both("load_dependent_friction", "position_dependent_inertia"), 0.2, 0.001, 6314),
+        drawn(Secret::Missing(vec!["relaxation".into()]), 0.2, 0.01, 6403),
     ]);
-    assert_share(&outcomes, 3, 1.0, Outcome::is_right);
+    assert_share(&outcomes, 4, 1.0, Outcome::is_right);
 }
 
 /// Of complete laws no effect is named, nor are they called unexplained: a held force and a cubic spring read 26 times

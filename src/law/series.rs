@@ -127,7 +127,7 @@ fn followed(t: &[f64], u: &[f64], first: f64, time: f64) -> Vec<f64> {
 }
 
 /// From which sample on the series of a term is the same whatever was stored in a loop when the motion began: two that
-/// began with nearly the most either way are then alike within [`FORGOTTEN`]. None where they never are; 0 for a term
+/// began with nearly the most either way are then alike within a hundredth. None where they never are; 0 for a term
 /// that is no loop.
 pub fn forgets(term: Term, trajectory: &Trajectory) -> Option<usize> {
     let shape = term.effect().and_then(|effect| Some((Loop::of(effect)?, effect.largest_state()?)));

@@ -110,7 +110,7 @@ impl Arena<'_> {
     /// The same where candidates and target have each half of the readings, beside a rival with all of them.
     fn contest_apart(&self, all: &[Variant], rival: Option<&Contender>) -> Vec<Contender> {
         let Some([even, odd]) = self.record.halves().filter(|_| !all.is_empty()) else { return Vec::new() };
-        let own = self.equation;
+        let (own, even) = (self.equation, even.for_target_of(&odd));
         let equation = Equation::new(&even, &own.terms, own.target, own.timing, true).for_motion(&odd);
         let base = self.folds.judge(&equation);
         let arena = Arena { record: &even, equation: &equation, base: &base, ..*self };

@@ -7,7 +7,7 @@ use crate::law::{Effect, Expression, Hold, Term, forgets, term_series};
 use std::cell::{OnceCell, RefCell};
 
 /// Parts of a piece in the first of which a loop is to forget what it had stored.
-const FOLDS: usize = 5;
+const EARLY: usize = 5;
 
 /// What a term is in every equation, by window length.
 pub(in crate::diagnose) type Column = [Vec<f64>; COUNT];
@@ -107,6 +107,15 @@ impl Record {
     pub(in crate::diagnose) fn halves(&self) -> Option<[Record; 2]> {
         let half = |first: usize| self.moved(self.motions.iter().map(|motion| motion.half(first)).collect());
         Some([half(0)?, half(1)?])
+    }
+
+    /// The same motion for equations whose q̈ another record of the same pieces shows: forces are taken between that
+    /// one's readings of q̇.
+    pub(in crate::diagnose) fn for_target_of(mut self, other: &Record) -> Record {
+        let both = self.nodes.into_iter().zip(&other.nodes);
+        self.nodes = both.map(|((index, number, own), (.., others))| (index, number, own.read_as(others))).collect();
+        self.columns.take();
+        self
     }
 
     fn column(&self, order: usize, values: impl FnMut(&(usize, usize, Nodes)) -> Vec<[f64; 2]>, factor: f64) -> Column {
@@ -214,7 +223,7 @@ impl Record {
             let excitation = if loops.clone().next().is_some() { self.excitation(piece, timing) } else { Vec::new() };
             let cells =
                 loops.map(|term| forgets(*term, &nodes.trajectory(&excitation)).map(|node| nodes.cell_of(node)));
-            let soon = cells.flatten().filter(|cell| *cell <= nodes.cells() / FOLDS);
+            let soon = cells.flatten().filter(|cell| *cell <= nodes.cells() / EARLY);
             soon.max().unwrap_or(0)
         };
         let cells: Vec<usize> = self.nodes.iter().map(own).collect();

@@ -59,6 +59,11 @@ impl Nodes {
         nodes
     }
 
+    /// The same where q̇ is read as in others of the same piece.
+    pub(in crate::diagnose) fn read_as(self, others: &Nodes) -> Nodes {
+        Nodes { velocities: others.velocities.clone(), ..self }
+    }
+
     /// Number of cells.
     pub(in crate::diagnose) fn cells(&self) -> usize {
         self.t.len() / self.per_cell
