@@ -26,6 +26,17 @@ impl Effect {
         }
     }
 
+    /// Time in which what is stored in a linear memory fades to its e-th part, s; none of a loop, which has none.
+    pub(super) fn fading_time(self) -> Option<f64> {
+        match self {
+            Effect::Relaxation { time } | Effect::ActuatorLag { time } => Some(time.value()),
+            Effect::HiddenResonator { frequency, damping_ratio } => {
+                Some((frequency.value() * damping_ratio.value()).recip())
+            }
+            _ => None,
+        }
+    }
+
     /// The internal states when nothing is stored in them.
     pub(super) fn rest(self, state: State, excitation: f64) -> [f64; LARGEST] {
         match self {

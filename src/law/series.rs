@@ -33,6 +33,13 @@ impl<'a> Trajectory<'a> {
         Samples { t: self.t, excitation: self.excitation, hold: self.hold }
     }
 
+    /// The same from that sample on.
+    pub fn after(&self, first: usize) -> Trajectory<'a> {
+        let Trajectory { t, q, qd, excitation, hold } = *self;
+        let first = first.min(t.len());
+        Trajectory { t: &t[first..], q: &q[first..], qd: &qd[first..], excitation: &excitation[first..], hold }
+    }
+
     pub(super) fn state(&self, index: usize) -> State {
         State { q: self.q[index], qd: self.qd[index] }
     }
@@ -126,10 +133,14 @@ fn followed(t: &[f64], u: &[f64], first: f64, time: f64) -> Vec<f64> {
     u.first().map(|_| first).into_iter().chain(others).collect()
 }
 
-/// From which sample on the series of a term is the same whatever was stored in a loop when the motion began: two that
-/// began with nearly the most either way are then alike within a hundredth. None where they never are; 0 for a term
-/// that is no loop.
+/// From which sample on the series of a term is the same, within a hundredth, whatever was stored in it when the motion
+/// began: two loops that began with nearly the most either way are then alike, what fades has faded. None where that is
+/// never; 0 for a term without a memory.
 pub fn forgets(term: Term, trajectory: &Trajectory) -> Option<usize> {
+    if let Some(time) = term.effect().and_then(Effect::fading_time) {
+        let from = trajectory.t.first()? - time * FORGOTTEN.ln();
+        return trajectory.t.iter().position(|t| *t >= from);
+    }
     let shape = term.effect().and_then(|effect| Some((Loop::of(effect)?, effect.largest_state()?)));
     let Some((shape, most)) = shape.filter(|_| !trajectory.t.is_empty()) else { return Some(0) };
     let nearly = (1.0 - FORGOTTEN) * most;

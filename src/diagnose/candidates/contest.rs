@@ -1,7 +1,9 @@
 //! Every candidate beside a law: its inner parameters, its errors on what it has not seen, what it is worth.
 
 use super::grid::{Variant, candidates, same_effect, variants};
-use crate::diagnose::judge::{COUNT, Column, Equation, Folds, HeldOut, PRINCIPAL, Record, Role, Screen, Target, role};
+use crate::diagnose::judge::{
+    COUNT, Column, Equation, Folds, HeldOut, Joined, Memory, PRINCIPAL, Record, Role, Screen, Target, role,
+};
 use crate::diagnose::scale::Scale;
 use crate::law::{Catalogue, Effect, Term};
 
@@ -125,13 +127,21 @@ impl Arena<'_> {
 
     /// S of one candidate with the inner parameters that it has.
     fn score(&self, term: Term) -> f64 {
-        let (column, role) = column(self.record, self.equation, term);
-        self.scored(&self.folds.judge_with(self.equation, &|_| Some((&column, role))), term)
+        let (column, role) = &column(self.record, self.equation, term);
+        let memory = &self.record.memory(&[term]);
+        let [before, held] = self.judged(&|_| Some(Joined { column: Some((column, *role)), memory }));
+        self.scored(&held, &before, term)
+    }
+
+    /// A law's errors without and with what comes to it, by the same equations.
+    fn judged<'a>(&self, joining: &dyn Fn(usize) -> Option<Joined<'a>>) -> [HeldOut; 2] {
+        let alone = |fold: usize| joining(fold).map(|joined| Joined { column: None, ..joined });
+        [self.folds.judge_with(self.equation, &alone), self.folds.judge_with(self.equation, joining)]
     }
 
     /// S of a candidate's errors; where it holds q̈ none counts lower than the floor.
-    fn scored(&self, held: &HeldOut, term: Term) -> f64 {
-        if self.record.accelerates(term) { held.no_lower(&self.floor).score(self.base) } else { held.score(self.base) }
+    fn scored(&self, held: &HeldOut, before: &HeldOut, term: Term) -> f64 {
+        if self.record.accelerates(term) { held.no_lower(&self.floor).score(before) } else { held.score(before) }
     }
 
     /// Variants with their columns, without those that are the target where others are not.
@@ -156,7 +166,7 @@ impl Arena<'_> {
         let middle = chosen.iter().copied().max_by_key(votes).unwrap_or(0);
         let resemblance = self.equation.resemblance(PRINCIPAL, &columns[middle].0[PRINCIPAL]);
         let term = tried[middle].0.term;
-        let (score, before) = (self.scored(&held, term), self.base.clone());
+        let (score, before) = (self.scored(&held, self.base, term), self.base.clone());
         (Contender { term, score, before, held, resemblance }, chosen)
     }
 
@@ -173,9 +183,14 @@ impl Arena<'_> {
             tried.extend(self.columns(&new).into_iter().filter(|(_, own)| is_trapped || !self.is_target(own)));
             (found, chosen) = self.chosen(screen, &tried);
         }
-        let joining = |fold: usize| chosen.get(fold).map(|index| (&tried[*index].1.0, tried[*index].1.1));
-        let held = self.folds.judge_with(self.equation, &joining);
-        Contender { score: self.scored(&held, found.term), held, ..found }
+        let remembers = |index: &usize| self.record.memory(&[tried[*index].0.term]);
+        let memories: Vec<Memory> = chosen.iter().map(remembers).collect();
+        let joining = |fold: usize| {
+            let (column, role) = &tried[*chosen.get(fold)?].1;
+            Some(Joined { column: Some((column, *role)), memory: memories.get(fold)? })
+        };
+        let [before, held] = self.judged(&joining);
+        Contender { score: self.scored(&held, &before, found.term), before, held, ..found }
     }
 
     /// Neighbours of what was chosen that were not tried yet.

@@ -5,6 +5,7 @@
 //! column ∫ φ' F dt beside them takes what a little delay of the excitation would explain.
 
 use super::beginning;
+use super::memory::Memory;
 use super::record::{Column, Record, Timing};
 use super::regression::{self, Normal};
 use super::windows::COUNT;
@@ -42,9 +43,8 @@ pub(in crate::diagnose) struct Equation {
     pub(in crate::diagnose) left: Vec<Column>,
     /// What each of them is to the target.
     roles: Vec<Role>,
-    /// By window length, equations that are none: they hold what a loop had stored before the record began, which
-    /// nobody knows. All of their columns are 0.
-    pub(super) void: [Vec<usize>; COUNT],
+    /// What its terms remember; all columns of the equations that this voids are 0.
+    pub(super) memory: Memory,
 }
 
 /// What a column is to the target.
@@ -79,9 +79,9 @@ impl Equation {
     ) -> Equation {
         let mut equation = Equation::from_rest(record, terms, target, timing, nuisance);
         for (index, term) in terms.iter().enumerate() {
-            let begun = equation.place(index).and_then(|place| {
-                Some((place, beginning::begun(record, (*term, timing), &equation.left, place, &equation.right)?))
-            });
+            let begun = equation
+                .place(index)
+                .and_then(|place| Some((place, beginning::begun(record, (*term, timing), &equation, place)?)));
             begun.into_iter().for_each(|(place, column)| equation.left[place] = column);
         }
         equation.voided()
@@ -116,15 +116,15 @@ impl Equation {
         let functions = [0, 1, 2].map(|which| record.windows[which].functions);
         let spread = [0, 1, 2].map(|which| spread(&right[which], functions[which]));
         let tells = [0, 1, 2].map(|which| record.windows[which].length >= record.sample_time);
-        let void = record.remembering(terms, timing);
+        let memory = record.memory(terms);
         let terms = terms.to_vec();
-        Equation { terms, target, timing, right, spread, functions, tells, takes_delay, left, roles, void }.voided()
+        Equation { terms, target, timing, right, spread, functions, tells, takes_delay, left, roles, memory }.voided()
     }
 
     /// With nothing in the equations that are none.
     fn voided(mut self) -> Equation {
         for which in 0..COUNT {
-            for row in &self.void[which] {
+            for row in &self.memory.void[which] {
                 self.right[which][*row] = 0.0;
                 self.left.iter_mut().for_each(|column| column[which][*row] = 0.0);
             }
@@ -153,6 +153,7 @@ impl Equation {
             equation.roles.insert(place, role(record, term, self.target));
         }
         equation.terms.push(term);
+        equation.memory = record.memory(&equation.terms);
         equation.voided()
     }
 

@@ -1,12 +1,13 @@
 //! Recordings as weak equations: a column for every term, with three lengths of windows.
 
+use super::memory::{FOLDS, Memory};
 use super::windows::{self, COUNT, Cells, Windows};
 use crate::diagnose::motion::{self, Impulse, Motion, Nodes, rounding, sensor_noise};
 use crate::identify::Recording;
 use crate::law::{Effect, Expression, Hold, Term, forgets, term_series};
 use std::cell::{OnceCell, RefCell};
 
-/// Parts of a piece in the first of which a loop is to forget what it had stored.
+/// Parts of a piece in the first of which a term is to forget what it had stored; what takes longer belongs to the law.
 const EARLY: usize = 5;
 
 /// What a term is in every equation, by window length.
@@ -214,20 +215,28 @@ impl Record {
         self.column(0, |piece| self.integrals(&piece.2, self.series(term, piece, timing)), 1.0)
     }
 
-    /// The equations that hold what a loop had stored when its piece began, by window length. What a piece does not
-    /// make it forget in its first fifth belongs to the law.
-    pub(super) fn remembering(&self, terms: &[Term], timing: Timing) -> [Vec<usize>; COUNT] {
-        let own = |piece: &(usize, usize, Nodes)| {
-            let nodes = &piece.2;
-            let loops = terms.iter().filter(|term| term.effect().is_some_and(|effect| effect.memory_length() > 0));
-            let excitation = if loops.clone().next().is_some() { self.excitation(piece, timing) } else { Vec::new() };
-            let cells =
-                loops.map(|term| forgets(*term, &nodes.trajectory(&excitation)).map(|node| nodes.cell_of(node)));
-            let soon = cells.flatten().filter(|cell| *cell <= nodes.cells() / EARLY);
-            soon.max().unwrap_or(0)
+    /// What terms remember of the motion, as far as a fifth of a piece makes them forget it.
+    pub(in crate::diagnose) fn memory(&self, terms: &[Term]) -> Memory {
+        let own: Vec<Term> = terms.iter().copied().filter(|term| has_memory(*term)).collect();
+        if own.is_empty() {
+            return Memory::default();
+        }
+        // the free response of a hidden mass is fitted
+        let is_fitted = |term: &&Term| matches!(term, Term::Effect(Effect::HiddenResonator { .. }));
+        let stored: Vec<Term> = own.iter().filter(|term| !is_fitted(term)).copied().collect();
+        let void: Vec<usize> = self.nodes.iter().map(|(.., nodes)| remembers(nodes, 0, &stored)).collect();
+        let cells: usize = self.nodes.iter().map(|(.., nodes)| nodes.cells()).sum();
+        let aside = |bound: usize| {
+            let mut cell = cells * bound / FOLDS;
+            let piece = self.nodes.iter().find(|(.., nodes)| {
+                let is_in = cell < nodes.cells();
+                cell -= if is_in { 0 } else { nodes.cells() };
+                is_in
+            });
+            let cells = piece.map_or(0, |(.., nodes)| remembers(nodes, cell, &own));
+            cells as f64 * windows::cell(self.period)
         };
-        let cells: Vec<usize> = self.nodes.iter().map(own).collect();
-        [0, 1, 2].map(|which| self.windows[which].before(&cells))
+        Memory { void: [0, 1, 2].map(|which| self.windows[which].before(&void)), aside: std::array::from_fn(aside) }
     }
 
     /// Number of pieces.
@@ -307,6 +316,19 @@ impl Record {
         };
         self.motions.iter().map(as_position).fold(0.0, f64::max)
     }
+}
+
+/// Cells of a piece after that one in which something is left of what the terms had stored until then; none of a term
+/// that a fifth of the piece does not make forget it.
+fn remembers(nodes: &Nodes, cell: usize, terms: &[Term]) -> usize {
+    let none = vec![0.0; nodes.q.len()];
+    let motion = nodes.trajectory(&none).after(nodes.node_of(cell));
+    let cells = terms.iter().filter_map(|term| forgets(*term, &motion).map(|node| nodes.cell_of(node)));
+    cells.filter(|cells| *cells <= nodes.cells() / EARLY).max().unwrap_or(0)
+}
+
+fn has_memory(term: Term) -> bool {
+    term.effect().is_some_and(|effect| effect.memory_length() > 0)
 }
 
 #[cfg(test)]

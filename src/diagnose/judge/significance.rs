@@ -15,7 +15,7 @@ use rand_chacha::ChaCha8Rng;
 /// Numbers of blocks, the largest that fits is taken.
 const BLOCKS: [usize; 3] = [32, 16, 8];
 
-/// Random signs that are drawn: a chance of one in a hundred is then known to a fifth.
+/// Patterns of signs that are drawn: a chance of one in a hundred is then known to a fifth.
 const DRAWS: usize = 2000;
 
 /// Autocorrelation down to which residuals belong together: 1 ÷ e, the usual correlation length.
@@ -57,7 +57,7 @@ impl Blocks {
         for (which, windows) in record.windows.iter().enumerate() {
             for function in 0..windows.functions {
                 let [before, after] =
-                    [before, after].map(|held| self.losses(windows, function, &held.residuals[which]));
+                    self.losses(windows, function, [before, after].map(|held| &held.residuals[which]));
                 let own = log_ratios(&before, &after);
                 let share = 0.5 / (COUNT * windows.functions) as f64;
                 gains.iter_mut().zip(own).for_each(|(gain, own)| *gain += share * own);
@@ -66,12 +66,14 @@ impl Blocks {
         gains
     }
 
-    /// Σ residual² of one test function in every block.
-    fn losses(&self, windows: &Windows, function: usize, residuals: &[f64]) -> Vec<f64> {
-        let mut losses = vec![0.0; self.len()];
-        let own = residuals.iter().enumerate().skip(function).step_by(windows.functions);
-        for (row, value) in own.filter(|(_, value)| value.is_finite()) {
-            losses[self.of(windows.centre(row))] += value * value;
+    /// Σ residual² of one test function in every block, of two laws over the equations that both tell.
+    fn losses(&self, windows: &Windows, function: usize, residuals: [&Vec<f64>; 2]) -> [Vec<f64>; 2] {
+        let mut losses = [0, 1].map(|_| vec![0.0; self.len()]);
+        let own = residuals[0].iter().zip(residuals[1]).enumerate().skip(function).step_by(windows.functions);
+        for (row, (before, after)) in own.filter(|(_, (before, after))| before.is_finite() && after.is_finite()) {
+            let block = self.of(windows.centre(row));
+            losses[0][block] += before * before;
+            losses[1][block] += after * after;
         }
         losses
     }
@@ -81,20 +83,22 @@ impl Blocks {
     pub(in crate::diagnose) fn p_values(&self, gains: &[Vec<f64>]) -> Option<Vec<f64>> {
         let count = self.count?;
         let mut random = ChaCha8Rng::seed_from_u64(count as u64);
+        let drawn = (0..DRAWS).map(|_| random.next_u64());
+        // eight blocks have so few patterns of signs that all are looked at; the record's own is one of them
+        let patterns: Vec<u64> = match 1_usize << count.min(BLOCKS[0]) {
+            all if all <= DRAWS => (0..all as u64).collect(),
+            _ => [0].into_iter().chain(drawn).collect(),
+        };
         let totals: Vec<f64> = gains.iter().map(|own| own.iter().sum()).collect();
-        let mut reached = vec![1.0; gains.len()];
-        for _ in 0..DRAWS {
-            let bits = random.next_u64();
-            let sign = |block: usize| if bits >> block & 1 == 1 { 1.0 } else { -1.0 };
+        let mut reached = vec![0.0; gains.len()];
+        for bits in &patterns {
+            let sign = |block: usize| if bits >> block & 1 == 1 { -1.0 } else { 1.0 };
             let total = |own: &Vec<f64>| own.iter().enumerate().map(|(block, gain)| sign(block) * gain).sum::<f64>();
             let largest = gains.iter().map(total).fold(f64::NEG_INFINITY, f64::max);
-            totals
-                .iter()
-                .zip(&mut reached)
-                .filter(|(own, _)| largest >= **own)
-                .for_each(|(_, reached)| *reached += 1.0);
+            let reaches = totals.iter().zip(&mut reached).filter(|(own, _)| largest >= **own);
+            reaches.for_each(|(_, reached)| *reached += 1.0);
         }
-        Some(reached.into_iter().map(|reached| reached / (DRAWS + 1) as f64).collect())
+        Some(reached.into_iter().map(|reached| reached / patterns.len() as f64).collect())
     }
 }
 
@@ -123,4 +127,20 @@ fn correlation_length(record: &Record, residual: &HeldOut) -> f64 {
     let whole = product(0);
     let lag = (1..own.len() / 2).find(|lag| product(*lag) < CORRELATED * whole).unwrap_or(own.len() / 2);
     lag as f64 * (windows.centres[1] - windows.centres[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn of_eight_blocks_every_pattern_of_signs_counts_once() {
+        let blocks = Blocks { count: Some(8), duration: 8.0 };
+        let gains = [0.2, 0.3, 0.1, 0.4, 0.2, 0.3, 0.5, 0.2];
+        assert_eq!(blocks.p_values(&[gains.to_vec()]), Some(vec![1.0 / 256.0]));
+        // one small loss: its own sign, and the other one, which only adds
+        let mostly = gains.map(|gain| if gain == 0.1 { -0.05 } else { gain });
+        assert_eq!(blocks.p_values(&[mostly.to_vec()]), Some(vec![2.0 / 256.0]));
+        assert_eq!(Blocks { count: None, ..blocks }.p_values(&[gains.to_vec()]), None);
+    }
 }

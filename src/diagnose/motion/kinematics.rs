@@ -3,8 +3,9 @@
 //! q̇ read at t is s ẋ(t − τ) + b: its regression on the smoothed ẋ(t − τ), ẍ(t − τ) and 1 gives s, τ and b. What
 //! smoothing takes of the motion it must take of q̇ too, else s comes out too large: the integral of q̇ goes through
 //! the same smoother as q. A q̇ that is computed from q, by differences and whatever filter, has the noise of q in it:
-//! what is left of q̇ is then a linear function of what is left of q. Some of that it is of any q̇, for both are set
-//! against the motion that the noisy q shows; how much, the smoothed motion tells when it is read and smoothed again.
+//! what is left of q̇ beside the same filter of the motion's velocity is then a linear function of what is left of q.
+//! Some of that it is of any q̇, for both are set against the motion that the noisy q shows; how much, the smoothed
+//! motion tells when it is read and smoothed again.
 
 use super::spline::{Sensors, Spline};
 use super::track::Track;
@@ -15,7 +16,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 /// Samples before and after an instant whose noise of q a derivative may hold.
-const BEFORE: usize = 8;
+const BEFORE: usize = 12;
 /// … and after it.
 const AFTER: usize = 2;
 
@@ -77,8 +78,8 @@ impl Kinematics {
         let spread: f64 = right.iter().map(|value| (value - mean).powi(2)).sum();
         let std = found.std(&rows, &residuals);
         let scale = found.solution[0];
-        let filter = Regression::of(&filtered(tracks), &right)?;
-        let left_of_both = Left::of(pieces, tracks, filter.residuals(&filtered(tracks), &right))?;
+        let filter = Regression::of(&filtered(pieces, tracks), &right)?;
+        let left_of_both = Left::of(pieces, tracks, filter.residuals(&filtered(pieces, tracks), &right))?;
         let of_its_own = Left::of_its_own(tracks, pieces, sensors, &filter);
         Some(Kinematics {
             lag: lag + found.solution[1] / scale,
@@ -105,9 +106,40 @@ fn late(tracks: &[Track], lag: f64) -> Vec<[f64; 3]> {
     tracks.iter().flat_map(|track| track.states.iter().map(row)).collect()
 }
 
-/// ẋ, ẍ, x⃛ and 1 at every sample: what any filter that is short against the motion makes of its velocity.
-fn filtered(tracks: &[Track]) -> Vec<[f64; 4]> {
-    tracks.iter().flat_map(|track| track.states.iter().map(|[_, v, a, j]| [*v, *a, *j, 1.0])).collect()
+/// ẋ at and about every sample, and 1: what a filter of the velocity may be made of.
+fn filtered(pieces: &[Piece], tracks: &[Track]) -> Vec<[f64; AROUND + 1]> {
+    let usual = usual_distance(pieces);
+    let of = |(piece, track): (&Piece, &Track)| {
+        let row = |k: usize| {
+            let about = |place: usize| match place {
+                AROUND => 1.0,
+                _ => velocity(&piece.t, track, (k, piece.t[k] + usual * (place as f64 - BEFORE as f64))),
+            };
+            std::array::from_fn(about)
+        };
+        (0..piece.len()).map(row).collect::<Vec<_>>()
+    };
+    pieces.iter().zip(tracks).flat_map(of).collect()
+}
+
+/// ẋ at an instant not far from sample k, by the nearest sample's derivatives.
+fn velocity(times: &[f64], track: &Track, (mut k, t): (usize, f64)) -> f64 {
+    let distance = |k: usize| (times[k] - t).abs();
+    while k > 0 && distance(k - 1) < distance(k) {
+        k -= 1;
+    }
+    while k + 1 < times.len() && distance(k + 1) < distance(k) {
+        k += 1;
+    }
+    let ([_, v, a, j], after) = (track.states[k], t - times[k]);
+    v + after * (a + 0.5 * after * j)
+}
+
+/// Median distance of two samples, s.
+fn usual_distance(pieces: &[Piece]) -> f64 {
+    let mut all: Vec<f64> = pieces.iter().flat_map(|piece| piece.t.windows(2).map(|pair| pair[1] - pair[0])).collect();
+    let middle = all.len() / 2;
+    if all.is_empty() { 0.0 } else { *all.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// The readings of q̇ through the smoother through which q went.
@@ -142,6 +174,8 @@ fn slopes(t: &[f64], values: &[f64]) -> Vec<f64> {
 /// What smoothing leaves of the readings: of q piece by piece, of q̇ end to end.
 struct Left {
     q: Vec<Vec<f64>>,
+    /// By piece, whether no reading is lost from each on as far as a filter of it reaches.
+    whole: Vec<Vec<bool>>,
     qd: Vec<f64>,
 }
 
@@ -151,7 +185,7 @@ impl Left {
             let q = piece.measured()[0]?;
             Some(q.iter().zip(&track.states).map(|(q, state)| q - state[0]).collect())
         };
-        Some(Left { q: pieces.iter().zip(tracks).map(own).collect::<Option<_>>()?, qd })
+        Some(Left { q: pieces.iter().zip(tracks).map(own).collect::<Option<_>>()?, whole: whole(pieces), qd })
     }
 
     /// What it would be of a q̇ of its own, `filter` being what it reads: the smoothed motion, read and smoothed again.
@@ -169,17 +203,20 @@ impl Left {
             left.push(q.iter().zip(&states).map(|(q, state)| q - state[0]).collect());
             again.push(Track { states, ..track.clone() });
         }
-        let qd = filter.expected(&filtered(tracks));
-        Left { q: left, qd: filter.residuals(&filtered(&again), &qd) }
+        let qd = filter.expected(&filtered(pieces, tracks));
+        Left { q: left, whole: whole(pieces), qd: filter.residuals(&filtered(pieces, &again), &qd) }
     }
 
     /// What is left of q about an instant, for what is left of q̇ then.
     fn rows(&self) -> (Vec<[f64; AROUND]>, Vec<f64>) {
         let (mut rows, mut right, mut first) = (Vec::new(), Vec::new(), 0);
-        for noise in &self.q {
-            let windows = noise.windows(AROUND).filter_map(|window| <[f64; AROUND]>::try_from(window).ok());
-            rows.extend(windows);
-            right.extend_from_slice(&self.qd[first + BEFORE..][..(noise.len() + 1).saturating_sub(AROUND)]);
+        for (noise, whole) in self.q.iter().zip(&self.whole) {
+            let windows = noise.windows(AROUND).zip(&self.qd[first + BEFORE..]).zip(whole).filter(|(_, whole)| **whole);
+            let own = windows.filter_map(|((window, left), _)| Some((<[f64; AROUND]>::try_from(window).ok()?, *left)));
+            own.for_each(|(window, left)| {
+                rows.push(window);
+                right.push(left);
+            });
             first += noise.len();
         }
         (rows, right)
@@ -195,6 +232,13 @@ impl Left {
         let total: f64 = own.iter().map(|value| value * value).sum();
         Some(1.0 - Regression::of(&rows, &own)?.left / total.max(f64::MIN_POSITIVE))
     }
+}
+
+/// By piece and sample, whether no reading is lost from there on as far as a filter reaches.
+fn whole(pieces: &[Piece]) -> Vec<Vec<bool>> {
+    let most = (AROUND as f64 - 0.5) * usual_distance(pieces);
+    let own = |piece: &Piece| piece.t.windows(AROUND).map(|t| t[AROUND - 1] - t[0] < most).collect();
+    pieces.iter().map(own).collect()
 }
 
 /// Least squares, columns scaled.

@@ -74,6 +74,11 @@ impl Nodes {
         node.div_ceil(self.per_cell)
     }
 
+    /// The first node of a cell.
+    pub(in crate::diagnose) fn node_of(&self, cell: usize) -> usize {
+        cell * self.per_cell
+    }
+
     /// Time, s, displacement and velocity at every node.
     pub(in crate::diagnose) fn states(&self) -> impl Iterator<Item = (f64, f64, f64)> {
         self.t.iter().zip(&self.q).zip(&self.qd).map(|((t, q), qd)| (*t, *q, *qd))

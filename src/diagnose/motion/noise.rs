@@ -16,6 +16,9 @@ const BLOCK: usize = 200;
 /// Fewest blocks of which a median is taken.
 const BLOCKS: usize = 10;
 
+/// Part of the usual step by which another may differ from it: a clock's jitter, no lost reading.
+const UNEVEN: f64 = 0.5;
+
 /// Estimated std of the noise of (q, q̇); 0 for a quantity that is not measured.
 pub(in crate::diagnose) fn sensor_noise(pieces: &[Piece]) -> [f64; 2] {
     [0, 1].map(|channel| {
@@ -29,8 +32,10 @@ fn of_order(pieces: &[Piece], channel: usize, order: usize) -> f64 {
     let (mut own, mut driven) = (Vec::new(), Vec::new());
     for piece in pieces {
         if let Some(signal) = piece.measured()[channel] {
-            own.extend(differences(signal.to_vec(), order));
-            driven.extend(differences(response(piece, channel), order));
+            let even = even(&piece.t, order);
+            let all = |signal: Vec<f64>| differences(signal, order).into_iter().zip(&even).filter(|(_, even)| **even);
+            own.extend(all(signal.to_vec()).map(|(difference, _)| difference));
+            driven.extend(all(response(piece, channel)).map(|(difference, _)| difference));
         }
     }
     if own.len() < 4 * order {
@@ -41,6 +46,18 @@ fn of_order(pieces: &[Piece], channel: usize, order: usize) -> f64 {
     let slope = if power > 0.0 { dot(&own, &driven) / power } else { 0.0 };
     let squares: Vec<f64> = own.iter().zip(&driven).map(|(own, driven)| (own - slope * driven).powi(2)).collect();
     central_mean(&squares) / central_binomial(order)
+}
+
+/// By its first sample, whether a difference is taken over equal steps: across a lost reading the motion itself stands
+/// in it. All are where none or too few would be left.
+fn even(t: &[f64], order: usize) -> Vec<bool> {
+    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    let usual = if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    let is_usual = |pair: &[f64]| (pair[1] - pair[0] - usual).abs() < UNEVEN * usual;
+    let even: Vec<bool> = t.windows(order + 1).map(|all| all.windows(2).all(is_usual)).collect();
+    let most = 2 * even.iter().filter(|even| **even).count() > even.len();
+    if most { even } else { vec![true; even.len()] }
 }
 
 /// What the excitation alone does to a unit mass: ΣΣ F dt² in the displacement, Σ F dt in the velocity.

@@ -91,37 +91,46 @@ impl Case {
         if noise > NEGLIGIBLE { Target::Inertia } else { Target::Force }
     }
 
-    /// A law of these terms with the hold that suits it, a little delay of the excitation refitted beside it. None
-    /// where the record is too short for it.
+    /// A law of these terms with the hold that suits it, a little delay of the excitation refitted beside it; what is
+    /// held out is predicted under the hold that suits the rest of the record. None where the record is too short for
+    /// it.
     pub(in crate::diagnose) fn stand(&self, terms: &[Term]) -> Option<Standing> {
-        self.at(terms, self.timed(terms))
+        let (all, usual) = self.tried(terms);
+        let held: Vec<&HeldOut> = all.iter().map(|own| &own.judged).collect();
+        let held = HeldOut::by_part(&self.folds, &held, usual, TIE);
+        self.standing(all.into_iter().nth(usual)?.equation, held)
     }
 
-    /// The hold that suits a law best, each with the little delay that suits it: a wrong hold and half a sample's delay
-    /// look alike, so that of equally good ones that with the least delay is taken.
+    /// When the excitation acts by the hold that suits a law.
     fn timed(&self, terms: &[Term]) -> Timing {
-        let all: Vec<(f64, f64, Timing)> = self.holds().into_iter().map(|hold| self.held(terms, hold)).collect();
-        let least = all.iter().map(|(error, ..)| *error).fold(f64::INFINITY, f64::min);
-        let ties = all.into_iter().filter(|(error, ..)| *error <= least + TIE);
-        let best = ties.min_by(|a, b| a.1.total_cmp(&b.1));
-        best.map_or_else(|| own_timing(terms, Hold::Linear), |(_, _, timing)| timing)
+        let (all, usual) = self.tried(terms);
+        all.get(usual).map_or_else(|| own_timing(terms, Hold::Linear), |own| own.equation.timing)
     }
 
-    /// The error under a hold with the delay that suits it, how far that is from the law's own, s, and when the
-    /// excitation then acted.
-    fn held(&self, terms: &[Term], hold: Hold) -> (f64, f64, Timing) {
+    /// A law under every hold, each with the little delay that suits it, and which suits it best: a wrong hold and half
+    /// a sample's delay look alike, so that of equally good ones that with the least delay is taken.
+    fn tried(&self, terms: &[Term]) -> (Vec<Held>, usize) {
+        let all: Vec<Held> = self.holds().into_iter().map(|hold| self.held(terms, hold)).collect();
+        let errors: Vec<f64> = all.iter().map(|own| error(&own.judged)).collect();
+        let least = errors.iter().copied().fold(f64::INFINITY, f64::min);
+        let ties = (0..all.len()).filter(|index| errors[*index] <= least + TIE);
+        let usual = ties.min_by(|a, b| all[*a].late.total_cmp(&all[*b].late)).unwrap_or(0);
+        (all, usual)
+    }
+
+    fn held(&self, terms: &[Term], hold: Hold) -> Held {
         let own = own_timing(terms, hold);
         let timing = self.centred(terms, own);
         let equation = Equation::new(&self.record, terms, self.target, timing, true);
-        let error = self.error(&equation);
-        let more = self.estimated(equation).and_then(|found| found.delay).map_or(0.0, |[step, _]| step);
-        (error, (timing.delay + more - own.delay).abs(), timing)
+        let judged = self.folds.judge(&equation);
+        let more = self.estimate(&equation, &judged).and_then(|found| found.delay).map_or(0.0, |[step, _]| step);
+        Held { equation, judged, late: (timing.delay + more - own.delay).abs() }
     }
 
     /// The law with the hold that suits it best, and no more delay than it has itself.
     pub(in crate::diagnose) fn punctual(&self, terms: &[Term]) -> Equation {
         let at = |hold: Hold| Equation::new(&self.record, terms, self.target, own_timing(terms, hold), false);
-        let all = self.holds().into_iter().map(at).map(|equation| (self.error(&equation), equation));
+        let all = self.holds().into_iter().map(at).map(|equation| (error(&self.folds.judge(&equation)), equation));
         let best = all.min_by(|a, b| a.0.total_cmp(&b.0));
         best.map_or_else(|| at(Hold::Linear), |(_, equation)| equation)
     }
@@ -133,12 +142,6 @@ impl Case {
             None if self.record.forced => vec![Hold::Linear, Hold::Zero, Hold::BandLimited],
             None => vec![Hold::Linear],
         }
-    }
-
-    /// Σ ln held-out error over the window lengths.
-    fn error(&self, equation: &Equation) -> f64 {
-        let errors = self.folds.judge(equation).errors;
-        errors.iter().filter(|error| error.is_finite()).map(|error| error.ln()).sum()
     }
 
     /// The timing about which what is left of a delay is small: its column is only the first term of a series.
@@ -200,8 +203,11 @@ impl Case {
     }
 
     pub(in crate::diagnose) fn estimated(&self, equation: Equation) -> Option<Estimate> {
-        let blocks = Blocks::new(&self.record, &self.folds.judge(&equation));
-        estimate(&self.record, &equation, &blocks, self.inertia)
+        self.estimate(&equation, &self.folds.judge(&equation))
+    }
+
+    fn estimate(&self, equation: &Equation, judged: &HeldOut) -> Option<Estimate> {
+        estimate(&self.record, equation, &Blocks::new(&self.record, judged), self.inertia)
     }
 
     /// A law of these terms at that timing.
@@ -212,6 +218,10 @@ impl Case {
     /// The law of an equation.
     pub(in crate::diagnose) fn of(&self, equation: Equation) -> Option<Standing> {
         let held = self.folds.judge(&equation);
+        self.standing(equation, held)
+    }
+
+    fn standing(&self, equation: Equation, held: HeldOut) -> Option<Standing> {
         let blocks = Blocks::new(&self.record, &held);
         let estimate = estimate(&self.record, &equation, &blocks, self.inertia)?;
         let (coefficients, solutions) = (&estimate.coefficients, &estimate.solutions);
@@ -291,6 +301,19 @@ impl Case {
         let worse = own.iter().zip(&other).map(|(own, other)| (own.after / other.after).ln());
         (worse.filter(|worse| !worse.is_nan()).sum::<f64>() <= TIE * COUNT as f64).then_some(unbiased)
     }
+}
+
+/// A law under one hold of the excitation.
+struct Held {
+    equation: Equation,
+    judged: HeldOut,
+    /// How far the delay that suits it is from the law's own, s.
+    late: f64,
+}
+
+/// Σ ln held-out error over the window lengths.
+fn error(judged: &HeldOut) -> f64 {
+    judged.errors.iter().filter(|error| error.is_finite()).map(|error| error.ln()).sum()
 }
 
 /// When the excitation acts by a law's own terms.

@@ -1,10 +1,8 @@
 //! What physics and the record do not let one say of a candidate beside a law, whatever its gain.
 
 use super::case::{Case, Standing};
-use super::doubt::SURE;
-use super::errors::TIE;
+use super::doubt::{LEVEL, SURE};
 use crate::diagnose::candidates::contender;
-use crate::diagnose::judge::COUNT;
 use crate::law::{Effect, State, Term};
 
 /// Whether dry friction that changes along the way would push somewhere on it: the law's own friction and it, two std
@@ -27,7 +25,7 @@ pub(super) fn drives(case: &Case, standing: &Standing, term: Term, [coefficient,
 }
 
 /// Whether a candidate is the law's own damper with a lag, and the record cannot tell that damper from dry friction: in
-/// its place friction, at once or over a way, leaves as little. At a few speeds any force of the velocity is as good as
+/// its place friction, at once or over a way, leaves no more than by chance. At a few speeds any force of the velocity is as good as
 /// another.
 pub(super) fn is_of_untold_damper(case: &Case, standing: &Standing, term: Term) -> bool {
     let damper = standing.equation.terms.iter().position(|own| *own == Term::power(0, 1));
@@ -39,6 +37,9 @@ pub(super) fn is_of_untold_damper(case: &Case, standing: &Standing, term: Term) 
     let base = case.folds.judge(&undamped);
     let bent = Effect::prototype("presliding_friction").map(Term::Effect);
     let bent = bent.and_then(|term| contender(&case.record, &case.folds, &undamped, (&base, rubbed.floor), term));
-    let mut frictions = bent.into_iter().map(|found| found.held).chain([rubbed.held]);
-    frictions.any(|held| held.score(&standing.held) < TIE * COUNT as f64)
+    let frictions = bent.into_iter().map(|found| found.held).chain([rubbed.held]);
+    let gains: Vec<Vec<f64>> =
+        frictions.map(|held| standing.blocks.gains(&case.record, &held, &standing.held)).collect();
+    let mut by_chance = gains.into_iter().map(|own| standing.blocks.p_values(&[own]).map_or(1.0, |values| values[0]));
+    by_chance.any(|p| p >= LEVEL)
 }
