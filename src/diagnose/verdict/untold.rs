@@ -25,8 +25,8 @@ pub(super) fn drives(case: &Case, standing: &Standing, term: Term, [coefficient,
 }
 
 /// Whether a candidate is the law's own damper with a lag, and the record cannot tell that damper from dry friction: in
-/// its place friction, at once or over a way, leaves no more than by chance. At a few speeds any force of the velocity is as good as
-/// another.
+/// its place friction, at once or over a way, leaves no more, or so little more that it may be chance. At a few speeds
+/// any force of the velocity is as good as another.
 pub(super) fn is_of_untold_damper(case: &Case, standing: &Standing, term: Term) -> bool {
     let damper = standing.equation.terms.iter().position(|own| *own == Term::power(0, 1));
     let Some(place) = damper.filter(|_| matches!(term, Term::Effect(Effect::Relaxation { .. }))) else { return false };
