@@ -4,7 +4,7 @@
 //! adds e^(−ζωt) (a cos ω_d t + b sin ω_d t) in every piece, which is linear in a and b: they are fitted beside the law
 //! once, and its column is then that of the mass as it moved.
 
-use super::equation::Equation;
+use super::memory::Memory;
 use super::record::{Column, Record, Timing};
 use super::regression::{self, Normal};
 use super::windows::PRINCIPAL;
@@ -16,9 +16,13 @@ const LARGEST: f64 = 4.3;
 
 /// The column of a hidden resonator, at that place among a law's, with what it did before the record began; none of
 /// another term.
-pub(super) fn begun(record: &Record, (term, timing): (Term, Timing), law: &Equation, place: usize) -> Option<Column> {
+pub(super) fn begun(
+    record: &Record,
+    (term, timing): (Term, Timing),
+    (left, right, memory): (&[Column], &Column, &Memory),
+    place: usize,
+) -> Option<Column> {
     let responses = responses(record, term)?;
-    let Equation { left, right, memory, .. } = law;
     let columns: Vec<&[f64]> = left.iter().chain(&responses).map(|column| column[PRINCIPAL].as_slice()).collect();
     let right = &right[PRINCIPAL];
     let mut weights = vec![1.0; right.len()];

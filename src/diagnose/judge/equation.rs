@@ -79,9 +79,9 @@ impl Equation {
     ) -> Equation {
         let mut equation = Equation::from_rest(record, terms, target, timing, nuisance);
         for (index, term) in terms.iter().enumerate() {
-            let begun = equation
-                .place(index)
-                .and_then(|place| Some((place, beginning::begun(record, (*term, timing), &equation, place)?)));
+            let law = (equation.left.as_slice(), &equation.right, &equation.memory);
+            let of = |place| Some((place, beginning::begun(record, (*term, timing), law, place)?));
+            let begun = equation.place(index).and_then(of);
             begun.into_iter().for_each(|(place, column)| equation.left[place] = column);
         }
         equation.voided()
