@@ -15,7 +15,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// Samples before and after an instant whose noise of q a derivative may hold.
+/// Samples before an instant whose noise of q a derivative may hold: a second-order low-pass at a fifth of half the
+/// sampling frequency has then forgotten all but a two-hundredth.
 const BEFORE: usize = 12;
 /// … and after it.
 const AFTER: usize = 2;

@@ -207,6 +207,7 @@ mod tests {
             assert_eq!((is_derivative(own), is_derivative(computed)), (false, true), "{per_period} a period");
         }
     }
+
     /// Differences of q behind a low-pass of second order at a fifth of half the sampling frequency, which delays the
     /// motion by a twentieth of its period and more where it is faster; three in a hundred readings are lost. The
     /// filter had been running when the record began.

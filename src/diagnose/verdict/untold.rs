@@ -37,9 +37,9 @@ pub(super) fn is_of_untold_damper(case: &Case, standing: &Standing, term: Term) 
     let base = case.folds.judge(&undamped);
     let bent = Effect::prototype("presliding_friction").map(Term::Effect);
     let bent = bent.and_then(|term| contender(&case.record, &case.folds, &undamped, (&base, rubbed.floor), term));
-    let frictions = bent.into_iter().map(|found| found.held).chain([rubbed.held]);
-    let gains: Vec<Vec<f64>> =
-        frictions.map(|held| standing.blocks.gains(&case.record, &held, &standing.held)).collect();
-    let mut by_chance = gains.into_iter().map(|own| standing.blocks.p_values(&[own]).map_or(1.0, |values| values[0]));
-    by_chance.any(|p| p >= LEVEL)
+    let mut frictions = bent.into_iter().map(|found| found.held).chain([rubbed.held]);
+    frictions.any(|held| {
+        let gains = standing.blocks.gains(&case.record, &held, &standing.held);
+        standing.blocks.p_values(&[gains]).is_none_or(|values| values[0] >= LEVEL)
+    })
 }
