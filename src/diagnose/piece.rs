@@ -26,6 +26,13 @@ pub struct Piece {
     pub observations: Vec<Observation>,
 }
 
+/// Median distance of two samples of several stretches, s; 0 where there are no two.
+pub fn usual_step<'a>(times: impl Iterator<Item = &'a [f64]>) -> f64 {
+    let mut steps: Vec<f64> = times.flat_map(|t| t.windows(2).map(|pair| pair[1] - pair[0])).collect();
+    let middle = steps.len() / 2;
+    if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
 impl Piece {
     /// The pieces of a recording, in the order of time.
     pub fn all(recording: &Recording, hold: Hold) -> Vec<Piece> {

@@ -9,7 +9,7 @@
 
 use super::spline::{Sensors, Spline};
 use super::track::Track;
-use crate::diagnose::piece::Piece;
+use crate::diagnose::piece::{Piece, usual_step};
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -109,7 +109,7 @@ fn late(tracks: &[Track], lag: f64) -> Vec<[f64; 3]> {
 
 /// ẋ at and about every sample, and 1: what a filter of the velocity may be made of.
 fn filtered(pieces: &[Piece], tracks: &[Track]) -> Vec<[f64; AROUND + 1]> {
-    let usual = usual_distance(pieces);
+    let usual = usual_step(pieces.iter().map(|piece| piece.t.as_slice()));
     let of = |(piece, track): (&Piece, &Track)| {
         let row = |k: usize| {
             let about = |place: usize| match place {
@@ -134,13 +134,6 @@ fn velocity(times: &[f64], track: &Track, (mut k, t): (usize, f64)) -> f64 {
     }
     let ([_, v, a, j], after) = (track.states[k], t - times[k]);
     v + after * (a + 0.5 * after * j)
-}
-
-/// Median distance of two samples, s.
-fn usual_distance(pieces: &[Piece]) -> f64 {
-    let mut all: Vec<f64> = pieces.iter().flat_map(|piece| piece.t.windows(2).map(|pair| pair[1] - pair[0])).collect();
-    let middle = all.len() / 2;
-    if all.is_empty() { 0.0 } else { *all.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// The readings of q̇ through the smoother through which q went.
@@ -237,7 +230,7 @@ impl Left {
 
 /// By piece and sample, whether no reading is lost from there on as far as a filter reaches.
 fn whole(pieces: &[Piece]) -> Vec<Vec<bool>> {
-    let most = (AROUND as f64 - 0.5) * usual_distance(pieces);
+    let most = (AROUND as f64 - 0.5) * usual_step(pieces.iter().map(|piece| piece.t.as_slice()));
     let own = |piece: &Piece| piece.t.windows(AROUND).map(|t| t[AROUND - 1] - t[0] < most).collect();
     pieces.iter().map(own).collect()
 }

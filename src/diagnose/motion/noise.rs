@@ -5,7 +5,7 @@
 //! those of Σ F dt, those of the displacement beside those of ΣΣ F dt². A reading that is rounded to steps of δ errs by
 //! δ²/12 at least.
 
-use crate::diagnose::piece::Piece;
+use crate::diagnose::piece::{Piece, usual_step};
 
 /// Orders of differences that are tried; the one that leaves least is kept.
 const ORDERS: std::ops::RangeInclusive<usize> = 2..=6;
@@ -51,9 +51,7 @@ fn of_order(pieces: &[Piece], channel: usize, order: usize) -> f64 {
 /// By its first sample, whether a difference is taken over equal steps: across a lost reading the motion itself stands
 /// in it. All are where none or too few would be left.
 fn even(t: &[f64], order: usize) -> Vec<bool> {
-    let mut steps: Vec<f64> = t.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = steps.len() / 2;
-    let usual = if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    let usual = usual_step([t].into_iter());
     let is_usual = |pair: &[f64]| (pair[1] - pair[0] - usual).abs() < UNEVEN * usual;
     let even: Vec<bool> = t.windows(order + 1).map(|all| all.windows(2).all(is_usual)).collect();
     let most = 2 * even.iter().filter(|even| **even).count() > even.len();
