@@ -104,7 +104,22 @@ pub(in crate::diagnose) fn rounding(pieces: &[Piece], channel: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::central_binomial;
+    use super::*;
+    use crate::identify::Recording;
+    use crate::law::Hold;
+
+    /// Readings of a fast motion, 3 in 100 of which are lost: across a gap the motion itself stands in a difference.
+    #[test]
+    fn lost_readings_are_no_noise() {
+        let whole: Vec<f64> = (0..4000).map(|k| 5e-3 * f64::from(k)).collect();
+        let t: Vec<f64> = whole.into_iter().enumerate().filter(|(k, _)| (k * 37) % 100 > 2).map(|(_, t)| t).collect();
+        let step = 2e-3;
+        let q = t.iter().map(|t| ((30.0 * t).sin() / step).floor() * step).collect();
+        let recording = Recording::new("q", t, Some(q), None, None).unwrap();
+        let [noise, _] = sensor_noise(&Piece::all(&recording, Hold::Linear));
+        let expected = step / 12.0_f64.sqrt();
+        assert!((0.7..1.5).contains(&(noise / expected)), "{noise:e} beside {expected:e}");
+    }
 
     #[test]
     fn differences_of_white_noise_have_the_binomial_variance() {
