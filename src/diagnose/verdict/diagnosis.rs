@@ -7,9 +7,9 @@
 
 use super::case::{Case, Standing};
 use super::contained::smallest;
-use super::doubt::{Doubt, SURE, may_be};
+use super::doubt::{Doubt, SURE, doubt_of_gain, may_be};
 use super::entry::{Candidate, Entry};
-use super::errors::{TIE, WindowError, are_adequate, errors};
+use super::errors::{WindowError, are_adequate, errors};
 use super::law::Law;
 use super::remainder;
 use super::untold::is_of_untold_damper;
@@ -69,7 +69,8 @@ pub(in crate::diagnose) fn diagnose(case: &Case, terms: &[Term]) -> Option<Diagn
     let (mut entries, tried) = entries(case, &standing, terms);
     let named = entries.iter().position(|entry| entry.doubt.is_none());
     let winner = named.map(|best| smallest(case, &standing, &entries, best));
-    let ties = winner.map_or_else(Vec::new, |winner| ties(&entries, winner));
+    let told = winner.zip(named);
+    let ties = told.map_or_else(Vec::new, |(winner, best)| ties(case, &standing, &entries, [winner, best]));
     let improved = winner.and_then(|winner| {
         let term = entries[winner].contender.term;
         let law: Vec<Term> = terms.iter().copied().chain([term]).collect();
@@ -162,18 +163,35 @@ fn acting_late(case: &Case, terms: &[Term], before: &HeldOut, effect: Effect) ->
     Some(Entry { standing: Some(standing), ..Entry::new(contender) })
 }
 
-/// Those that are at least as good as the winner, it first, those last that contain it: of them it is a limit. Once
-/// something is missing a tied one need not prove it again; one that the law's own terms nearly are cannot win alone,
-/// but may be what is there.
-fn ties(entries: &[Entry], winner: usize) -> Vec<Vec<String>> {
-    let best = entries[winner].contender.score;
-    let near = |entry: &&Entry| may_be(entry.doubt) && entry.contender.score <= best + TIE * COUNT as f64;
-    let others = entries.iter().enumerate().filter(|(index, entry)| *index != winner && near(entry));
+/// What the record cannot tell from the winner, it first: the one of the largest gain, which contains the winner where
+/// it is another; then those that the winner does not outdo, with fewer inner parameters first, for they do as much
+/// with less, and those that contain it last, for of them it is a limit. Once something is missing a tied one need not
+/// prove it again; one that the law's own terms nearly are cannot win alone, but may be what is there.
+fn ties(case: &Case, standing: &Standing, entries: &[Entry], [winner, best]: [usize; 2]) -> Vec<Vec<String>> {
+    let held = &entries[winner].contender.held;
     let first = entries[winner].name();
-    let names = others.map(|(_, entry)| entry.name());
-    let (larger, apart): (Vec<String>, Vec<String>) = names.partition(|name| Catalogue::is_contained(&first, name));
-    let group: Vec<String> = [vec![first], apart, larger].concat();
-    if group.len() > 1 { vec![group.into_iter().take(TIED).collect()] } else { Vec::new() }
+    let is_near = |index: &usize| {
+        let other = &entries[*index];
+        may_be(other.doubt) && !is_outdone(case, standing, &other.contender.held, held)
+    };
+    let place = |index: &usize| {
+        let Entry { contender, doubt, .. } = &entries[*index];
+        let inner = contender.term.effect().map_or(0, |effect| effect.inner().len());
+        let contains = Catalogue::is_contained(&first, &entries[*index].name());
+        (*index != winner, *index != best, contains, *doubt == Some(Doubt::Trap), inner)
+    };
+    let mut group: Vec<usize> =
+        (0..entries.len()).filter(|index| [winner, best].contains(index) || is_near(index)).collect();
+    group.sort_by_key(place);
+    let names: Vec<String> = group.into_iter().take(TIED).map(|index| entries[index].name()).collect();
+    if names.len() > 1 { vec![names] } else { Vec::new() }
+}
+
+/// Whether one effect beats another by what an effect must beat its absence by: a gain worth the word that is no
+/// chance, or a large one in every window.
+fn is_outdone(case: &Case, standing: &Standing, other: &HeldOut, best: &HeldOut) -> bool {
+    let chance = standing.blocks.p_values(&[standing.blocks.gains(&case.record, other, best)]).map(|values| values[0]);
+    doubt_of_gain(other, best, chance, &standing.floor).is_none()
 }
 
 fn conclude(
