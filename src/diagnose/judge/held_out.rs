@@ -218,6 +218,15 @@ impl HeldOut {
     }
 }
 
+#[cfg(test)]
+impl HeldOut {
+    /// The same error in every equation.
+    pub(in crate::diagnose) fn of_error(error: f64) -> HeldOut {
+        let residuals = [0; COUNT].map(|_| vec![error; FEWEST]);
+        HeldOut { residuals, errors: [error; COUNT], trained: [0.0; FOLDS], spread: [Some(1.0); COUNT] }
+    }
+}
+
 /// RMS residual ÷ std of the target, by window length.
 fn errors(residuals: &Column, spread: &[Option<f64>; COUNT]) -> [f64; COUNT] {
     [0, 1, 2].map(|which| {

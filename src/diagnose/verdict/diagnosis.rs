@@ -164,21 +164,20 @@ fn acting_late(case: &Case, terms: &[Term], before: &HeldOut, effect: Effect) ->
 }
 
 /// What the record cannot tell from the winner, it first: the one of the largest gain, which contains the winner where
-/// it is another; then those that the winner does not outdo, with fewer inner parameters first, for they do as much
-/// with less, and those that contain it last, for of them it is a limit. Once something is missing a tied one need not
-/// prove it again; one that the law's own terms nearly are cannot win alone, but may be what is there.
+/// it is another; then those that this one does not outdo and that take more than half of what it takes, last those
+/// that contain the winner, for of them it is a limit. Once something is missing a tied one need not prove it again;
+/// one that the law's own terms nearly are cannot win alone and comes after those that can, but may be what is there.
 fn ties(case: &Case, standing: &Standing, entries: &[Entry], [winner, best]: [usize; 2]) -> Vec<Vec<String>> {
-    let held = &entries[winner].contender.held;
+    let most = &entries[best].contender;
     let first = entries[winner].name();
     let is_near = |index: &usize| {
-        let other = &entries[*index];
-        may_be(other.doubt) && !is_outdone(case, standing, &other.contender.held, held)
+        let Entry { contender, doubt, .. } = &entries[*index];
+        let takes_as_much = 2.0 * contender.score < most.score;
+        may_be(*doubt) && takes_as_much && !is_outdone(case, standing, &contender.held, &most.held)
     };
     let place = |index: &usize| {
-        let Entry { contender, doubt, .. } = &entries[*index];
-        let inner = contender.term.effect().map_or(0, |effect| effect.inner().len());
         let contains = Catalogue::is_contained(&first, &entries[*index].name());
-        (*index != winner, *index != best, contains, *doubt == Some(Doubt::Trap), inner)
+        (*index != winner, *index != best, contains, entries[*index].doubt == Some(Doubt::Trap))
     };
     let mut group: Vec<usize> =
         (0..entries.len()).filter(|index| [winner, best].contains(index) || is_near(index)).collect();

@@ -68,3 +68,19 @@ pub(super) fn is_large(before: &HeldOut, after: &HeldOut, floor: &[f64; COUNT]) 
 pub(super) fn may_be(doubt: Option<Doubt>) -> bool {
     matches!(doubt, None | Some(Doubt::Chance | Doubt::Trap))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_effect_beats_another_where_the_difference_is_no_chance_or_is_large() {
+        let held = HeldOut::of_error;
+        let doubt = |better: f64, p: f64| doubt_of_gain(&held(0.10), &held(better), Some(p), &[0.01; COUNT]);
+        // 9 % a window, as chance has it between a cubic and a quintic spring under a disturbance
+        assert_eq!(doubt(0.091, 0.02), Some(Doubt::Chance));
+        assert_eq!(doubt(0.091, 0.005), None);
+        assert_eq!(doubt(0.097, 0.005), Some(Doubt::Chance));
+        assert_eq!(doubt(0.080, 0.5), None);
+    }
+}
