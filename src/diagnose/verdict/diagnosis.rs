@@ -163,7 +163,7 @@ fn acting_late(case: &Case, terms: &[Term], before: &HeldOut, effect: Effect) ->
     Some(Entry { standing: Some(standing), ..Entry::new(contender) })
 }
 
-/// What the record cannot tell from the winner, it first: the one of the largest gain, which contains the winner where
+/// What the record cannot tell from the winner, it first: the best that could be named, which contains the winner where
 /// it is another; then those that this one does not outdo and that take more than half of what it takes, last those
 /// that contain the winner, for of them it is a limit. Once something is missing a tied one need not prove it again;
 /// one that the law's own terms nearly are cannot win alone and comes after those that can, but may be what is there.

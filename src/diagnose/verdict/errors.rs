@@ -2,7 +2,7 @@
 
 use crate::diagnose::judge::{COUNT, HeldOut, Record};
 
-/// Score, for each window length, by which two candidates are equally good: 5 % of the error.
+/// Score, for each window length, by which two laws are equally good: 5 % of the error.
 pub(in crate::diagnose) const TIE: f64 = 0.05;
 
 /// Error ÷ what the sensors alone would leave, up to which a law is as good as right.
