@@ -353,6 +353,21 @@ fn assert_answer(name: &str, found: &Value, right: &[&str]) {
     let number = |key: &str| best[key].as_f64().unwrap_or_else(|| panic!("{name}: no {key} in {best}"));
     assert!(number("std") < number("coefficient").abs(), "{name}: {best}");
     assert!(number("error_after") < number("error_before"), "{name}: {best}");
+    assert_tie(name, found);
+}
+
+/// A tie begins with what is named, has at most three members, and each takes more than half of the error, by its
+/// logarithm, of what the best of them takes: a short record tells hardly any two effects apart by chance alone.
+fn assert_tie(name: &str, found: &Value) {
+    let Some(tie) = found["indistinguishable"][0].as_array() else { return };
+    assert!(tie[0] == found["effect"] && (2..=3).contains(&tie.len()), "{name}: {tie:?}");
+    let candidates = found["candidates"].as_array().unwrap();
+    let score = |effect: &Value| {
+        let own = candidates.iter().find(|candidate| candidate["effect"] == *effect);
+        own.and_then(|own| own["score"].as_f64()).unwrap_or_else(|| panic!("{name}: no score of {effect}"))
+    };
+    let most = tie.iter().map(score).fold(0.0, f64::min);
+    assert!(tie.iter().all(|effect| 2.0 * score(effect) < most), "{name}: {tie:?}");
 }
 
 #[test]
