@@ -123,6 +123,26 @@ fn a_drifting_stiffness_is_no_effect_of_the_catalogue() {
     }
 }
 
+/// S of a candidate.
+fn score(found: &Value, effect: &Value) -> f64 {
+    let own = |candidate: &&Value| candidate["effect"] == *effect;
+    found["candidates"].as_array().unwrap().iter().find(own).unwrap()["score"].as_f64().unwrap()
+}
+
+#[test]
+fn what_is_beaten_beyond_chance_is_not_tied_though_it_takes_nearly_as_much() {
+    let bench = Bench::new("beaten");
+    for seed in [61, 62, 63] {
+        let (name, data) = (format!("a{seed}"), format!("a{seed}.csv"));
+        simulate(&bench, &name, seed, 0.05, "quadratic_damping = 3.0", "");
+        let found = diagnose(&bench, &[&data]);
+        assert_eq!(found["effect"], "quadratic_damping", "{found:#}");
+        let [best, other] = ["quadratic_damping", "cubic_damping"].map(|effect| score(&found, &effect.into()));
+        assert!(other < 0.6 * best, "{other} of {best}");
+        assert!(!found["indistinguishable"].to_string().contains("cubic_damping"), "{found:#}");
+    }
+}
+
 #[test]
 fn what_cannot_be_told_apart_is_a_tie_with_the_recording_that_would() {
     let bench = Bench::new("tie");
@@ -134,11 +154,10 @@ fn what_cannot_be_told_apart_is_a_tie_with_the_recording_that_would() {
         let group = found["indistinguishable"][0].as_array().unwrap();
         assert!(group.len() > 1 && group.contains(&"cubic_stiffness".into()), "{group:?}");
         assert_eq!(group[0], found["effect"], "the best first");
-        let score = |id: &Value| {
-            let own = |candidate: &&Value| candidate["effect"] == *id;
-            found["candidates"].as_array().unwrap().iter().find(own).unwrap()["score"].as_f64().unwrap()
-        };
-        assert!(group.iter().all(|id| (score(id) - score(&group[0])).abs() <= 0.15 + 1e-9), "{found:#}");
+        assert!(
+            group.iter().all(|id| (score(&found, id) - score(&found, &group[0])).abs() <= 0.15 + 1e-9),
+            "{found:#}"
+        );
         let lines = three_lines(&bench, &data);
         assert!(lines[0].contains("; this record cannot tell it from "), "{lines:#?}");
         assert!(lines[2].starts_with("decides: a longer or larger motion, between "), "{lines:#?}");
