@@ -271,7 +271,7 @@ fn briefly(doubt: Doubt) -> &'static str {
         Doubt::Sign => "wrong sign",
         Doubt::Trap => "the law's own terms are it",
         Doubt::Uncertain => "within its std",
-        Doubt::Worse => "explains nothing",
+        Doubt::Worse => "worse, or leaves all",
         Doubt::Chance => "may be chance",
     }
 }
