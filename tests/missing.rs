@@ -2,7 +2,7 @@
 
 use switchid::identify::{Identifier, Sample, Settings};
 use switchid::law::{Catalogue, Given, Model, Term};
-use switchid::simulate::{Scenario, record};
+use switchid::simulate::{Builtin, Reading, Scenario, record};
 
 /// A linear oscillator under a multisine, with an effect of the catalogue hidden in it.
 fn scenario(hidden: &str, seed: u64) -> Scenario {
@@ -41,5 +41,59 @@ fn a_hidden_effect_is_named() {
 fn a_complete_law_lacks_nothing() {
     for seed in [1, 2, 3] {
         assert_eq!(named("", seed), None, "seed {seed}");
+    }
+}
+
+/// Plants whose laws switch at 20 s, with an effect that their models lack: a tenth of the inertia's force.
+fn switching(plant: Builtin, effect: &str, seed: u64) -> Scenario {
+    let mut scenario = plant.random(seed).with_noise(0.0);
+    scenario.stages.truncate(2);
+    scenario.stages[1].start = 20.0;
+    scenario.duration = 30.0;
+    let term = Term::parse(effect).unwrap();
+    let (motion, inertia) = (record(&scenario).unwrap(), scenario.stages[0].coefficients[0]);
+    let of_inertia = |pair: &[Reading]| inertia * (pair[1].qd - pair[0].qd) / scenario.excitation.sample_time;
+    let squares: f64 = motion.windows(2).map(|pair| of_inertia(pair).powi(2)).sum();
+    let lacked: f64 = motion.iter().map(|at| term.force(at.q, at.qd, 0.0).powi(2)).sum();
+    scenario.hidden.push(term, 0.1 * (squares / lacked).sqrt());
+    scenario.with_noise(0.01)
+}
+
+/// What the identifier with the plant's own terms says: the coefficients before the switch relative to the true ones,
+/// the switches that it counts by then and in the end, and the effect that it names.
+fn followed(scenario: &Scenario, plant: Builtin) -> (Vec<f64>, [u32; 2], Option<&'static str>) {
+    let model = Model::of("without", plant.terms().into_iter().map(|term| (term, Given::Fit)));
+    let mut identifier = Identifier::new(&model, Settings::default()).unwrap();
+    let (mut ratios, mut before) = (Vec::new(), 0);
+    for reading in record(scenario).unwrap() {
+        let Reading { t, q, qd, excitation } = reading;
+        if t < 19.99 {
+            let coefficients = identifier.coefficients().iter().zip(&scenario.stages[0].coefficients);
+            ratios = coefficients.map(|(found, truth)| found.value / truth).collect();
+            before = identifier.output().switch_count;
+        }
+        identifier.step(Sample { t, q, qd, excitation }).unwrap();
+    }
+    let output = identifier.output();
+    let named = output.missing.map(|missing| Catalogue::ENTRIES[missing.entry].id);
+    (ratios, [before, output.switch_count], named)
+}
+
+#[test]
+fn a_law_that_lacks_an_effect_is_known_with_it_and_its_switch_is_seen() {
+    let cases = [
+        (Builtin::DuffingSine, "coulomb_friction"),
+        (Builtin::DuffingSine, "bilinear_stiffness"),
+        (Builtin::DuffingWhite, "coulomb_friction"),
+        (Builtin::DuffingWhite, "bilinear_stiffness"),
+        (Builtin::DuffingWhite, "signed_quadratic_stiffness"),
+    ];
+    for (plant, effect) in cases {
+        for seed in 1..5 {
+            let (ratios, switches, named) = followed(&switching(plant, effect, seed), plant);
+            let label = format!("{} {effect} seed {seed}", plant.id());
+            assert!(ratios.iter().all(|ratio| (ratio - 1.0).abs() < 0.05), "{label}: {ratios:.3?} of the truth");
+            assert_eq!((switches, named), ([0, 1], Some(effect)), "{label}");
+        }
     }
 }

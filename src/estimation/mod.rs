@@ -13,11 +13,12 @@
 //! - [`InnovationGate`]: readings that are no part of the motion;
 //! - [`Pass`]: one run over a record: likelihood, score and Fisher information of the coefficients;
 //! - [`AugmentedFilter`]: the state together with coefficients that may wander;
-//! - [`ScoreTest`]: effects that the law does not have, tested in the stream; [`TermSelection`]: which of those that it
+//! - [`ScoreTest`]: effects that the law does not have, tested in the stream; [`AddedEffect`]: one of them, added; [`TermSelection`]: which of those that it
 //!   may have it has;
 //! - [`Information`]: sums of what is known of the coefficients, and [`Solution`], what follows from them; [`System`]
 //!   solves them.
 
+mod added_effect;
 mod augmented_filter;
 mod covariance;
 mod difference_noise;
@@ -35,6 +36,7 @@ mod term_selection;
 mod track;
 mod weak_start;
 
+pub use added_effect::{AddedEffect, KnownEffect};
 pub use augmented_filter::{AugmentedFilter, Start, Unknowns};
 pub use covariance::Matrix;
 pub use difference_noise::DifferenceNoise;
@@ -45,7 +47,7 @@ pub use innovation_gate::{InnovationGate, OUTLYING};
 pub use odds::{SAMPLES_OF_A_VARIANCE, TWENTY_TO_ONE, log_sum};
 pub use pass::{IntervalMap, Observation, Pass, gains};
 pub use rivals::{RIVALS, Rivals};
-pub use score_test::{Lag, LagTest, Missing, ScoreTest};
+pub use score_test::{Lacked, Lag, LagTest, Missing, ScoreTest};
 pub use smoother::{Smoothable, smooth};
 pub use symmetric::{Lane, LogSum, System, WIDTH};
 pub use term_selection::{TermSelection, price_of_a_term};

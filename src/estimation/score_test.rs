@@ -37,6 +37,12 @@ pub struct Missing {
 }
 
 impl Missing {
+    /// Of an effect of the catalogue.
+    pub fn of(term: Term, evidence: f64) -> Option<Missing> {
+        let entry = Catalogue::ENTRIES.iter().position(|entry| is_same(entry.term, term))?;
+        Some(Missing { entry, evidence })
+    }
+
     /// Whether it explains enough to be named.
     pub fn is_named(&self) -> bool {
         self.evidence > NAMED
@@ -46,6 +52,17 @@ impl Missing {
     pub fn effect(&self) -> &'static Entry {
         &Catalogue::ENTRIES[self.entry]
     }
+}
+
+/// An effect that the law lacks as it was tested.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Lacked {
+    /// Which, and how much it explains.
+    pub missing: Missing,
+    /// It, with inner parameters.
+    pub term: Term,
+    /// Its coefficient.
+    pub coefficient: f64,
 }
 
 /// When F acted, by the motion.
@@ -103,6 +120,8 @@ pub struct ScoreTest {
     candidates: Vec<Candidate>,
     own: Own,
     before: State,
+    /// The excitation for which the candidates' forces there are known.
+    excitation: f64,
 }
 
 /// When F acted, beside a run.
@@ -126,46 +145,50 @@ struct Own {
 struct Candidate {
     entry: usize,
     term: Term,
+    /// Its force at the last sample.
+    force: f64,
     sums: Sums,
 }
 
 /// What the innovations say of one more coefficient.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Sums {
+pub(super) struct Sums {
     /// ∂(q, q̇)/∂ its coefficient.
-    sensitivity: [f64; 2],
+    pub(super) sensitivity: [f64; 2],
     /// Its expected measurement by channel.
     rows: [f64; 2],
-    information: f64,
-    score: f64,
+    pub(super) information: f64,
+    pub(super) score: f64,
     /// With each free term of the law.
-    cross: Vec<f64>,
+    pub(super) cross: Vec<f64>,
 }
 
 impl ScoreTest {
     /// The catalogue's effects that one instant gives and that the law of these terms does not have, beside `n` free
     /// terms.
     pub fn new(terms: &[Term], n: usize) -> ScoreTest {
-        let absent = |term: &Term| match term {
-            Term::Effect(effect) => {
-                !terms.iter().filter_map(|other| other.effect()).any(|other| other.id() == effect.id())
-            }
-            _ => !terms.contains(term),
-        };
+        let absent = |term: &Term| !terms.iter().any(|other| is_same(*other, *term));
         let entries = Catalogue::ENTRIES.iter().enumerate();
         let candidates = entries.filter(|(_, entry)| entry.term.is_pointwise() && absent(&entry.term));
-        let candidate =
-            |(entry, found): (usize, &crate::law::Entry)| Candidate { entry, term: found.term, sums: Sums::new(n) };
-        ScoreTest { candidates: candidates.map(candidate).collect(), own: Own::new(n), before: State::default() }
+        let candidate = |(entry, found): (usize, &crate::law::Entry)| Candidate {
+            entry,
+            term: found.term,
+            force: 0.0,
+            sums: Sums::new(n),
+        };
+        let candidates = candidates.map(candidate).collect();
+        ScoreTest { candidates, own: Own::new(n), before: State::default(), excitation: f64::NAN }
     }
 
-    /// Begins beside a run; inner parameters follow the largest motion seen.
+    /// Begins beside a run; inner parameters follow the largest motion seen, once there is one.
     pub fn begin(&mut self, state: State, largest: [f64; 2]) {
         for candidate in &mut self.candidates {
             candidate.sums.clear();
-            candidate.term = scaled(candidate.term, largest);
+            if largest.iter().all(|largest| *largest > 0.0) {
+                candidate.term = scaled(candidate.term, largest);
+            }
         }
-        self.before = state;
+        (self.before, self.excitation) = (state, f64::NAN);
     }
 
     /// Takes the sample that the run has just taken, under the law `motion`.
@@ -176,38 +199,50 @@ impl ScoreTest {
         observation: &Observation,
         innovations: &[Option<Innovation>; 2],
     ) {
-        let state = pass.filter.state();
-        let inverse_mass = motion.mass(state.q).recip();
-        let acceleration = (state.qd - self.before.qd) / observation.dt;
+        let (before, state) = (self.before, pass.filter.state());
+        let (inverse_mass, gains) = (motion.mass(state.q).recip(), gains(innovations));
+        let acceleration = (state.qd - before.qd) / observation.dt;
         let [from, _, to] = observation.drive.part(0, 1);
-        let gains = gains(innovations);
-        for candidate in &mut self.candidates {
-            let term = candidate.term;
-            let force = 0.5 * (term.force(self.before.q, self.before.qd, from) + term.force(state.q, state.qd, to));
-            let push = -(force + term.mass(state.q) * acceleration) * inverse_mass;
-            candidate.sums.carry(pass, push, &gains);
+        let known = self.excitation == from;
+        for Candidate { term, force, sums, .. } in &mut self.candidates {
+            let first = if known { *force } else { term.force(before.q, before.qd, from) };
+            *force = term.force(state.q, state.qd, to);
+            let pushed = -(0.5 * (first + *force) + term.mass(state.q) * acceleration) * inverse_mass;
+            sums.carry(pass, pushed, &gains);
         }
-        self.before = state;
+        (self.before, self.excitation) = (state, to);
         self.candidates.iter_mut().for_each(|candidate| candidate.sums.take(pass, innovations));
     }
 
-    /// Solves for the law's own terms, of which `own` is what the run says.
-    pub fn end(&mut self, own: &Information, active: &[bool]) {
-        self.own.solve(own, active);
+    /// The coefficients have become those plus `step`, under which the state at the last sample is this.
+    pub fn shift(&mut self, step: &[f64], state: State) {
+        (self.before, self.excitation) = (state, f64::NAN);
+        self.candidates.iter_mut().for_each(|candidate| candidate.sums.shift(step));
     }
 
-    /// The candidate with the most evidence, `overdispersion` being what the law's lasting error makes of a nat; one
-    /// with a sign that physics does not allow has none.
-    pub fn likeliest(&self, overdispersion: f64) -> Option<Missing> {
+    /// The candidate with the most evidence beside the law's own terms, of which `own` is what the run says,
+    /// `overdispersion` being what the law's lasting error makes of a nat; one with a sign that physics does not allow
+    /// has none.
+    pub fn likeliest(&mut self, own: &Information, active: &[bool], overdispersion: f64) -> Option<Lacked> {
+        self.own.solve(own, active);
         let price = (self.candidates.len().max(1) as f64).ln();
-        let evidence = |candidate: &Candidate| {
+        let lacked = |candidate: &Candidate| {
+            let (entry, term) = (candidate.entry, candidate.term);
             let (coefficient, gain, _) = candidate.sums.gain(&self.own);
-            let allowed = Catalogue::ENTRIES[candidate.entry].sign.allows(coefficient);
-            if allowed { gain / overdispersion.max(1.0) - price } else { 0.0 }
+            let allowed = Catalogue::ENTRIES[entry].sign.allows(coefficient);
+            let evidence = if allowed { gain / overdispersion.max(1.0) - price } else { 0.0 };
+            Lacked { missing: Missing { entry, evidence }, term, coefficient }
         };
-        let all =
-            self.candidates.iter().map(|candidate| Missing { entry: candidate.entry, evidence: evidence(candidate) });
-        all.max_by(|a, b| a.evidence.total_cmp(&b.evidence))
+        self.candidates.iter().map(lacked).max_by(|a, b| a.missing.evidence.total_cmp(&b.missing.evidence))
+    }
+
+    /// By how much the law's own coefficients, n, are others beside that effect, as it was found last.
+    pub fn moved(&self, lacked: Option<&Lacked>, step: &mut [f64]) {
+        step.fill(0.0);
+        let Some(Lacked { missing, coefficient, .. }) = lacked else { return };
+        for candidate in self.candidates.iter().filter(|candidate| candidate.entry == missing.entry) {
+            self.own.determined().for_each(|row| step[row] = -coefficient * candidate.sums.shared(row, &self.own));
+        }
     }
 }
 
@@ -235,10 +270,7 @@ impl LagTest {
 
     /// The coefficients have become those plus `step`.
     pub fn shift(&mut self, step: &[f64]) {
-        for sums in &mut self.lags {
-            let moved: f64 = sums.cross.iter().zip(step).map(|(cross, step)| cross * step).sum();
-            sums.score -= moved;
-        }
+        self.lags.iter_mut().for_each(|sums| sums.shift(step));
     }
 
     /// When F acted against when it is taken to have, by a run of that track which says `own` of the law's terms;
@@ -296,36 +328,44 @@ impl Own {
 }
 
 impl Sums {
-    fn new(n: usize) -> Sums {
+    pub(super) fn new(n: usize) -> Sums {
         Sums { sensitivity: [0.0; 2], rows: [0.0; 2], information: 0.0, score: 0.0, cross: vec![0.0; n] }
     }
 
-    fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         (self.sensitivity, self.information, self.score) = ([0.0; 2], 0.0, 0.0);
         self.cross.fill(0.0);
     }
 
+    /// Copies the other's into this room.
+    pub(super) fn copy_from(&mut self, other: &Sums) {
+        (self.sensitivity, self.rows) = (other.sensitivity, other.rows);
+        (self.information, self.score) = (other.information, other.score);
+        self.cross.copy_from_slice(&other.cross);
+    }
+
+    /// The law's own coefficients have become those plus `step`.
+    pub(super) fn shift(&mut self, step: &[f64]) {
+        let moved: f64 = self.cross.iter().zip(step).map(|(cross, step)| cross * step).sum();
+        self.score -= moved;
+    }
+
     /// Goes with the run over an interval in which a coefficient of 1 accelerates by `push`.
-    fn carry(&mut self, pass: &Pass, push: f64, gains: &[[f64; 2]; 2]) {
+    pub(super) fn carry(&mut self, pass: &Pass, push: f64, gains: &[[f64; 2]; 2]) {
         (self.rows, self.sensitivity) = pass.carry(self.sensitivity, push, gains);
     }
 
     /// Takes the innovations of a sample of the run.
-    fn take(&mut self, pass: &Pass, innovations: &[Option<Innovation>; 2]) {
-        for channel in Channel::ALL {
-            if let Some(innovation) = &innovations[channel as usize] {
-                self.add(channel, innovation, pass.expected(channel));
-            }
-        }
-    }
-
-    /// Takes the innovation of a channel, of which the law's terms expect `own`.
-    fn add(&mut self, channel: Channel, innovation: &Innovation, own: &[f64]) {
-        let row = self.rows[channel as usize];
-        let scaled = row * innovation.precision;
-        self.information += scaled * row;
-        self.score += scaled * innovation.residual;
-        self.cross.iter_mut().zip(own).for_each(|(sum, other)| *sum += scaled * other);
+    pub(super) fn take(&mut self, pass: &Pass, innovations: &[Option<Innovation>; 2]) {
+        let [precision, residual] = [
+            innovations.map(|innovation| innovation.map_or(0.0, |innovation| innovation.precision)),
+            innovations.map(|innovation| innovation.map_or(0.0, |innovation| innovation.residual)),
+        ];
+        let [q, qd] = [0, 1].map(|channel| self.rows[channel] * precision[channel]);
+        self.information += q * self.rows[0] + qd * self.rows[1];
+        self.score += q * residual[0] + qd * residual[1];
+        let own = pass.expected(Channel::Q).iter().zip(pass.expected(Channel::Qd));
+        self.cross.iter_mut().zip(own).for_each(|(sum, own)| *sum += q * own.0 + qd * own.1);
     }
 
     /// (coefficient, gain in log-likelihood, information of its own) beside the law's own terms.
@@ -349,10 +389,27 @@ impl Sums {
     }
 }
 
+/// The acceleration over the run's last interval, from the state `before` it, that a coefficient of 1 of the term is.
+pub(super) fn push(term: Term, motion: &Motion, before: State, pass: &Pass, observation: &Observation) -> f64 {
+    let state = pass.filter.state();
+    let acceleration = (state.qd - before.qd) / observation.dt;
+    let [from, _, to] = observation.drive.part(0, 1);
+    let force = 0.5 * (term.force(before.q, before.qd, from) + term.force(state.q, state.qd, to));
+    -(force + term.mass(state.q) * acceleration) / motion.mass(state.q)
+}
+
+/// Whether both are the same effect, whatever their inner parameters.
+fn is_same(one: Term, other: Term) -> bool {
+    match (one.effect(), other.effect()) {
+        (Some(one), Some(other)) => one.id() == other.id(),
+        _ => one == other,
+    }
+}
+
 /// The term with inner parameters that suit a motion of this size.
 fn scaled(term: Term, largest: [f64; 2]) -> Term {
     let Term::Effect(effect) = term else { return term };
-    let [q, qd] = largest.map(|largest| largest.max(f64::MIN_POSITIVE));
+    let [q, qd] = largest;
     let moved = match effect {
         Effect::DeadZoneStiffness { .. } | Effect::OneSidedStop { .. } => effect.with_inner(&[GAP * q]),
         Effect::StribeckFriction { .. } => effect.with_inner(&[SPEED * qd]),

@@ -2,7 +2,7 @@
 
 use super::settings::{Channels, Settings};
 use super::timing::Timing;
-use crate::law::{Expression, Given, Model, Motion, Term};
+use crate::law::{Effect, Expression, Given, Model, Motion, Term};
 use crate::weak::Row;
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +19,7 @@ pub struct Problem {
     pub free_terms: Vec<Term>,
     /// Which free terms evidence may drop.
     pub maybe: Vec<bool>,
-    /// Coefficients where known, 0 elsewhere; one for each of `terms`.
+    /// Coefficients where known, 0 elsewhere; one for each of `terms`, then that of the effect that the model lacks.
     pub known: Vec<f64>,
     /// Position of the inertia among `terms`.
     pub inertia: usize,
@@ -41,14 +41,16 @@ impl Problem {
         let entries: Vec<(Term, Given)> =
             model.terms.iter().map(|entry| (entry.term, given(entry.term, entry.given))).collect();
         let free: Vec<usize> = (0..entries.len()).filter(|index| entries[*index].1.is_free()).collect();
+        let terms = entries.iter().map(|(term, _)| *term);
         Problem {
-            terms: entries.iter().map(|(term, _)| *term).collect(),
+            terms: terms.collect(),
             own: model.expressions.clone(),
             free_terms: free.iter().map(|index| entries[*index].0).collect(),
             maybe: free.iter().map(|index| entries[*index].1 == Given::Maybe).collect(),
             known: entries
                 .iter()
                 .map(|(_, given)| if let Given::Known(value) = given { *value } else { 0.0 })
+                .chain([0.0])
                 .collect(),
             inertia: model.position(Term::Inertia).unwrap_or(0),
             free,
@@ -57,9 +59,14 @@ impl Problem {
         }
     }
 
-    /// The law with these coefficients, one for each of its terms.
-    pub fn motion<'a>(&'a self, coefficients: &'a [f64]) -> Motion<'a> {
-        Motion::new(&self.terms, coefficients).with(&self.own)
+    /// The law of these terms with these coefficients.
+    pub fn motion<'a>(&'a self, terms: &'a [Term], coefficients: &'a [f64]) -> Motion<'a> {
+        Motion::new(terms, coefficients).with(&self.own)
+    }
+
+    /// The model's terms and a place for an effect that it lacks, whose coefficient is 0 but where a record asks for it.
+    pub fn terms_and_effect(&self) -> Vec<Term> {
+        self.terms.iter().copied().chain([Term::Effect(Effect::CoulombFriction)]).collect()
     }
 
     /// Number of free coefficients.

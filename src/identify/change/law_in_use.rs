@@ -2,11 +2,12 @@
 //! law.
 
 use super::adaptive_noise::AdaptiveNoise;
-use crate::estimation::{Innovation, Lag, LagTest, Noise, Observation, Pass};
+use crate::estimation::{Innovation, Lacked, Lag, LagTest, Noise, Observation, Pass, ScoreTest};
 use crate::identify::library::{KnownLaw, Trials};
 use crate::identify::problem::Problem;
 use crate::identify::segment::{MotionScales, Segment};
 use crate::identify::window::Window;
+use crate::law::Term;
 use serde::{Deserialize, Serialize};
 
 /// The law's own covariance counts this many times where it leaves the state open, as long as it is that of a
@@ -27,9 +28,13 @@ pub struct LawInUse {
     pub run: Pass,
     /// When F acted, by that run.
     lag: LagTest,
+    /// Effects that it lacks, by that run.
+    effects: ScoreTest,
     /// What a sample of that makes of the free coefficients, as last told.
     pub lag_slope: Vec<f64>,
-    /// All coefficients.
+    /// Its terms: the model's and, last, an effect that the model lacks.
+    pub terms: Vec<Term>,
+    /// All coefficients, that of the effect which the model lacks the last.
     pub all: Vec<f64>,
     /// Which free terms it has.
     pub active: Vec<bool>,
@@ -66,7 +71,9 @@ impl LawInUse {
         LawInUse {
             run: Pass::new(n).gated(),
             lag: LagTest::new(n),
+            effects: ScoreTest::new(&problem.terms, n),
             lag_slope: vec![0.0; n],
+            terms: problem.terms_and_effect(),
             all: problem.known.clone(),
             active: vec![true; n],
             noise: Noise { sensor: [1.0; 2], process: 1.0 },
@@ -87,10 +94,11 @@ impl LawInUse {
     /// Takes a sample; returns what it says of a switch, readings that do not count included. `shifts` is what F was a
     /// sample before and will be a sample later, less what it is.
     pub fn step(&mut self, problem: &Problem, observation: &Observation, shifts: [f64; 2]) -> [Option<Innovation>; 2] {
-        let motion = problem.motion(&self.all);
+        let motion = problem.motion(&self.terms, &self.all);
         let noise = self.noise_now();
         let innovations = self.run.step(&motion, &problem.free_terms, &noise, observation);
         self.lag.step(&motion, &self.run, shifts, &innovations);
+        self.effects.step(&motion, &self.run, observation, &innovations);
         self.adaptive.add(&innovations, &observation.measured);
         self.follow_slopes(observation.dt, problem.free_inertia());
         let [q, qd] = innovations;
@@ -125,10 +133,26 @@ impl LawInUse {
         self.caution * variance.max(0.0) * self.lasting
     }
 
+    /// The coefficient of the effect that the model lacks; 0 where it does not have it.
+    pub fn effect(&self) -> f64 {
+        self.all[self.all.len() - 1]
+    }
+
     /// When F acted by all of its record up to now.
     pub fn tell_lag(&mut self) -> Lag {
         let LawInUse { run, lag, lag_slope, active, overdispersion, .. } = self;
         lag.told(&run.information, active, &run.track, *overdispersion, lag_slope).lag
+    }
+
+    /// The effect that it lacks most by all of its record up to now.
+    pub fn likeliest_effect(&mut self) -> Option<Lacked> {
+        let LawInUse { run, effects, active, overdispersion, .. } = self;
+        effects.likeliest(&run.information, active, *overdispersion)
+    }
+
+    /// By how much the free coefficients, n, are others with that effect.
+    pub fn moved(&self, lacked: &Lacked, step: &mut [f64]) {
+        self.effects.moved(Some(lacked), step);
     }
 
     /// F acts so many samples later than was assumed, each of which makes that of the free coefficients.
@@ -140,7 +164,8 @@ impl LawInUse {
 
     /// Takes over the segment's estimate and the run that led to it.
     pub fn adopt(&mut self, segment: &mut Segment, window: &Window) {
-        segment.hand_over(window, &mut self.run, &mut self.lag);
+        segment.hand_over(window, &mut self.run, &mut self.lag, &mut self.effects);
+        self.terms.copy_from_slice(&segment.terms);
         self.all.copy_from_slice(&segment.all);
         self.active.copy_from_slice(&segment.active);
         self.adaptive.refer(&self.noise, &segment.noise);
@@ -192,9 +217,12 @@ impl LawInUse {
         (self.explains, self.proven) = (true, true);
         trials.hand_over(place, window, &mut self.run);
         self.lag.begin();
+        self.effects.begin(self.run.filter.state(), [1.0; 2]);
         self.run.information.merge(&law.information);
         self.all.copy_from_slice(&problem.known);
         problem.scatter(&law.coefficients, &mut self.all);
+        let place = self.all.len() - 1;
+        (self.terms[place], self.all[place]) = trials.effect();
         self.active.copy_from_slice(&law.active);
         self.covariance.copy_from_slice(&law.covariance);
         self.next = window.ready();

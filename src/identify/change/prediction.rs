@@ -75,7 +75,7 @@ impl Prediction {
         sample: &Sample,
         observation: &Observation,
     ) {
-        let motion = problem.motion(&law.all);
+        let motion = problem.motion(&law.terms, &law.all);
         let [from, _, to] = observation.drive.part(0, 1);
         self.state = motion.step_linear(self.state, observation.dt, from, to);
         if !self.state.is_finite() {

@@ -15,6 +15,7 @@ use crate::estimation::{AugmentedFilter, Channel, InnovationGate, LOST, Noise, O
 use crate::evidence::SWITCH_SIZE;
 use crate::identify::problem::Problem;
 use crate::identify::window::Window;
+use crate::law::Term;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -72,7 +73,9 @@ enum Course {
 /// What a trial stands on.
 #[derive(Clone, Copy, Debug)]
 pub struct Before<'a> {
-    /// All coefficients of the law before.
+    /// Terms of the law before.
+    pub terms: &'a [Term],
+    /// All coefficients of it.
     pub all: &'a [f64],
     /// Value of each free coefficient at which its force moves the acceleration by as much as the law's own forces do;
     /// 0 where the law does not have it.
@@ -93,6 +96,7 @@ pub struct Before<'a> {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AugmentedDrift {
     course: Course,
+    terms: Vec<Term>,
     rivals: Vec<AugmentedFilter>,
     sound: Vec<bool>,
     weights: Vec<f64>,
@@ -117,7 +121,8 @@ impl AugmentedDrift {
         let n = problem.n();
         AugmentedDrift {
             course: Course::Idle,
-            rivals: vec![AugmentedFilter::new(problem.terms.len(), n); RIVALS],
+            terms: problem.terms_and_effect(),
+            rivals: vec![AugmentedFilter::new(problem.known.len(), n); RIVALS],
             sound: vec![true; RIVALS],
             weights: vec![0.0; INTENSITIES.len()],
             reach: vec![0.0; n],
@@ -158,7 +163,8 @@ impl AugmentedDrift {
 
     /// Puts a drift on trial against a switch.
     pub fn begin(&mut self, problem: &Problem, window: &Window, before: &Before) {
-        let unknowns = unknowns(problem);
+        self.terms.copy_from_slice(before.terms);
+        let unknowns = unknowns(problem, &self.terms);
         self.reach.copy_from_slice(before.reach);
         if let Some(index) = problem.free_inertia() {
             self.reach[index] = before.all[problem.inertia];
@@ -201,7 +207,7 @@ impl AugmentedDrift {
     /// Every filter takes a sample, which may be one after an outage in which the motion was lost; those that have left
     /// what can be computed fall out.
     fn take(&mut self, problem: &Problem, observation: &Observation, lost: bool) {
-        let unknowns = unknowns(problem);
+        let unknowns = unknowns(problem, &self.terms);
         let count = if self.course == Course::Trial { RIVALS } else { CONSTANT + 1 };
         let switched = self.rivals[SWITCHED..count.max(SWITCHED)].iter_mut().zip(&self.switch);
         for (rival, _) in switched.filter(|(_, instant)| **instant == self.next) {
@@ -300,7 +306,7 @@ impl AugmentedDrift {
 
     fn look_for_rest(&mut self, problem: &Problem) {
         let quiet = self.quiet();
-        if quiet.is_nan() || quiet < -WANDERED || !self.rivals[CONSTANT].is_sound(&unknowns(problem)) {
+        if quiet.is_nan() || quiet < -WANDERED || !self.rivals[CONSTANT].is_sound(&unknowns(problem, &self.terms)) {
             self.begin_rest();
         }
     }
@@ -313,7 +319,7 @@ impl AugmentedDrift {
 
     /// Mean and variance over all walks.
     fn mix(&mut self, problem: &Problem) {
-        let unknowns = unknowns(problem);
+        let unknowns = unknowns(problem, &self.terms);
         let sum: f64 = self.weights.iter().map(|weight| weight.exp()).sum();
         for free in 0..self.coefficients.len() {
             let (mut mean, mut square) = (0.0, 0.0);
@@ -340,9 +346,9 @@ impl AugmentedDrift {
     }
 }
 
-fn unknowns(problem: &Problem) -> Unknowns<'_> {
+fn unknowns<'a>(problem: &'a Problem, terms: &'a [Term]) -> Unknowns<'a> {
     Unknowns {
-        terms: &problem.terms,
+        terms,
         own: &problem.own,
         free: &problem.free,
         free_terms: &problem.free_terms,

@@ -115,7 +115,7 @@ impl WeakRowDrift {
         }
         self.section.load(problem, window, first, last);
         let section = self.section.view(problem, length.samples + 1);
-        self.row.integrate(&section, VARIATION, &problem.motion(&length.all));
+        self.row.integrate(&section, VARIATION, &problem.motion(&problem.terms, &length.all));
         let memory = MEMORY * longest as f64 / length.samples as f64;
         length.take(problem, &self.row, sensor, (overlap as f64).recip(), memory);
         true

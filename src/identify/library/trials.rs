@@ -5,9 +5,10 @@
 //! weighed against each other and each against "a law that a switch may lead to".
 
 use super::known_laws::{KnownLaws, ROOM};
-use crate::estimation::{Noise, Pass};
+use crate::estimation::{KnownEffect, Noise, Pass};
 use crate::identify::problem::Problem;
 use crate::identify::window::Window;
+use crate::law::{Motion, Term};
 use serde::{Deserialize, Serialize};
 
 /// The laws are weighed anew when the record has grown by this factor: 14 times in every doubling.
@@ -59,6 +60,7 @@ impl Verdict {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Trials {
     trials: Vec<Trial>,
+    terms: Vec<Term>,
     all: Vec<f64>,
     start: u64,
     /// The place of the law that was left at the start.
@@ -81,6 +83,7 @@ impl Trials {
         };
         Trials {
             trials: vec![trial; ROOM],
+            terms: problem.terms_and_effect(),
             all: problem.known.clone(),
             start: 0,
             left: None,
@@ -102,9 +105,21 @@ impl Trials {
         }
     }
 
+    /// All laws on trial have this effect, which the model lacks.
+    pub fn set_effect(&mut self, effect: Option<KnownEffect>) {
+        let place = self.all.len() - 1;
+        self.all[place] = effect.map_or(0.0, |effect| effect.coefficient);
+        effect.into_iter().for_each(|effect| self.terms[place] = effect.term);
+    }
+
     /// The record's start is that of a switch from the law at `place`.
     pub fn set_left(&mut self, place: Option<usize>) {
         self.left = place;
+    }
+
+    /// It and its coefficient.
+    pub fn effect(&self) -> (Term, f64) {
+        (self.terms[self.terms.len() - 1], self.all[self.all.len() - 1])
     }
 
     /// Ends the trial.
@@ -138,7 +153,7 @@ impl Trials {
         for place in places {
             let law = &known.laws()[place];
             problem.scatter(&law.coefficients, &mut self.all);
-            left -= self.trials[place].advance(problem, &self.all, window, left);
+            left -= self.trials[place].advance(problem, &problem.motion(&self.terms, &self.all), window, left);
         }
         budget - left
     }
@@ -224,12 +239,11 @@ impl Trial {
     }
 
     /// Runs up to `budget` samples; returns how many.
-    fn advance(&mut self, problem: &Problem, all: &[f64], window: &Window, budget: usize) -> usize {
+    fn advance(&mut self, problem: &Problem, motion: &Motion, window: &Window, budget: usize) -> usize {
         let from = self.next;
         let stop = window.ready().min(from + budget as u64);
-        let motion = problem.motion(all);
         while self.next < stop && !self.out {
-            self.pass.step(&motion, &problem.free_terms, &self.noise, &window.observation(self.next));
+            self.pass.step(motion, &problem.free_terms, &self.noise, &window.observation(self.next));
             self.out = !self.pass.filter.state().is_finite();
             self.next += 1;
         }

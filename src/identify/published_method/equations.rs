@@ -70,7 +70,7 @@ impl Equations {
     }
 
     fn form(&mut self, problem: &Problem, capture: &Capture, interval: RangeInclusive<usize>, variation: Variation) {
-        self.row.integrate(&capture.section(problem, interval), variation, &problem.motion(&[]));
+        self.row.integrate(&capture.section(problem, interval), variation, &problem.motion(&problem.terms, &[]));
         let weight = self.row.norm.sqrt().recip();
         let right = problem.weak_equation(&self.row, &mut self.left) * weight;
         self.left.iter_mut().for_each(|entry| *entry *= weight);

@@ -178,7 +178,7 @@ impl Publication {
     /// Carries the prediction to the next sample and takes its deviation there.
     fn predict(&mut self, problem: &Problem, settings: &Settings) {
         let observation = self.recent.observation(self.next);
-        let moved = moved(problem.motion(&self.law), self.prediction, &observation);
+        let moved = moved(problem.motion(&problem.terms, &self.law), self.prediction, &observation);
         if moved.is_finite() {
             self.prediction = moved;
         }

@@ -52,18 +52,19 @@ impl Segment {
 
     /// Whether both fits found one law in the same record.
     pub fn agrees_with(&self, other: &Segment) -> bool {
-        self.start == other.start && is_one_law(&self.all, &other.all)
+        self.start == other.start && is_one_law(self.own(), other.own())
     }
 
     /// Whether the fit has come to rest, explains its record, and is another law than these coefficients make.
     pub fn contradicts(&self, all: &[f64]) -> bool {
-        self.settled() && self.fit.explains && !is_one_law(&self.all, all)
+        self.settled() && self.fit.explains && !is_one_law(self.own(), &all[..self.own().len()])
     }
 
     /// Lets the law stand its stability check, once it has settled.
     pub(super) fn confirm(&mut self) {
         if self.settled() {
-            self.stability.check(self.length(self.run.next), &self.all, self.fit.explains);
+            let own = self.all.len() - 1;
+            self.stability.check(self.length(self.run.next), &self.all[..own], self.fit.explains);
         }
     }
 
@@ -82,7 +83,7 @@ impl Segment {
 
     /// How long the record has to get for the law to be known.
     pub(super) fn forecast_convergence(&mut self) {
-        let squares: f64 = self.all.iter().map(|value| value * value).sum();
+        let squares: f64 = self.own().iter().map(|value| value * value).sum();
         let begun = self.stability.checked_at().map_or(self.run.next, |length| self.start + length);
         let record = Record {
             range: [self.start, self.run.next],

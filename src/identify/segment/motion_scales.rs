@@ -1,7 +1,7 @@
 //! How large the motion is, for priors in the data's own units.
 
 use crate::estimation::{Observation, Pass};
-use crate::identify::problem::Problem;
+use crate::law::Motion;
 use serde::{Deserialize, Serialize};
 
 /// Smallest mean square of the law's own acceleration, in terms of the excitation's: one per cent of its RMS.
@@ -51,9 +51,8 @@ impl MotionScales {
         self.count += weight * others.count;
     }
 
-    /// Takes the interval that the pass has just run over, under the coefficients `all`.
-    pub fn add(&mut self, problem: &Problem, all: &[f64], pass: &Pass, observation: &Observation) {
-        let motion = problem.motion(all);
+    /// Takes the interval that the pass has just run over, under the law `motion`.
+    pub fn add(&mut self, motion: &Motion, pass: &Pass, observation: &Observation) {
         let state = pass.filter.state();
         for (sum, input) in self.slopes.iter_mut().zip(&pass.map.input) {
             *sum += (input[1] / observation.dt).powi(2);

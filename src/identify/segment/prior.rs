@@ -1,6 +1,7 @@
 //! What is known of a segment's coefficients beside its record.
 
 use super::motion_scales::MotionScales;
+use crate::estimation::KnownEffect;
 use serde::{Deserialize, Serialize};
 
 /// What is known of the free coefficients before any data.
@@ -16,6 +17,8 @@ pub struct Prior<'a> {
     pub structure: Option<&'a [bool]>,
     /// How many samples the sensors' variances and the motion's scales are known from.
     pub noise_weight: f64,
+    /// Of the effect that the model lacks.
+    pub effect: Option<KnownEffect>,
     /// How large the motion was before; counts only as `noise_weight` says.
     pub scales: &'a MotionScales,
 }

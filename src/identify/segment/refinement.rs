@@ -9,8 +9,8 @@
 use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
 use super::prior::{InertiaPrior, Prior};
-use super::state::{InTheSensors, NOISE_MEMORY, Run, Runs, Segment};
-use crate::estimation::{Filter, Lag, LagTest, Missing, Noise, Observation, Pass};
+use super::state::{Checkpoint, InTheSensors, NOISE_MEMORY, Run, Runs, Segment};
+use crate::estimation::{Filter, Lag, LagTest, Missing, Noise, Observation, Pass, ScoreTest};
 use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
@@ -24,8 +24,8 @@ pub const GROWTH: f64 = 0.02;
 /// … and by this many samples.
 const FRESH: u64 = 8;
 
-/// Effects that the law lacks are looked for again when the record has grown by this factor, twice in every doubling:
-/// most runs are spared the work.
+/// A law that does not explain its record is tried with what it lacks, and with all error in the sensors, when the
+/// record has grown by this factor, twice in every doubling: most runs are spared the work.
 const LOOK_AGAIN: f64 = 1.4;
 
 /// The record of a segment is folded into a prior when it fills this fraction of the window: the run that folds still
@@ -62,6 +62,7 @@ impl Segment {
         self.start = start;
         self.coefficients.copy_from_slice(from);
         problem.scatter(from, &mut self.all);
+        self.add_effect(prior.effect);
         self.active.fill(true);
         self.noise = noise;
         match prior.structure {
@@ -89,7 +90,8 @@ impl Segment {
             self.known.inertia = Some(InertiaPrior { centre: prior.centre[index], log_std: prior.log_inertia });
         }
         self.fit.gain = f64::INFINITY;
-        (self.missing, self.timing.lag, self.timing.open) = (None, Lag::UNKNOWN, 0.0);
+        (self.missing, self.untried) = (None, None);
+        (self.timing.lag, self.timing.open) = (Lag::UNKNOWN, 0.0);
         self.timing.slope.fill(0.0);
         (self.score_test.likeliest, self.score_test.next_look) = (None, 0);
         self.convergence.clear();
@@ -114,6 +116,7 @@ impl Segment {
             log_inertia: 1.0,
             structure: Some(&law.active),
             noise_weight: NOISE_MEMORY,
+            effect: None,
             scales,
         };
         self.begin(problem, window, start, &law.coefficients, prior, noise);
@@ -144,16 +147,19 @@ impl Segment {
     /// The run takes a sample, and so does all that is summed up beside it.
     fn take(&mut self, problem: &Problem, window: &Window, number: u64) {
         let observation = &window.observation(number);
-        let Segment { run, score_test, convergence, all, noise, .. } = self;
-        let motion = problem.motion(all);
+        let Segment { run, score_test, convergence, terms, all, noise, .. } = self;
+        let motion = problem.motion(terms, all);
         let innovations = run.filter_run.step(&motion, &problem.free_terms, noise, observation);
         let shifts = window.shifts(number);
         run.lag.step(&motion, &run.filter_run, shifts, &innovations);
+        if all[all.len() - 1] != 0.0 {
+            run.effect.step(terms[terms.len() - 1], &motion, &run.filter_run, observation, &innovations);
+        }
         if score_test.looking {
             score_test.candidates.step(&motion, &run.filter_run, observation, &innovations);
-            score_test.in_the_sensors.take(&motion, &problem.free_terms, observation, shifts);
         }
-        run.scales.add(problem, all, &run.filter_run, observation);
+        score_test.in_the_sensors.take(&motion, &problem.free_terms, observation, shifts);
+        run.scales.add(&motion, &run.filter_run, observation);
         run.sandwich.step(&run.filter_run.information);
         for channel in (0..2).filter(|channel| innovations[*channel].is_some()) {
             run.largest[channel] = run.largest[channel].max(observation.measured[channel].unwrap_or(0.0).abs());
@@ -162,14 +168,16 @@ impl Segment {
         convergence.step(run.next, &run.filter_run.information);
         if Some(run.next) == run.checkpoint.at {
             run.checkpoint.information.clone_from_slices(&run.filter_run.information);
+            run.checkpoint.effect.copy_from(&run.effect);
         }
     }
 
     /// The run that was just closed, at the head of the stream and linear about the new coefficients; the caller gets
     /// it in exchange for another one's room. The next run begins.
-    pub fn hand_over(&mut self, window: &Window, live: &mut Pass, lag: &mut LagTest) {
+    pub fn hand_over(&mut self, window: &Window, live: &mut Pass, lag: &mut LagTest, effects: &mut ScoreTest) {
         std::mem::swap(&mut self.run.filter_run, live);
         std::mem::swap(&mut self.run.lag, lag);
+        std::mem::swap(&mut self.score_test.candidates, effects);
         live.information.clone_from_slices(&self.information);
         self.begin_run(window);
     }
@@ -199,27 +207,29 @@ impl Segment {
         self.confirm();
         self.compare();
         self.forecast_convergence();
+        self.say_effect();
         self.fold(window);
     }
 
     fn end_score_test(&mut self) {
-        if self.score_test.looking {
-            let candidates = &mut self.score_test.candidates;
-            candidates.end(&self.run.filter_run.information, &self.active);
-            self.score_test.likeliest = candidates.likeliest(self.fit.overdispersion);
-            self.missing = self.score_test.likeliest.filter(Missing::is_named);
-            self.score_test.next_look = (LOOK_AGAIN * self.length(self.run.next) as f64) as u64;
+        let length = self.length(self.run.next);
+        let Segment { score_test, run, active, fit, .. } = self;
+        let own = &run.filter_run.information;
+        let found = |test: &mut ScoreTest| test.likeliest(own, active, fit.overdispersion);
+        score_test.likeliest = score_test.looking.then(|| found(&mut score_test.candidates)).flatten();
+        if score_test.in_the_sensors.running {
+            self.untried = score_test.likeliest.filter(|lacked| lacked.missing.is_named());
+            score_test.candidates.moved(self.untried.as_ref(), &mut self.untried_step);
+            score_test.next_look = (LOOK_AGAIN * length as f64) as u64;
         }
-        if self.settled() && (self.score_test.looking || self.fit.explains) {
+        if self.settled() && (self.score_test.in_the_sensors.running || self.fit.explains) {
             self.tell_lag();
         }
     }
 
-    /// Log-likelihood that the likeliest of the effects that the law lacks gains, named or not, nats: since it was last
-    /// looked for that has grown as the record has.
+    /// Log-likelihood that the likeliest of the effects that the law lacks gains, named or not, nats.
     pub fn effect_evidence(&self) -> f64 {
-        let grown = LOOK_AGAIN * self.length(self.run.next) as f64 / self.score_test.next_look.max(1) as f64;
-        self.score_test.likeliest.map_or(0.0, |effect| grown.max(1.0) * effect.evidence)
+        self.score_test.likeliest.map_or(0.0, |lacked| lacked.missing.evidence)
     }
 
     /// When F acted, by the run that explains the record better with a lag, against the better one without.
@@ -230,7 +240,7 @@ impl Segment {
         let under = lag.told(own, active, track, fit.overdispersion, &mut timing.slope);
         timing.lag = under.lag;
         let InTheSensors { lag, filter_run, slope, running, .. } = &mut score_test.in_the_sensors;
-        if !(score_test.looking && *running && filter_run.track.count == track.count) {
+        if !(*running && filter_run.track.count == track.count) {
             return;
         }
         let told = lag.told(&filter_run.information, active, &filter_run.track, 1.0, slope);
@@ -243,6 +253,9 @@ impl Segment {
     /// What run and prior say together about the coefficients.
     fn gather_information(&mut self, problem: &Problem) {
         self.information.clone_from_slices(&self.run.filter_run.information);
+        if self.effect() != 0.0 {
+            self.run.effect.leave_open(self.effect(), &mut self.information);
+        }
         self.information.merge(&self.known.information);
         if let (Some(index), Some(prior)) = (problem.free_inertia(), self.known.inertia) {
             let (information, score) = prior.about(self.coefficients[index]);
@@ -259,6 +272,7 @@ impl Segment {
             *step = value - *step;
         }
         self.move_to_new_coefficients();
+        self.move_effect();
         let active = self.active.iter().filter(|active| **active).count().max(1);
         self.fit.decrement = self.information.quadratic(&self.step) / active as f64;
     }
@@ -315,12 +329,42 @@ impl Segment {
             self.run.filter_run.filter.mean[0] += step * sensitivity[0];
             self.run.filter_run.filter.mean[1] += step * sensitivity[1];
         }
+        self.score_test.candidates.shift(&self.step, self.run.filter_run.filter.state());
+    }
+
+    /// The effect that the model lacks follows the law's own terms, which have taken their step.
+    fn move_effect(&mut self) {
+        let place = self.all.len() - 1;
+        if self.all[place] != 0.0 {
+            let (step, moved) = self.run.effect.step_from(self.all[place], &self.step);
+            self.all[place] += step;
+            self.run.checkpoint.effect.shift(&self.step, step);
+            let mean = &mut self.run.filter_run.filter.mean;
+            mean.iter_mut().zip(moved).for_each(|(mean, moved)| *mean += moved);
+        }
+    }
+
+    /// What the model lacks is what its law has beside its terms; else what would explain most of what the law does not
+    /// explain.
+    fn say_effect(&mut self) {
+        let (place, value) = (self.terms.len() - 1, self.effect());
+        self.missing = if value != 0.0 {
+            let variance = self.fit.overdispersion * self.run.effect.variance(&self.solution, &self.active);
+            Missing::of(self.terms[place], 0.5 * value * value / variance)
+        } else {
+            let likeliest = self.score_test.likeliest.map(|lacked| lacked.missing);
+            likeliest.filter(|missing| missing.is_named() && !self.fit.explains)
+        };
     }
 
     /// When the record outgrows the window, its first half becomes prior knowledge.
     fn fold(&mut self, window: &Window) {
         let full = self.length(self.run.next) as f64 > FULL * window.capacity() as f64;
         if let Some(at) = self.run.checkpoint.at.take().filter(|_| full) {
+            if self.effect() != 0.0 {
+                let Checkpoint { effect, information, .. } = &mut self.run.checkpoint;
+                effect.leave_open(self.all[self.all.len() - 1], information);
+            }
             self.known.information.merge(&self.run.checkpoint.information);
             self.start = at;
         }
@@ -333,12 +377,13 @@ impl Segment {
         self.run.checkpoint.at = long.then_some(self.start + length / 2);
         self.run.filter_run.begin(window.initial_state(self.start, &self.noise));
         self.run.lag.begin();
+        self.run.effect.begin(self.run.filter_run.filter.state());
         self.run.next = self.start + 1;
-        self.score_test.looking = self.settled() && length >= self.score_test.next_look;
-        if self.score_test.looking {
-            self.score_test.candidates.begin(self.run.filter_run.filter.state(), self.run.largest);
-            self.score_test.in_the_sensors.begin(self.run.filter_run.filter, &self.noise, !self.fit.explains);
-        }
+        let filter = self.run.filter_run.filter;
+        self.score_test.looking = self.settled();
+        self.score_test.candidates.begin(filter.state(), self.run.largest);
+        let due = self.settled() && !self.fit.explains && length >= self.score_test.next_look;
+        self.score_test.in_the_sensors.begin(filter, &self.noise, due);
         self.run.scales.clear();
         self.convergence.begin(self.start, length);
         self.run.sandwich.begin(length);

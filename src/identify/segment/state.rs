@@ -3,10 +3,14 @@
 use super::convergence::Convergence;
 use super::motion_scales::MotionScales;
 use super::prior::InertiaPrior;
-use crate::estimation::{Information, Lag, LagTest, Missing, Noise, Pass, ScoreTest, Solution, TermSelection};
+use crate::estimation::{
+    AddedEffect, Information, KnownEffect, Lacked, Lag, LagTest, Missing, Noise, Pass, ScoreTest, Solution,
+    TermSelection,
+};
 use crate::identify::library::Estimate;
 use crate::identify::problem::Problem;
 use crate::identify::validation::{Constancy, SandwichFactor, Stability};
+use crate::law::Term;
 use serde::{Deserialize, Serialize};
 
 /// For how many samples the sensor noise of the last segment counts in the next one: free to follow the innovations, it
@@ -20,7 +24,9 @@ pub struct Segment {
     pub start: u64,
     /// Free coefficients.
     pub coefficients: Vec<f64>,
-    /// All coefficients.
+    /// Its terms: the model's and, last, an effect that the model lacks.
+    pub terms: Vec<Term>,
+    /// All coefficients, that of the effect which the model lacks the last.
     pub all: Vec<f64>,
     /// Which free terms the law has.
     pub active: Vec<bool>,
@@ -38,6 +44,10 @@ pub struct Segment {
     pub runs: Runs,
     /// The effect that the law lacks most, as of the last run that looked for one.
     pub missing: Option<Missing>,
+    /// It, where the law does not explain its record and has not been tried with it.
+    pub untried: Option<Lacked>,
+    /// By how much the free coefficients are others with it.
+    pub untried_step: Vec<f64>,
     /// When F acted, as that run told.
     pub timing: OpenTiming,
     /// What is known beside the record.
@@ -114,6 +124,8 @@ pub(super) struct Run {
     pub(super) filter_run: Pass,
     /// When F acted, by that run.
     pub(super) lag: LagTest,
+    /// The effect that the model lacks, where the law has it.
+    pub(super) effect: AddedEffect,
     /// Number of the sample that comes next.
     pub(super) next: u64,
     /// Number of the sample that the last run ended with.
@@ -130,17 +142,18 @@ pub(super) struct Run {
 pub(super) struct Checkpoint {
     pub(super) at: Option<u64>,
     pub(super) information: Information,
+    pub(super) effect: AddedEffect,
 }
 
 /// The test for effects that the law lacks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct MissingEffects {
     pub(super) candidates: ScoreTest,
-    /// Whether the run under way looks for them.
+    /// Whether the run under way looks for them: those before do not follow the motion yet.
     pub(super) looking: bool,
-    /// The effect that explained most when it was last looked, named or not.
-    pub(super) likeliest: Option<Missing>,
-    /// Length of the record from which the next run looks.
+    /// The effect that explained most in the last run, named or not.
+    pub(super) likeliest: Option<Lacked>,
+    /// Length of the record from which on a law that does not explain it is tried otherwise.
     pub(super) next_look: u64,
     /// Beside a run that looks, where the law's error is taken for process noise: with all error in the sensors the
     /// record tells when F acted.
@@ -179,6 +192,7 @@ impl Segment {
         Segment {
             start: 0,
             coefficients: vec![0.0; n],
+            terms: problem.terms_and_effect(),
             all: problem.known.clone(),
             active: vec![true; n],
             noise: Noise { sensor: [1.0; 2], process: 1.0 },
@@ -188,6 +202,8 @@ impl Segment {
             fit: Fit::unknown(),
             runs: Runs::default(),
             missing: None,
+            untried: None,
+            untried_step: vec![0.0; n],
             timing: OpenTiming { lag: Lag::UNKNOWN, open: 0.0, slope: vec![0.0; n] },
             known: Known {
                 information: Information::none(n),
@@ -199,12 +215,13 @@ impl Segment {
             run: Run {
                 filter_run: Pass::new(n).gated(),
                 lag: LagTest::new(n),
+                effect: AddedEffect::new(n),
                 next: 0,
                 closed_at: 0,
                 largest: [0.0; 2],
                 scales: MotionScales::new(n),
                 sandwich: SandwichFactor::new(n),
-                checkpoint: Checkpoint { at: None, information: Information::none(n) },
+                checkpoint: Checkpoint { at: None, information: Information::none(n), effect: AddedEffect::new(n) },
             },
             score_test: MissingEffects {
                 candidates: ScoreTest::new(&problem.terms, n),
@@ -227,6 +244,46 @@ impl Segment {
         }
     }
 
+    /// Its coefficients without that of the effect which the model lacks.
+    pub fn own(&self) -> &[f64] {
+        &self.all[..self.all.len() - 1]
+    }
+
+    /// The coefficient of the effect that the model lacks; 0 where the law does not have it.
+    pub fn effect(&self) -> f64 {
+        self.all[self.all.len() - 1]
+    }
+
+    /// Whether a law of those terms, whose effect has that coefficient, has no other effect than this one.
+    pub fn has_terms_of(&self, terms: &[Term], effect: f64) -> bool {
+        self.terms == terms || self.effect() == 0.0 && effect == 0.0
+    }
+
+    /// That effect as the next record takes it: known from as many samples as the sensors' noise is.
+    pub fn known_effect(&self) -> Option<KnownEffect> {
+        let (coefficient, term) = (self.effect(), self.terms[self.terms.len() - 1]);
+        let part = (NOISE_MEMORY / self.length(self.run.closed_at).max(1) as f64).min(1.0);
+        let precision = part / self.run.effect.variance(&self.solution, &self.active);
+        (coefficient != 0.0).then_some(KnownEffect { term, coefficient, precision })
+    }
+
+    /// By how much the free coefficients would be others, were that of the effect `other`, n.
+    pub fn with_effect_of(&self, other: f64, change: &mut [f64]) {
+        self.run.effect.likeness(&self.solution, &self.active, change);
+        let difference = self.effect() - other;
+        change.iter_mut().for_each(|change| *change *= difference);
+    }
+
+    /// The law has the effect that the model lacks, or none.
+    pub fn add_effect(&mut self, known: Option<KnownEffect>) {
+        let place = self.terms.len() - 1;
+        self.all[place] = known.map_or(0.0, |known| known.coefficient);
+        if let Some(known) = known {
+            self.terms[place] = known.term;
+            self.run.effect.suppose(&known);
+        }
+    }
+
     /// Number of samples in the stage's record up to `end`.
     pub fn length(&self, end: u64) -> u64 {
         end.saturating_sub(self.start)
@@ -245,7 +302,7 @@ impl Segment {
 
     /// The variance that the estimate states for e of eq. (8), relative: Σ std² ÷ Σθ².
     pub fn stated_error(&self) -> f64 {
-        let squares: f64 = self.all.iter().map(|value| value * value).sum();
+        let squares: f64 = self.own().iter().map(|value| value * value).sum();
         let active = (0..self.active.len()).filter(|index| self.active[*index]);
         active.map(|index| self.std(index).powi(2)).sum::<f64>() / squares
     }

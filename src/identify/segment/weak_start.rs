@@ -97,7 +97,7 @@ impl WeakStart {
         }
         self.section.load(problem, window, first, last);
         let section = self.section.view(problem, length + 1);
-        self.row.integrate(&section, VARIATION, &problem.motion(&[]));
+        self.row.integrate(&section, VARIATION, &problem.motion(&problem.terms, &[]));
         let right = problem.weak_equation(&self.row, &mut self.equation);
         scale.rows.add(&self.row, &problem.free, &mut self.equation, right);
     }

@@ -2,10 +2,11 @@
 
 use super::new_record::PRIOR_WIDTH;
 use super::state::{FRESH_START, Fitting, NOTHING_KNOWN, Setup, Tracker};
-use crate::estimation::{Noise, TWENTY_TO_ONE};
+use crate::estimation::{KnownEffect, Noise, TWENTY_TO_ONE};
 use crate::evidence::INERTIA_SPREAD;
 use crate::identify::problem::Problem;
-use crate::identify::segment::{Guess, IN_THE_SENSORS, Prior};
+use crate::identify::segment::{Guess, IN_THE_SENSORS, Prior, Segment};
+use crate::law::Compiled;
 
 /// Runs after which a fit that has not settled is given up: nine decades of process noise take six of them …
 const PATIENCE: u32 = 40;
@@ -25,6 +26,14 @@ const START_ERROR_WITHOUT_Q: f64 = 1.0;
 
 /// A first law lies within this many stds of the weak rows' coefficients.
 const START_STDS: f64 = 10.0;
+
+/// Log-likelihood that an effect must gain to be believed, nats: odds of 22 000 to one after the price of having been
+/// chosen among some twenty.
+const EFFECT: f64 = 13.0;
+
+/// An effect is believed that leaves less than this part of what the law without it leaves unexplained: one that takes
+/// less stands in for something else, for coefficients that drift above all.
+const MOST: f64 = 0.5;
 
 /// What the latest record must explain better than the whole one to replace it, nats per measurement: the noise may
 /// have changed …
@@ -80,6 +89,7 @@ impl Tracker {
             log_inertia: INERTIA_SPREAD,
             structure: before.map(|law| law.active.as_slice()),
             noise_weight: belief.samples,
+            effect: belief.effect,
             scales: &belief.scales,
         };
         let (begun, fitting) = match self.fitting {
@@ -121,6 +131,29 @@ impl Tracker {
         self.schedule.next_sensor_fit = end + self.segment.length(end);
         let sensor = setup.first_noise(&self.difference_noise);
         let noise = Noise { sensor, process: IN_THE_SENSORS * self.segment.noise.process };
+        self.belief.from.copy_from_slice(&self.segment.coefficients);
+        self.begin_another_fit(problem, self.segment.known_effect(), noise);
+    }
+
+    /// The effect that the law lacks most is tried beside it.
+    pub(super) fn try_effect(&mut self, problem: &Problem) {
+        let Some(lacked) = self.segment.untried.take().filter(|_| self.fitting == Fitting::Refining) else { return };
+        let Tracker { segment, alternative, belief, .. } = self;
+        alternative.terms.copy_from_slice(&segment.terms);
+        alternative.terms[problem.terms.len()] = lacked.term;
+        let has_it = segment.effect() != 0.0 && segment.terms == alternative.terms;
+        if has_it || Compiled::refused(&alternative.terms).is_some() {
+            return;
+        }
+        for (index, from) in belief.from.iter_mut().enumerate() {
+            *from = segment.coefficients[index] + segment.untried_step[index];
+        }
+        let effect = KnownEffect { term: lacked.term, coefficient: lacked.coefficient, precision: 0.0 };
+        self.begin_another_fit(problem, Some(effect), self.segment.noise);
+    }
+
+    /// Another fit of the segment's record, from the coefficients believed most.
+    fn begin_another_fit(&mut self, problem: &Problem, effect: Option<KnownEffect>, noise: Noise) {
         self.set_spread(problem);
         self.belief.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
         let Tracker { segment, alternative, belief, monitor, window, .. } = self;
@@ -130,10 +163,30 @@ impl Tracker {
             log_inertia: INERTIA_SPREAD,
             structure: (belief.samples > 0.0).then_some(monitor.law.active.as_slice()),
             noise_weight: 0.0,
+            effect,
             scales: &belief.scales,
         };
-        alternative.begin(problem, window, segment.start, &segment.coefficients, prior, noise);
+        alternative.begin(problem, window, segment.start, &belief.from, prior, noise);
         self.fitting = Fitting::Contested;
+    }
+
+    /// Whether the other fit has an effect that the segment does not have.
+    fn tries_effect(&self) -> bool {
+        let [tried, own] = [&self.alternative, &self.segment].map(Segment::known_effect);
+        tried.is_some_and(|tried| own.is_none_or(|own| own.term != tried.term))
+    }
+
+    /// Whether that effect gains what it must, and explains most of what the law without it does not.
+    fn explains_by_effect(&self) -> bool {
+        let [with, without] = [&self.alternative, &self.segment];
+        let gain = 2.0 * with.length(self.window.ready()) as f64 * (with.fit.likelihood - without.fit.likelihood);
+        gain > EFFECT && (with.fit.explains || with.noise.process < MOST * without.noise.process)
+    }
+
+    /// What later records know of the effect that the model lacks is what this one tells.
+    pub(super) fn believe_effect(&mut self) {
+        self.belief.effect = self.segment.known_effect();
+        self.library.trials.set_effect(self.belief.effect);
     }
 
     /// Refines the other fit; it takes the segment's place when it explains the record better, or is validated first.
@@ -147,8 +200,13 @@ impl Tracker {
             false
         } else if self.alternative.settled() {
             let wins = self.alternative_wins(promising);
+            let found_effect = wins && self.tries_effect();
             if wins {
                 std::mem::swap(&mut self.alternative, &mut self.segment);
+                self.believe_effect();
+                if found_effect {
+                    self.watch_with_effect(setup);
+                }
             }
             promising && !wins
         } else {
@@ -167,6 +225,9 @@ impl Tracker {
             self.schedule.next_guess = self.window.end() + self.segment.length(self.window.end());
         }
         let better = self.alternative.fit.likelihood > self.segment.fit.likelihood + self.margin();
+        if self.tries_effect() {
+            return self.explains_by_effect();
+        }
         better && !(agrees && self.segment.fit.explains) || promising && self.alternative.is_validated()
     }
 
@@ -233,8 +294,8 @@ mod tests {
         let (centre, std) = (vec![0.0; problem.n()], vec![1e9; problem.n()]);
         let Tracker { segment, alternative, window, belief, .. } = tracker;
         for fit in [segment, alternative] {
-            let (structure, noise_weight, scales) = (None, 0.0, &belief.scales);
-            let prior = Prior { centre: &centre, std: &std, log_inertia: 1.0, structure, noise_weight, scales };
+            let (structure, noise_weight, effect, scales) = (None, 0.0, belief.effect, &belief.scales);
+            let prior = Prior { centre: &centre, std: &std, log_inertia: 1.0, structure, noise_weight, effect, scales };
             fit.begin(problem, window, 0, &absurd, prior, noise);
         }
         tracker.fitting = Fitting::Contested;

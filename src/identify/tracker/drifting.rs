@@ -30,6 +30,7 @@ impl Tracker {
             *reach = if law.active[index] { spread / SWITCH_SIZE } else { 0.0 };
         }
         let before = Before {
+            terms: &law.terms,
             all: &law.all,
             reach: &belief.from,
             noise: law.noise,

@@ -27,7 +27,7 @@ pub(super) fn expected<'a>(
     size: [f64; 2],
 ) -> Expected<'a> {
     Expected {
-        motion: problem.motion(&law.all),
+        motion: problem.motion(&law.terms, &law.all),
         noise: law.noise_now(),
         switch: [scales.restoring_acceleration(), INERTIA_SPREAD],
         rate: scales.natural_time().recip(),

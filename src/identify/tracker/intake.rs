@@ -37,7 +37,7 @@ impl Tracker {
         if glitch == 0.0 || !law.running {
             return;
         }
-        let motion = problem.motion(&law.all);
+        let motion = problem.motion(&law.terms, &law.all);
         let dt = reading.sample.t - self.now();
         let push = glitch * dt / motion.mass(law.run.filter.mean[0]).powi(2);
         if push < OUTLYING * OUTLYING * law.noise.sensor[1] {

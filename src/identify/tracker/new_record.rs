@@ -38,6 +38,7 @@ impl Tracker {
             log_inertia: INERTIA_SPREAD,
             structure: Some(&law.active),
             noise_weight: self.belief.samples,
+            effect: self.belief.effect,
             scales: &self.belief.scales,
         };
         self.segment.begin(problem, &self.window, start, &self.belief.from, prior, noise);

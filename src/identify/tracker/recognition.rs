@@ -137,6 +137,7 @@ impl Tracker {
         let law = &self.library.known.laws()[place];
         let noise = self.library.trials.noise(place);
         self.segment.begin_known(problem, &self.window, self.segment.start, law, noise, &self.belief.scales);
+        self.segment.add_effect(self.belief.effect);
         self.fitting = Fitting::Refining;
         self.monitor.law.running = false;
         self.belief.spread.copy_from_slice(&law.spread);

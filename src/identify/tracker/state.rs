@@ -3,7 +3,7 @@
 use super::published::Published;
 use super::regime::{Event, Regime};
 use super::sighting::Library;
-use crate::estimation::DifferenceNoise;
+use crate::estimation::{DifferenceNoise, KnownEffect};
 use crate::evidence::{Bank, SWITCH_SIZE};
 use crate::identify::change::{EmpiricalNull, LawInUse, Prediction};
 use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
@@ -127,6 +127,8 @@ pub(super) struct ChangeBelief {
     pub(super) from: Vec<f64>,
     /// … and about.
     pub(super) centre: Vec<f64>,
+    /// The effect that the model lacks.
+    pub(super) effect: Option<KnownEffect>,
     /// Samples that sensor variances and scales are known from; 0 before there was a law.
     pub(super) samples: f64,
     /// How large the motion was before the last switch.
@@ -190,6 +192,7 @@ impl Tracker {
                 spread: vec![1.0; n],
                 from: vec![0.0; n],
                 centre: vec![0.0; n],
+                effect: None,
                 samples: 0.0,
                 scales: MotionScales::new(n),
             },

@@ -121,6 +121,7 @@ impl Tracker {
             self.begin_afresh();
             self.guess(setup);
         }
+        self.try_effect(setup.problem);
         self.try_sensor_fit(setup);
         self.refine_alternative(setup, BUDGET[1] - used);
         if self.is_refining() {
@@ -140,9 +141,21 @@ impl Tracker {
         if self.may_be_off() || !self.segment.refine(setup.problem, setup.settings, &self.window, budget) {
             return;
         }
-        if self.give_up_guess() {
-            return;
+        if !self.give_up_guess() {
+            self.heed_run(setup);
         }
+    }
+
+    /// The segment's law has an effect that the one in use lacks: what spoke against that one says nothing of a switch.
+    pub(super) fn watch_with_effect(&mut self, setup: Setup) {
+        self.monitor.bank.clear();
+        self.monitor.empirical_null.clear();
+        self.monitor.unusual_since = None;
+        self.heed_run(setup);
+    }
+
+    /// What the run that has just closed says is made known, and taken into use where it is worth it.
+    fn heed_run(&mut self, setup: Setup) {
         self.published.missing = self.segment.missing;
         let contradicted = self.monitor.law.running && self.segment.contradicts(&self.monitor.law.all);
         let since = self.history.contradicted_since.unwrap_or(self.segment.closed_at());
@@ -206,10 +219,15 @@ impl Tracker {
 
     fn carry_hypotheses(&mut self, problem: &Problem, proven: bool) {
         let Tracker { monitor, belief, segment, .. } = self;
+        // what a step of the effect's coefficient does is for the most part what a step of the law's own would do
+        segment.with_effect_of(monitor.law.effect(), &mut belief.from);
         for (index, change) in belief.from.iter_mut().enumerate() {
-            *change = segment.coefficients[index] - monitor.law.all[problem.free[index]];
+            *change += segment.coefficients[index] - monitor.law.all[problem.free[index]];
         }
-        match proven && monitor.law.noise.is_near(&segment.noise) {
+        match proven
+            && segment.has_terms_of(&monitor.law.terms, monitor.law.effect())
+            && monitor.law.noise.is_near(&segment.noise)
+        {
             true => monitor.bank.shift(&belief.from),
             false => monitor.bank.clear(),
         }

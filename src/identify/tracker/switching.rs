@@ -1,7 +1,8 @@
 //! Whether the law has switched, and what happens when it has.
 
 use super::regime::Event;
-use super::state::{Setup, Tracker};
+use super::state::{Fitting, Setup, Tracker};
+use crate::estimation::TWENTY_TO_ONE;
 use crate::evidence::Suspect;
 use crate::identify::change::Decision;
 use crate::identify::drift::INSTANTS;
@@ -26,7 +27,11 @@ impl Tracker {
         let deviates = self.monitor.prediction.deviates(setup.settings, self.now());
         let alarms = suspect.evidence > threshold || deviates;
         self.intake.undecided &= alarms;
-        if alarms && (self.is_fault(suspect, threshold) || self.is_lag(setup.problem, suspect, threshold)) {
+        if alarms
+            && (self.is_fault(suspect, threshold)
+                || self.is_lag(setup.problem, suspect, threshold)
+                || self.is_effect(suspect, threshold))
+        {
             return;
         }
         if alarms {
@@ -53,6 +58,18 @@ impl Tracker {
             timing.slope.copy_from_slice(&self.monitor.law.lag_slope);
         }
         is_lag
+    }
+
+    /// Whether an effect that the law in use lacks, by all that it has followed, stands out more than a switch does: the
+    /// law is tried with it first.
+    fn is_effect(&mut self, suspect: &Suspect, threshold: f64) -> bool {
+        let Some(lacked) = self.monitor.law.likeliest_effect() else { return false };
+        let stands_out = lacked.missing.evidence > TWENTY_TO_ONE.max(suspect.evidence - threshold);
+        if stands_out && self.fitting == Fitting::Refining {
+            self.segment.untried = Some(lacked);
+            self.monitor.law.moved(&lacked, &mut self.segment.untried_step);
+        }
+        stands_out
     }
 
     /// What the law in use has to its credit.
@@ -105,6 +122,7 @@ impl Tracker {
         self.keep_law(problem);
         self.set_spread(problem);
         self.belief.scales.remember(&self.segment.scales, 1.0);
+        self.believe_effect();
         if self.regime.is_valid() {
             let mut instants = [0; INSTANTS];
             self.monitor.bank.likeliest_starts(&mut instants);

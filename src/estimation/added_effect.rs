@@ -1,0 +1,196 @@
+//! An effect that is added to a law: its coefficient is sought beside the law's own, run by run.
+//!
+//! The law's own coefficients are told with that of the effect left open: with M and g their information and score, c,
+//! i and s those of the effect beside them, it is M − ccᵀ ÷ i and g − cs ÷ i that tell them (the Schur complement).
+
+use super::filter::Innovation;
+use super::information::{Information, Solution};
+use super::pass::{Observation, Pass, gains};
+use super::score_test::{Sums, push};
+use crate::law::{Motion, State, Term};
+use serde::{Deserialize, Serialize};
+
+/// What is known of an effect before a record.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct KnownEffect {
+    /// The effect, with inner parameters.
+    pub term: Term,
+    /// Its coefficient.
+    pub coefficient: f64,
+    /// 1 ÷ the variance of that.
+    pub precision: f64,
+}
+
+/// The effect beside a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AddedEffect {
+    sums: Sums,
+    before: State,
+    /// Coefficient and 1 ÷ its variance before the record.
+    known: [f64; 2],
+}
+
+impl AddedEffect {
+    /// None beside `n` free terms.
+    pub fn new(n: usize) -> AddedEffect {
+        AddedEffect { sums: Sums::new(n), before: State::default(), known: [0.0; 2] }
+    }
+
+    /// This is known of its coefficient before the record.
+    pub fn suppose(&mut self, known: &KnownEffect) {
+        self.known = [known.coefficient, known.precision];
+    }
+
+    /// Begins beside a run.
+    pub fn begin(&mut self, state: State) {
+        self.sums.clear();
+        self.before = state;
+    }
+
+    /// Copies the other's sums into this room, without what was known before.
+    pub fn copy_from(&mut self, other: &AddedEffect) {
+        self.sums.copy_from(&other.sums);
+        (self.before, self.known) = (other.before, [0.0; 2]);
+    }
+
+    /// The law's own coefficients have become those plus `steps`, that of the effect that plus `step`.
+    pub fn shift(&mut self, steps: &[f64], step: f64) {
+        self.sums.shift(steps);
+        self.sums.score -= self.sums.information * step;
+    }
+
+    /// Takes the sample that the run has just taken, under the law `motion` with the effect.
+    pub fn step(
+        &mut self,
+        effect: Term,
+        motion: &Motion,
+        pass: &Pass,
+        observation: &Observation,
+        innovations: &[Option<Innovation>; 2],
+    ) {
+        let pushed = push(effect, motion, self.before, pass, observation);
+        self.sums.carry(pass, pushed, &gains(innovations));
+        self.sums.take(pass, innovations);
+        self.before = pass.filter.state();
+    }
+
+    /// What the law's own terms are told with the coefficient, which is `value`, left open.
+    pub fn leave_open(&self, value: f64, own: &mut Information) {
+        let (information, score) = self.told(value);
+        let n = self.sums.cross.len();
+        for row in 0..n {
+            let share = self.sums.cross[row] / information;
+            own.score[row] -= share * score;
+            for (entry, cross) in own.matrix[row * n + row..(row + 1) * n].iter_mut().zip(&self.sums.cross[row..]) {
+                *entry -= share * cross;
+            }
+        }
+    }
+
+    /// The coefficient's own step from `value`, after the law's own terms have taken theirs; the state's with it.
+    pub fn step_from(&self, value: f64, steps: &[f64]) -> (f64, [f64; 2]) {
+        let (information, score) = self.told(value);
+        let moved: f64 = self.sums.cross.iter().zip(steps).map(|(cross, step)| cross * step).sum();
+        let step = (score - moved) / information;
+        (step, self.sums.sensitivity.map(|sensitivity| step * sensitivity))
+    }
+
+    /// Variance of the coefficient where `solution` is of what [`AddedEffect::leave_open`] leaves.
+    pub fn variance(&self, solution: &Solution, active: &[bool]) -> f64 {
+        let (information, _) = self.told(0.0);
+        (1.0 + self.overlap(solution, active) / information) / information
+    }
+
+    /// What of the effect is like the law's own terms: by how much these are others for each unit of its coefficient,
+    /// n; `solution` as in [`AddedEffect::variance`].
+    pub fn likeness(&self, solution: &Solution, active: &[bool], likeness: &mut [f64]) {
+        let (information, _) = self.told(0.0);
+        let whole = 1.0 + self.overlap(solution, active) / information;
+        for (row, slot) in likeness.iter_mut().enumerate() {
+            let is_told = active[row] && solution.determined[row];
+            *slot = if is_told { self.shared(row, solution, active) / whole } else { 0.0 };
+        }
+    }
+
+    /// cᵀΣc, Σ being the covariance of the law's own terms.
+    fn overlap(&self, solution: &Solution, active: &[bool]) -> f64 {
+        let told = (0..active.len()).filter(|row| active[*row] && solution.determined[*row]);
+        told.map(|row| self.sums.cross[row] * self.shared(row, solution, active)).sum()
+    }
+
+    /// A row of Σc.
+    fn shared(&self, row: usize, solution: &Solution, active: &[bool]) -> f64 {
+        let n = active.len();
+        let told = (0..n).filter(|column| active[*column] && solution.determined[*column]);
+        told.map(|column| solution.covariance[row * n + column] * self.sums.cross[column]).sum()
+    }
+
+    /// (information, score) about `value`, with what was known before.
+    fn told(&self, value: f64) -> (f64, f64) {
+        let [centre, precision] = self.known;
+        (self.sums.information + precision + f64::MIN_POSITIVE, self.sums.score + precision * (centre - value))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What forty readings of x + 0.3 y + 0.5 z say of the first two coefficients, and of the third beside them: x and
+    /// y from 0, z from 0.2, each with the std 0.1.
+    fn readings() -> (Information, AddedEffect) {
+        let (mut own, mut effect) = (Information::none(2), AddedEffect::new(2));
+        for k in 0..40 {
+            let phase = 0.37 * f64::from(k);
+            let features = [phase.sin(), phase.cos(), 0.6 * phase.sin() + (2.0 * phase).cos()];
+            let residual = features[0] + 0.3 * features[1] + (0.5 - 0.2) * features[2];
+            own.add(&features[..2], residual, 0.01);
+            effect.sums.information += features[2] * features[2] / 0.01;
+            effect.sums.score += features[2] * residual / 0.01;
+            effect.sums.cross.iter_mut().zip(&features).for_each(|(sum, own)| *sum += own * features[2] / 0.01);
+        }
+        (own, effect)
+    }
+
+    /// The own coefficients' solution with that of the effect left open.
+    fn solved(own: &mut Information, effect: &AddedEffect) -> Solution {
+        effect.leave_open(0.2, own);
+        let mut solution = Solution::none(2);
+        solution.solve(own, &[true; 2]);
+        solution
+    }
+
+    #[test]
+    fn both_together_are_found() {
+        let (mut own, effect) = readings();
+        let solution = solved(&mut own, &effect);
+        let (step, _) = effect.step_from(0.2, &solution.step);
+        assert!((solution.step[0] - 1.0).abs() < 1e-9 && (solution.step[1] - 0.3).abs() < 1e-9, "{:?}", solution.step);
+        assert!((step - 0.3).abs() < 1e-9, "{step}");
+    }
+
+    #[test]
+    fn the_variance_is_that_of_the_larger_system() {
+        let (mut own, effect) = readings();
+        let mut whole = Solution::none(2);
+        whole.solve(&own, &[true; 2]);
+        let shared: Vec<f64> = (0..2).map(|row| effect.shared(row, &whole, &[true; 2])).collect();
+        let left = effect.sums.information - shared[0] * effect.sums.cross[0] - shared[1] * effect.sums.cross[1];
+        let solution = solved(&mut own, &effect);
+        let found = effect.variance(&solution, &[true; 2]);
+        assert!((found * left - 1.0).abs() < 1e-9, "{found} against {}", left.recip());
+        let mut likeness = [0.0; 2];
+        effect.likeness(&solution, &[true; 2], &mut likeness);
+        assert!(likeness.iter().zip(&shared).all(|(a, b)| (a - b).abs() < 1e-9), "{likeness:?} against {shared:?}");
+    }
+
+    #[test]
+    fn what_was_known_before_counts() {
+        let (mut own, mut effect) = readings();
+        let term = Term::power(2, 0);
+        effect.suppose(&KnownEffect { term, coefficient: 0.2, precision: 1e12 });
+        let solution = solved(&mut own, &effect);
+        let (step, _) = effect.step_from(0.2, &solution.step);
+        assert!(step.abs() < 1e-6 && (effect.variance(&solution, &[true; 2]) * 1e12 - 1.0).abs() < 1e-6, "{step}");
+    }
+}
