@@ -64,7 +64,7 @@ impl Problem {
         Motion::new(terms, coefficients).with(&self.own)
     }
 
-    /// The model's terms and a place for an effect that it lacks, whose coefficient is 0 but where a record asks for it.
+    /// The model's terms and a place for an effect that it lacks: its coefficient is 0 but where a record asks for it.
     pub fn terms_and_effect(&self) -> Vec<Term> {
         self.terms.iter().copied().chain([Term::Effect(Effect::CoulombFriction)]).collect()
     }

@@ -60,8 +60,8 @@ impl Tracker {
         is_lag
     }
 
-    /// Whether an effect that the law in use lacks, by all that it has followed, stands out more than a switch does: the
-    /// law is tried with it first.
+    /// Whether an effect that the law in use lacks, by all that it has followed, stands out more than a switch: the law
+    /// is tried with it first.
     fn is_effect(&mut self, suspect: &Suspect, threshold: f64) -> bool {
         let Some(lacked) = self.monitor.law.likeliest_effect() else { return false };
         let stands_out = lacked.missing.evidence > TWENTY_TO_ONE.max(suspect.evidence - threshold);
