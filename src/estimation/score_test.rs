@@ -119,6 +119,8 @@ impl Told {
 pub struct ScoreTest {
     candidates: Vec<Candidate>,
     own: Own,
+    /// Whether they have gone with the run from its beginning: what speaks for another law of late is no effect.
+    whole: bool,
     before: State,
     /// The excitation for which the candidates' forces there are known.
     excitation: f64,
@@ -177,7 +179,7 @@ impl ScoreTest {
             sums: Sums::new(n),
         };
         let candidates = candidates.map(candidate).collect();
-        ScoreTest { candidates, own: Own::new(n), before: State::default(), excitation: f64::NAN }
+        ScoreTest { candidates, own: Own::new(n), whole: false, before: State::default(), excitation: f64::NAN }
     }
 
     /// Begins beside a run; inner parameters follow the largest motion seen, once there is one.
@@ -188,7 +190,12 @@ impl ScoreTest {
                 candidate.term = scaled(candidate.term, largest);
             }
         }
-        (self.before, self.excitation) = (state, f64::NAN);
+        (self.whole, self.before, self.excitation) = (true, state, f64::NAN);
+    }
+
+    /// The run goes without them.
+    pub fn end(&mut self) {
+        self.whole = false;
     }
 
     /// Takes the sample that the run has just taken, under the law `motion`.
@@ -199,6 +206,9 @@ impl ScoreTest {
         observation: &Observation,
         innovations: &[Option<Innovation>; 2],
     ) {
+        if !self.whole {
+            return;
+        }
         let (before, state) = (self.before, pass.filter.state());
         let (inverse_mass, gains) = (motion.mass(state.q).recip(), gains(innovations));
         let acceleration = (state.qd - before.qd) / observation.dt;
@@ -222,8 +232,11 @@ impl ScoreTest {
 
     /// The candidate with the most evidence beside the law's own terms, of which `own` is what the run says,
     /// `overdispersion` being what the law's lasting error makes of a nat; one with a sign that physics does not allow
-    /// has none.
+    /// has none; none where they have not gone with the whole run.
     pub fn likeliest(&mut self, own: &Information, active: &[bool], overdispersion: f64) -> Option<Lacked> {
+        if !self.whole {
+            return None;
+        }
         self.own.solve(own, active);
         let price = (self.candidates.len().max(1) as f64).ln();
         let lacked = |candidate: &Candidate| {

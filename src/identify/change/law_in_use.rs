@@ -217,7 +217,7 @@ impl LawInUse {
         (self.explains, self.proven) = (true, true);
         trials.hand_over(place, window, &mut self.run);
         self.lag.begin();
-        self.effects.begin(self.run.filter.state(), [1.0; 2]);
+        self.effects.end();
         self.run.information.merge(&law.information);
         self.all.copy_from_slice(&problem.known);
         problem.scatter(&law.coefficients, &mut self.all);

@@ -155,9 +155,7 @@ impl Segment {
         if all[all.len() - 1] != 0.0 {
             run.effect.step(terms[terms.len() - 1], &motion, &run.filter_run, observation, &innovations);
         }
-        if score_test.looking {
-            score_test.candidates.step(&motion, &run.filter_run, observation, &innovations);
-        }
+        score_test.candidates.step(&motion, &run.filter_run, observation, &innovations);
         score_test.in_the_sensors.take(&motion, &problem.free_terms, observation, shifts);
         run.scales.add(&motion, &run.filter_run, observation);
         run.sandwich.step(&run.filter_run.information);
@@ -215,8 +213,7 @@ impl Segment {
         let length = self.length(self.run.next);
         let Segment { score_test, run, active, fit, .. } = self;
         let own = &run.filter_run.information;
-        let found = |test: &mut ScoreTest| test.likeliest(own, active, fit.overdispersion);
-        score_test.likeliest = score_test.looking.then(|| found(&mut score_test.candidates)).flatten();
+        score_test.likeliest = score_test.candidates.likeliest(own, active, fit.overdispersion);
         if score_test.in_the_sensors.running {
             self.untried = score_test.likeliest.filter(|lacked| lacked.missing.is_named());
             score_test.candidates.moved(self.untried.as_ref(), &mut self.untried_step);
@@ -380,8 +377,10 @@ impl Segment {
         self.run.effect.begin(self.run.filter_run.filter.state());
         self.run.next = self.start + 1;
         let filter = self.run.filter_run.filter;
-        self.score_test.looking = self.settled();
-        self.score_test.candidates.begin(filter.state(), self.run.largest);
+        match self.settled() {
+            true => self.score_test.candidates.begin(filter.state(), self.run.largest),
+            false => self.score_test.candidates.end(),
+        }
         let due = self.settled() && !self.fit.explains && length >= self.score_test.next_look;
         self.score_test.in_the_sensors.begin(filter, &self.noise, due);
         self.run.scales.clear();

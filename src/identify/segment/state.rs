@@ -148,9 +148,8 @@ pub(super) struct Checkpoint {
 /// The test for effects that the law lacks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct MissingEffects {
+    /// Beside runs of a fit that has settled: those before do not follow the motion yet.
     pub(super) candidates: ScoreTest,
-    /// Whether the run under way looks for them: those before do not follow the motion yet.
-    pub(super) looking: bool,
     /// The effect that explained most in the last run, named or not.
     pub(super) likeliest: Option<Lacked>,
     /// Length of the record from which on a law that does not explain it is tried otherwise.
@@ -225,7 +224,6 @@ impl Segment {
             },
             score_test: MissingEffects {
                 candidates: ScoreTest::new(&problem.terms, n),
-                looking: false,
                 likeliest: None,
                 next_look: 0,
                 in_the_sensors: InTheSensors {
