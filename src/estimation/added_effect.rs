@@ -5,8 +5,8 @@
 
 use super::filter::Innovation;
 use super::information::{Information, Solution};
+use super::one_more_coefficient::Sums;
 use super::pass::{Observation, Pass, gains};
-use super::score_test::{Sums, push};
 use crate::law::{Motion, State, Term};
 use serde::{Deserialize, Serialize};
 
@@ -69,8 +69,7 @@ impl AddedEffect {
         innovations: &[Option<Innovation>; 2],
     ) {
         let pushed = push(effect, motion, self.before, pass, observation);
-        self.sums.carry(pass, pushed, &gains(innovations));
-        self.sums.take(pass, innovations);
+        self.sums.take(pass, pushed, &gains(innovations), innovations);
         self.before = pass.filter.state();
     }
 
@@ -130,6 +129,15 @@ impl AddedEffect {
         let [centre, precision] = self.known;
         (self.sums.information + precision + f64::MIN_POSITIVE, self.sums.score + precision * (centre - value))
     }
+}
+
+/// The acceleration over the run's last interval, from the state `before` it, that a coefficient of 1 of the term is.
+fn push(term: Term, motion: &Motion, before: State, pass: &Pass, observation: &Observation) -> f64 {
+    let state = pass.filter.state();
+    let acceleration = (state.qd - before.qd) / observation.dt;
+    let [from, _, to] = observation.drive.part(0, 1);
+    let force = 0.5 * (term.force(before.q, before.qd, from) + term.force(state.q, state.qd, to));
+    -(force + term.mass(state.q) * acceleration) / motion.mass(state.q)
 }
 
 #[cfg(test)]

@@ -13,8 +13,8 @@
 //! - [`InnovationGate`]: readings that are no part of the motion;
 //! - [`Pass`]: one run over a record: likelihood, score and Fisher information of the coefficients;
 //! - [`AugmentedFilter`]: the state together with coefficients that may wander;
-//! - [`ScoreTest`]: effects that the law does not have, tested in the stream; [`AddedEffect`]: one of them, added;
-//!   [`TermSelection`]: which of the terms that it may have it has;
+//! - [`ScoreTest`]: effects that the law does not have, tested in the stream, and [`LagTest`]: whether F acted later,
+//!   both beside its [`OwnTerms`]; [`AddedEffect`]: one of the effects, added; [`TermSelection`]: which of the terms that it may have it has;
 //! - [`Information`]: sums of what is known of the coefficients, and [`Solution`], what follows from them; [`System`]
 //!   solves them.
 
@@ -26,7 +26,9 @@ mod filter;
 mod information;
 mod initial_state;
 mod innovation_gate;
+mod lag_test;
 mod odds;
+mod one_more_coefficient;
 mod pass;
 mod rivals;
 mod score_test;
@@ -44,10 +46,12 @@ pub use filter::{Channel, Filter, Innovation, Noise, times, white_acceleration};
 pub use information::{Information, Solution};
 pub use initial_state::{LOST, initial_state};
 pub use innovation_gate::{InnovationGate, OUTLYING};
+pub use lag_test::{Lag, LagTest};
 pub use odds::{SAMPLES_OF_A_VARIANCE, TWENTY_TO_ONE, log_sum};
+pub use one_more_coefficient::OwnTerms;
 pub use pass::{IntervalMap, Observation, Pass, gains};
 pub use rivals::{RIVALS, Rivals};
-pub use score_test::{Lacked, Lag, LagTest, Missing, ScoreTest};
+pub use score_test::{Lacked, Missing, ScoreTest};
 pub use smoother::{Smoothable, smooth};
 pub use symmetric::{Lane, LogSum, System, WIDTH};
 pub use term_selection::{TermSelection, price_of_a_term};

@@ -2,7 +2,7 @@
 //! law.
 
 use super::adaptive_noise::AdaptiveNoise;
-use crate::estimation::{Innovation, Lacked, Lag, LagTest, Noise, Observation, Pass, ScoreTest};
+use crate::estimation::{Innovation, Lacked, Lag, LagTest, Noise, Observation, OwnTerms, Pass, ScoreTest};
 use crate::identify::library::{KnownLaw, Trials};
 use crate::identify::problem::Problem;
 use crate::identify::segment::{MotionScales, Segment};
@@ -30,7 +30,9 @@ pub struct LawInUse {
     lag: LagTest,
     /// Effects that it lacks, by that run.
     effects: ScoreTest,
-    /// What a sample of that makes of the free coefficients, as last told.
+    /// What it says of the law's own terms, as last asked.
+    own: OwnTerms,
+    /// What a sample of a lag of F makes of the free coefficients, as last told.
     pub lag_slope: Vec<f64>,
     /// Its terms: the model's and, last, an effect that the model lacks.
     pub terms: Vec<Term>,
@@ -72,6 +74,7 @@ impl LawInUse {
             run: Pass::new(n).gated(),
             lag: LagTest::new(n),
             effects: ScoreTest::new(&problem.terms, n),
+            own: OwnTerms::none(n),
             lag_slope: vec![0.0; n],
             terms: problem.terms_and_effect(),
             all: problem.known.clone(),
@@ -140,19 +143,20 @@ impl LawInUse {
 
     /// When F acted by all of its record up to now.
     pub fn tell_lag(&mut self) -> Lag {
-        let LawInUse { run, lag, lag_slope, active, overdispersion, .. } = self;
-        lag.told(&run.information, active, &run.track, *overdispersion, lag_slope).lag
+        let LawInUse { run, lag, own, lag_slope, active, overdispersion, .. } = self;
+        own.solve(&run.information, active);
+        lag.told(own, &run.track, *overdispersion, lag_slope).lag
     }
 
     /// The effect that it lacks most by all of its record up to now.
     pub fn likeliest_effect(&mut self) -> Option<Lacked> {
-        let LawInUse { run, effects, active, overdispersion, .. } = self;
-        effects.likeliest(&run.information, active, *overdispersion)
+        self.own.solve(&self.run.information, &self.active);
+        self.effects.likeliest(&self.own, self.overdispersion)
     }
 
-    /// By how much the free coefficients, n, are others with that effect.
+    /// By how much the free coefficients, n, are others with that effect, the likeliest as last asked.
     pub fn moved(&self, lacked: &Lacked, step: &mut [f64]) {
-        self.effects.moved(Some(lacked), step);
+        self.effects.moved(&self.own, Some(lacked), step);
     }
 
     /// F acts so many samples later than was assumed, each of which makes that of the free coefficients.

@@ -4,6 +4,7 @@ use super::hypothesis::{Expected, Kind, Value};
 use super::repetition::Repetition;
 use super::weighing::{Verdict, Weighing};
 use crate::estimation::{Channel, Filter, OUTLYING};
+use crate::identify::packed_readings;
 use crate::identify::reading::Reading;
 use crate::identify::report::SensorState;
 use crate::identify::sample::{GAP, Sample};
@@ -52,11 +53,13 @@ pub struct Quarantine {
     weighing: Weighing,
     stance: Stance,
     /// Readings held, and how many.
+    #[serde(with = "packed_readings")]
     held: Vec<Reading>,
     count: usize,
     /// Time from the last sample that was as expected to the first one held, s.
     interval: f64,
     /// Readings let through and not taken yet: a ring, its first place and its length.
+    #[serde(with = "packed_readings")]
     through: Vec<Reading>,
     first: usize,
     waiting: usize,

@@ -9,7 +9,7 @@
 use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
 use super::prior::{InertiaPrior, Prior};
-use super::state::{Checkpoint, InTheSensors, NOISE_MEMORY, Run, Runs, Segment};
+use super::state::{Checkpoint, InTheSensors, MissingEffects, NOISE_MEMORY, Runs, Segment};
 use crate::estimation::{Filter, Lag, LagTest, Missing, Noise, Observation, Pass, ScoreTest};
 use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
@@ -212,11 +212,11 @@ impl Segment {
     fn end_score_test(&mut self) {
         let length = self.length(self.run.next);
         let Segment { score_test, run, active, fit, .. } = self;
-        let own = &run.filter_run.information;
-        score_test.likeliest = score_test.candidates.likeliest(own, active, fit.overdispersion);
+        score_test.own.solve(&run.filter_run.information, active);
+        score_test.likeliest = score_test.candidates.likeliest(&score_test.own, fit.overdispersion);
         if score_test.in_the_sensors.running {
             self.untried = score_test.likeliest.filter(|lacked| lacked.missing.is_named());
-            score_test.candidates.moved(self.untried.as_ref(), &mut self.untried_step);
+            score_test.candidates.moved(&score_test.own, self.untried.as_ref(), &mut self.untried_step);
             score_test.next_look = (LOOK_AGAIN * length as f64) as u64;
         }
         if self.settled() && (self.score_test.in_the_sensors.running || self.fit.explains) {
@@ -232,15 +232,16 @@ impl Segment {
     /// When F acted, by the run that explains the record better with a lag, against the better one without.
     fn tell_lag(&mut self) {
         let Segment { score_test, timing, fit, run, active, .. } = self;
-        let Run { lag, filter_run, .. } = run;
-        let (own, track) = (&filter_run.information, &filter_run.track);
-        let under = lag.told(own, active, track, fit.overdispersion, &mut timing.slope);
+        let MissingEffects { own, in_the_sensors, .. } = score_test;
+        let track = &run.filter_run.track;
+        let under = run.lag.told(own, track, fit.overdispersion, &mut timing.slope);
         timing.lag = under.lag;
-        let InTheSensors { lag, filter_run, slope, running, .. } = &mut score_test.in_the_sensors;
+        let InTheSensors { lag, filter_run, slope, running, .. } = in_the_sensors;
         if !(*running && filter_run.track.count == track.count) {
             return;
         }
-        let told = lag.told(&filter_run.information, active, &filter_run.track, 1.0, slope);
+        own.solve(&filter_run.information, active);
+        let told = lag.told(own, &filter_run.track, 1.0, slope);
         if told.with() > under.with() {
             timing.lag = Lag { evidence: told.with() - told.without.max(under.without), ..told.lag };
             timing.slope.copy_from_slice(slope);

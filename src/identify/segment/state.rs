@@ -4,7 +4,7 @@ use super::convergence::Convergence;
 use super::motion_scales::MotionScales;
 use super::prior::InertiaPrior;
 use crate::estimation::{
-    AddedEffect, Information, KnownEffect, Lacked, Lag, LagTest, Missing, Noise, Pass, ScoreTest, Solution,
+    AddedEffect, Information, KnownEffect, Lacked, Lag, LagTest, Missing, Noise, OwnTerms, Pass, ScoreTest, Solution,
     TermSelection,
 };
 use crate::identify::library::Estimate;
@@ -150,6 +150,8 @@ pub(super) struct Checkpoint {
 pub(super) struct MissingEffects {
     /// Beside runs of a fit that has settled: those before do not follow the motion yet.
     pub(super) candidates: ScoreTest,
+    /// What the run says of the law's own terms.
+    pub(super) own: OwnTerms,
     /// The effect that explained most in the last run, named or not.
     pub(super) likeliest: Option<Lacked>,
     /// Length of the record from which on a law that does not explain it is tried otherwise.
@@ -224,6 +226,7 @@ impl Segment {
             },
             score_test: MissingEffects {
                 candidates: ScoreTest::new(&problem.terms, n),
+                own: OwnTerms::none(n),
                 likeliest: None,
                 next_look: 0,
                 in_the_sensors: InTheSensors {

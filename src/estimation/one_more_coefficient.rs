@@ -1,0 +1,118 @@
+//! What a run of the filter says of one more coefficient than its law has, beside the law's own.
+
+use super::filter::{Channel, Innovation};
+use super::information::{Information, Solution};
+use super::pass::Pass;
+use serde::{Deserialize, Serialize};
+
+/// Share of a candidate's information that must be its own: of less, rounding (1e-12 of the whole) is more than a
+/// millionth.
+const OWN: f64 = 1e-6;
+
+/// What a run says of the law's own terms.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct OwnTerms {
+    solution: Solution,
+    pub(super) active: Vec<bool>,
+    score: Vec<f64>,
+}
+
+/// What the innovations say of one more coefficient.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Sums {
+    /// ∂(q, q̇)/∂ its coefficient.
+    pub(super) sensitivity: [f64; 2],
+    pub(super) information: f64,
+    pub(super) score: f64,
+    /// With each free term of the law.
+    pub(super) cross: Vec<f64>,
+}
+
+impl OwnTerms {
+    /// Of `n` free terms of which nothing is known.
+    pub fn none(n: usize) -> OwnTerms {
+        OwnTerms { solution: Solution::none(n), active: vec![true; n], score: vec![0.0; n] }
+    }
+
+    /// As a run says it of those that are active.
+    pub fn solve(&mut self, own: &Information, active: &[bool]) {
+        self.active.copy_from_slice(active);
+        self.score.copy_from_slice(&own.score);
+        self.solution.solve(own, active);
+    }
+
+    /// Log-likelihood that the law's own terms gain at the maximum, nats.
+    pub(super) fn gain(&self) -> f64 {
+        0.5 * self.determined().map(|row| self.solution.step[row] * self.score[row]).sum::<f64>()
+    }
+
+    /// The terms that the law has and its record determines.
+    pub(super) fn determined(&self) -> impl Iterator<Item = usize> {
+        (0..self.active.len()).filter(|index| self.active[*index] && self.solution.determined[*index])
+    }
+}
+
+impl Sums {
+    pub(super) fn new(n: usize) -> Sums {
+        Sums { sensitivity: [0.0; 2], information: 0.0, score: 0.0, cross: vec![0.0; n] }
+    }
+
+    pub(super) fn clear(&mut self) {
+        (self.sensitivity, self.information, self.score) = ([0.0; 2], 0.0, 0.0);
+        self.cross.fill(0.0);
+    }
+
+    /// Copies the other's into this room.
+    pub(super) fn copy_from(&mut self, other: &Sums) {
+        (self.sensitivity, self.information, self.score) = (other.sensitivity, other.information, other.score);
+        self.cross.copy_from_slice(&other.cross);
+    }
+
+    /// The law's own coefficients have become those plus `step`.
+    pub(super) fn shift(&mut self, step: &[f64]) {
+        let moved: f64 = self.cross.iter().zip(step).map(|(cross, step)| cross * step).sum();
+        self.score -= moved;
+    }
+
+    /// Goes with the run over an interval in which a coefficient of 1 accelerates by `push`, and takes the innovations
+    /// of the sample at its end.
+    pub(super) fn take(
+        &mut self,
+        pass: &Pass,
+        push: f64,
+        gains: &[[f64; 2]; 2],
+        innovations: &[Option<Innovation>; 2],
+    ) {
+        let (rows, moved) = pass.carry(self.sensitivity, push, gains);
+        self.sensitivity = moved;
+        let [precision, residual] = [
+            innovations.map(|innovation| innovation.map_or(0.0, |innovation| innovation.precision)),
+            innovations.map(|innovation| innovation.map_or(0.0, |innovation| innovation.residual)),
+        ];
+        let [q, qd] = [0, 1].map(|channel| rows[channel] * precision[channel]);
+        self.information += q * rows[0] + qd * rows[1];
+        self.score += q * residual[0] + qd * residual[1];
+        let own = pass.expected(Channel::Q).iter().zip(pass.expected(Channel::Qd));
+        self.cross.iter_mut().zip(own).for_each(|(sum, own)| *sum += q * own.0 + qd * own.1);
+    }
+
+    /// (coefficient, gain in log-likelihood, information of its own) beside the law's own terms.
+    pub(super) fn gain(&self, own: &OwnTerms) -> (f64, f64, f64) {
+        let (mut information, mut score) = (self.information, self.score);
+        for row in own.determined() {
+            let shared = self.shared(row, own);
+            information -= self.cross[row] * shared;
+            score -= shared * own.score[row];
+        }
+        match information > OWN * self.information {
+            true => (score / information, 0.5 * score * score / information, information),
+            false => (0.0, 0.0, 0.0),
+        }
+    }
+
+    /// Row of M⁻¹c: how much of the coefficient is one of the law's own.
+    pub(super) fn shared(&self, row: usize, own: &OwnTerms) -> f64 {
+        let n = self.cross.len();
+        own.determined().map(|column| own.solution.covariance[row * n + column] * self.cross[column]).sum()
+    }
+}
