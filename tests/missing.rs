@@ -44,6 +44,20 @@ fn a_complete_law_lacks_nothing() {
     }
 }
 
+/// Before the motion has gone there and back an effect is not told from what the law's own terms would be.
+#[test]
+fn nothing_is_missing_from_a_law_that_is_still_sought() {
+    for seed in [9701, 9702, 9703, 9707] {
+        let mut scenario = Builtin::VanDerPolWhite.random(seed).with_noise(0.01);
+        scenario.duration = 3.0;
+        let mut identifier = Identifier::new(&Model::cubic_library(), Settings::default()).unwrap();
+        for Reading { t, q, qd, excitation, .. } in record(&scenario).unwrap() {
+            identifier.step(Sample { t, q, qd, excitation }).unwrap();
+            assert_eq!(identifier.output().missing, None, "seed {seed} at {t} s");
+        }
+    }
+}
+
 /// Plants whose laws switch at 20 s, with an effect that their models lack: a tenth of the inertia's force.
 fn switching(plant: Builtin, effect: &str, seed: u64) -> Scenario {
     let mut scenario = plant.random(seed).with_noise(0.0);

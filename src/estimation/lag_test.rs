@@ -1,7 +1,7 @@
 //! When F acted, against when it is taken to have: by the motion, in the stream.
 //!
-//! A lag is one more coefficient beside a run, as in the score test of effects: its force is what F was a sample before,
-//! less what it is.
+//! A lag is one more coefficient beside a run, as in the score test of effects: its force is what F was a sample
+//! before, less what it is.
 
 use super::filter::Innovation;
 use super::one_more_coefficient::{OwnTerms, Sums};

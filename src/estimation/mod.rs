@@ -13,8 +13,9 @@
 //! - [`InnovationGate`]: readings that are no part of the motion;
 //! - [`Pass`]: one run over a record: likelihood, score and Fisher information of the coefficients;
 //! - [`AugmentedFilter`]: the state together with coefficients that may wander;
-//! - [`ScoreTest`]: effects that the law does not have, tested in the stream, and [`LagTest`]: whether F acted later,
-//!   both beside its [`OwnTerms`]; [`AddedEffect`]: one of the effects, added; [`TermSelection`]: which of the terms that it may have it has;
+//! - [`ScoreTest`]: effects that the law does not have, tested in the stream, and [`LagTest`]: whether F acted
+//!   later, both beside its [`OwnTerms`]; [`AddedEffect`]: one of the effects, added;
+//! - [`TermSelection`]: which of the terms that it may have the law has;
 //! - [`Information`]: sums of what is known of the coefficients, and [`Solution`], what follows from them; [`System`]
 //!   solves them.
 

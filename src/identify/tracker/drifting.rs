@@ -124,13 +124,15 @@ impl Tracker {
     }
 
     /// Where a law of this record was validated, only coefficients that have drifted before do so again; where none
-    /// was, they have to have moved for so long that a constant law would have been found.
+    /// was, they have to have moved for so long that a constant law would have been found, and none has been that
+    /// explains the record.
     fn is_sure_of_drift(&self) -> bool {
         let drift = &self.weak_row_drift;
         let had_a_law = self.regime.is_valid() || self.history.refuted_at > self.segment.start;
+        let explained = self.is_refining() && self.segment.settled() && self.segment.fit.explains;
         match had_a_law {
             true => self.drifted,
-            false => !self.history.explained && drift.has_no_rest(&self.window) && drift.spans(1.0),
+            false => !self.history.explained && !explained && drift.has_no_rest(&self.window) && drift.spans(1.0),
         }
     }
 

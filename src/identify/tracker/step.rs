@@ -7,6 +7,7 @@ use crate::identify::change::SUSPENSE;
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::validation::TRUSTED;
+use std::f64::consts::TAU;
 
 /// A hypothesis starts every so many samples.
 const SPAWN_EVERY: u64 = 2;
@@ -154,9 +155,16 @@ impl Tracker {
         self.heed_run(setup);
     }
 
+    /// Whether the motion of the record is a natural period long: before that an effect is not told from what the law
+    /// would be with other coefficients.
+    fn has_gone_there_and_back(&self) -> bool {
+        let first = self.window.sample(self.segment.start.max(self.window.oldest())).t;
+        self.now() - first > TAU * self.segment.scales.natural_time()
+    }
+
     /// What the run that has just closed says is made known, and taken into use where it is worth it.
     fn heed_run(&mut self, setup: Setup) {
-        self.published.missing = self.segment.missing;
+        self.published.missing = self.segment.missing.filter(|_| self.has_gone_there_and_back());
         let contradicted = self.monitor.law.running && self.segment.contradicts(&self.monitor.law.all);
         let since = self.history.contradicted_since.unwrap_or(self.segment.closed_at());
         self.history.contradicted_since = contradicted.then_some(since);
