@@ -100,7 +100,8 @@ impl BayesFactor {
     /// Log-evidence, nats, of a change of one coefficient alone against the belief that has just been weighed;
     /// `precision` is 1/τ² of each.
     pub fn evidence_of_a_change(&mut self, belief: &GaussianPrior, precision: &[f64]) -> f64 {
-        self.single.evidence(&self.record, &self.system, &belief.open, precision)
+        let shared = |changed, erring| self.record.entry(changed, erring);
+        self.single.evidence(&self.record, shared, &self.system, &belief.open, precision)
     }
 
     fn isolate(&mut self, open: &[bool]) {

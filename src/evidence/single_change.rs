@@ -32,11 +32,19 @@ impl SingleChange {
         SingleChange { crossed: vec![[0.0; WIDTH]; n * n.div_ceil(WIDTH)], changes: vec![[0.0; 2]; n] }
     }
 
-    /// Log-evidence, nats, of a change of one coefficient, each as likely as the others, against none. `system` is A
+    /// Log-evidence, nats, of a change of one coefficient, each as likely as the others, against none. `record` is what
+    /// the data say of changes, `shared` what they share with the law's error by the coefficients of both. `system` is A
     /// and g + Λμ, eliminated, with what is not `open` isolated; `precision` is 1/τ² of each coefficient.
-    pub fn evidence(&mut self, record: &Information, system: &System, open: &[bool], precision: &[f64]) -> f64 {
+    pub fn evidence(
+        &mut self,
+        record: &Information,
+        shared: impl Fn(usize, usize) -> f64,
+        system: &System,
+        open: &[bool],
+        precision: &[f64],
+    ) -> f64 {
         let n = record.n;
-        self.cross(record, system, open);
+        self.cross(n, shared, system, open);
         for (k, (slot, precision)) in self.changes.iter_mut().zip(precision).enumerate() {
             let [own, pulled] = system.products(&self.crossed, k);
             let information = record.matrix[k * n + k] - own;
@@ -50,16 +58,12 @@ impl SingleChange {
         largest + (sum / n as f64).ln()
     }
 
-    /// M, both triangles, through the elimination; what is not open was not in it.
-    fn cross(&mut self, record: &Information, system: &System, open: &[bool]) {
-        let n = record.n;
-        for (row, target) in self.crossed.chunks_exact_mut(n.div_ceil(WIDTH)).enumerate() {
+    /// What is shared, through the elimination; what is not open was not in it.
+    fn cross(&mut self, n: usize, shared: impl Fn(usize, usize) -> f64, system: &System, open: &[bool]) {
+        for (erring, target) in self.crossed.chunks_exact_mut(n.div_ceil(WIDTH)).enumerate() {
             let target = &mut target.as_flattened_mut()[..n];
-            target[row..].copy_from_slice(&record.matrix[row * n + row..(row + 1) * n]);
-            (0..row).for_each(|column| target[column] = record.matrix[column * n + row]);
-            if !open[row] {
-                target.fill(0.0);
-            }
+            let entries = target.iter_mut().enumerate();
+            entries.for_each(|(changed, entry)| *entry = if open[erring] { shared(changed, erring) } else { 0.0 });
         }
         system.forward(&mut self.crossed);
     }
@@ -142,7 +146,13 @@ mod tests {
         system.set_right(record.score.iter().zip(&prior.score).map(|(a, b)| a + b));
         (0..3).filter(|index| !open[*index]).for_each(|index| system.isolate(index));
         system.eliminate(1e-13);
-        SingleChange::new(3).evidence(&record, &system, &open, &precision)
+        SingleChange::new(3).evidence(
+            &record,
+            |changed, erring| record.entry(changed, erring),
+            &system,
+            &open,
+            &precision,
+        )
     }
 
     #[test]

@@ -15,7 +15,8 @@
 //! of the maximum). Starts are kept on a grid whose spacing grows with age, and where the evidence has a peak.
 
 use super::hypothesis::{Hypothesis, Law};
-use crate::estimation::{Innovation, IntervalMap, Lane, System, WIDTH};
+use super::state_error::Passage;
+use crate::estimation::{Information, Innovation, IntervalMap, Lane, Matrix, System, WIDTH};
 use crate::evidence::bayes_factor::{BayesFactor, GaussianPrior, TOLERANCE, likelihood};
 use crate::evidence::single_change::{SingleChange, either, log_sum};
 use serde::{Deserialize, Serialize};
@@ -63,6 +64,8 @@ pub struct Bank {
     spread: Vec<f64>,
     spread_log_determinant: f64,
     shared: Shared,
+    /// What the data since a hypothesis's start say of the error of the law in use.
+    told: Information,
     system: System,
     single: SingleChange,
 }
@@ -78,6 +81,7 @@ impl Bank {
             spread: vec![1.0; n],
             spread_log_determinant: 0.0,
             shared: Shared { input: [lanes(), lanes()], rows: [lanes(), lanes()] },
+            told: Information::none(n),
             system: System::new(n),
             single: SingleChange::new(n),
         }
@@ -117,15 +121,16 @@ impl Bank {
     pub fn step(&mut self, map: &IntervalMap, innovations: &[Option<Innovation>; 2]) {
         self.shared.set_input(map);
         let said = innovations.map(|innovation| innovation.map_or(Said::NOTHING, Said::from));
+        let (residuals, weights) = (said.each_ref().map(|said| said.residual), said.each_ref().map(|said| said.weight));
+        let passage = passage(&map.transition, &said);
         let unexplained = said.iter().map(|said| 0.5 * said.weight * said.residual * said.residual).sum::<f64>();
         for hypothesis in &mut self.hypotheses[..self.count] {
             hypothesis.age += 1;
             hypothesis.unexplained += unexplained;
             self.shared.carry(&map.transition, &said, &mut hypothesis.sensitivity);
             let [q, qd] = &self.shared.rows;
-            let [first, second] = &said;
-            let (residuals, weights) = ([first.residual, second.residual], [first.weight, second.weight]);
             hypothesis.information.add_pair([q, qd], residuals, weights);
+            hypothesis.state.step(&passage, &self.shared.rows, residuals, weights);
         }
     }
 
@@ -234,13 +239,16 @@ impl Bank {
     /// Log-evidence of a switch, of one coefficient or of all, and of none, against the law in use exactly as it is.
     fn weigh(&mut self, index: usize) -> [f64; 2] {
         let all = self.all_switched(index);
-        let Bank { hypotheses, system, single, spread, .. } = self;
+        let Bank { hypotheses, told, system, single, spread, .. } = self;
         let hypothesis = &hypotheses[index];
+        let (since, state) = (&hypothesis.information, &hypothesis.state);
+        state.of_unbroken(since, told);
+        let shared = |changed, erring| state.shared(since, changed, erring);
         let [mut one, mut none] = [f64::NEG_INFINITY; 2];
         for law in hypothesis.likely_laws() {
-            let unswitched = law.log_weight + hypothesis.unswitched(law, system);
+            let unswitched = law.log_weight + hypothesis.unswitched(law, told, system);
             none = log_sum(none, unswitched);
-            one = log_sum(one, unswitched + single.evidence(&hypothesis.information, system, &law.active, spread));
+            one = log_sum(one, unswitched + single.evidence(since, shared, system, &law.active, spread));
         }
         [either(all, one), none]
     }
@@ -300,6 +308,19 @@ impl From<Innovation> for Said {
     }
 }
 
+/// What an interval and its measurements do to an error of the state.
+fn passage(transition: &Matrix<2>, [q, qd]: &[Said; 2]) -> Passage {
+    let through = |column: usize| {
+        let [first, second] = [transition[0][column], transition[1][column]];
+        let seen = second - q.gain[1] * first;
+        let left = [first - q.gain[0] * first - qd.gain[0] * seen, seen - qd.gain[1] * seen];
+        (left, [first, seen])
+    };
+    let [(q_left, q_rows), (qd_left, qd_rows)] = [through(0), through(1)];
+    let columns = |first: [f64; 2], second: [f64; 2]| [[first[0], second[0]], [first[1], second[1]]];
+    Passage { state: columns(q_left, qd_left), rows: columns(q_rows, qd_rows) }
+}
+
 impl Shared {
     fn set_input(&mut self, map: &IntervalMap) {
         let [to_q, to_qd] = &mut self.input;
@@ -336,7 +357,6 @@ impl Shared {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimation::Information;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
@@ -346,6 +366,11 @@ mod tests {
     /// What an interval does to (q, q̇) by unit of each of eight coefficients.
     fn input(number: u64) -> Vec<[f64; 2]> {
         (0..8).map(|k| [0.0, 0.1 * (0.05 * (f64::from(k) + 1.0) * number as f64).sin()]).collect()
+    }
+
+    /// A law of which that much is known, and all of whose state.
+    fn law(information: &Information) -> Law<'_> {
+        Law { information, sensitivity: &[[0.0; 2]; 8], open: &[true; 8], own: &[true; 8], explains: true }
     }
 
     /// A bank that has seen `samples`, q̇ alone measured with std 1; at sample `switch` a coefficient moves by
@@ -365,10 +390,7 @@ mod tests {
             bank.step(&map, &[None, Some(said)]);
             bank.look_at_all();
             if number.is_multiple_of(2) {
-                bank.spawn(
-                    number,
-                    &Law { information: &information, open: &[true; 8], own: &[true; 8], explains: true },
-                );
+                bank.spawn(number, &law(&information));
             }
         }
         bank
@@ -378,8 +400,9 @@ mod tests {
     fn of_all(bank: &mut Bank, index: usize) -> f64 {
         let all = bank.all_switched(index);
         let Bank { hypotheses, system, .. } = bank;
-        let law = hypotheses[index].likely_laws().next().cloned().unwrap();
-        all - hypotheses[index].unswitched(&law, system)
+        let hypothesis = &hypotheses[index];
+        let law = hypothesis.likely_laws().next().unwrap();
+        all - hypothesis.unswitched(law, &hypothesis.information, system)
     }
 
     #[test]
@@ -411,7 +434,7 @@ mod tests {
         (bank.hypotheses[5].evidence, bank.hypotheses[8].evidence) = (6.0, 9.0);
         let nothing = Information::none(8);
         for number in 61..200 {
-            bank.spawn(number, &Law { information: &nothing, open: &[true; 8], own: &[true; 8], explains: true });
+            bank.spawn(number, &law(&nothing));
         }
         assert!(bank.hypotheses.iter().any(|hypothesis| hypothesis.start == start));
     }

@@ -1,6 +1,7 @@
 //! One hypothesis: since its start the law has been another one.
 
 use super::no_change::NoChange;
+use super::state_error::StateError;
 use crate::estimation::{Information, Lane, System, WIDTH};
 use crate::evidence::bayes_factor::TOLERANCE;
 use serde::{Deserialize, Serialize};
@@ -10,6 +11,8 @@ use serde::{Deserialize, Serialize};
 pub struct Law<'a> {
     /// Information on the coefficients from the stage so far.
     pub information: &'a Information,
+    /// ∂(q, q̇)/∂θ of the state that it has come to, n.
+    pub sensitivity: &'a [[f64; 2]],
     /// Which of them it may have.
     pub open: &'a [bool],
     /// Which of those it has.
@@ -18,12 +21,9 @@ pub struct Law<'a> {
     pub explains: bool,
 }
 
-/// A law that explains its record is trusted with this fraction of its information: its covariance is that of a
-/// linearisation.
-const CAUTION: f64 = 0.3;
-
-/// One that does not, with this: what it leaves comes and goes with the motion.
-const MORE_CAUTION: f64 = 0.03;
+/// A law that does not explain its record is trusted with this fraction of its information: what it leaves comes and
+/// goes with the motion.
+const CAUTION: f64 = 0.03;
 
 /// No law is trusted to be constant more exactly than to this part of what a switch moves: below lies what the
 /// integration errs by.
@@ -52,6 +52,7 @@ pub(super) struct Hypothesis {
     /// ∂q/∂δ and ∂q̇/∂δ, each n long and filled up with zeros.
     pub(super) sensitivity: [Vec<Lane>; 2],
     pub(super) information: Information,
+    pub(super) state: StateError,
     /// Λ of "no switch", as [`Information::matrix`]: the record's, and of terms that the law has dropped what they
     /// could be.
     prior: Vec<f64>,
@@ -76,6 +77,7 @@ impl Hypothesis {
             unexplained_then: 0.0,
             sensitivity: [lanes(), lanes()],
             information: Information::none(n),
+            state: StateError::none(n),
             prior: Information::none(n).matrix,
             pull: vec![0.0; n],
             full: NoChange::none(n),
@@ -90,8 +92,9 @@ impl Hypothesis {
         (self.evidence, self.unexplained, self.unexplained_then) = (0.0, 0.0, 0.0);
         self.sensitivity.iter_mut().for_each(|channel| channel.fill([0.0; WIDTH]));
         self.information.clear();
+        self.state.begin(law.sensitivity);
         let sharpest = (0..n).map(|k| law.information.matrix[k * n + k] / precision[k]).fold(0.0, f64::max);
-        let trust = if law.explains { CAUTION } else { MORE_CAUTION }.min((FINEST * FINEST * sharpest).recip());
+        let trust = if law.explains { 1.0 } else { CAUTION }.min((FINEST * FINEST * sharpest).recip());
         self.prior.iter_mut().zip(&law.information.matrix).for_each(|(slot, entry)| *slot = trust * entry);
         self.pull.iter_mut().zip(&law.information.score).for_each(|(pull, score)| *pull = trust * score);
         for (index, (slot, open)) in self.full.active.iter_mut().zip(law.open).enumerate() {
@@ -119,10 +122,11 @@ impl Hypothesis {
         [&self.full, &self.own].into_iter().filter(|law| law.log_weight > NEGLIGIBLE)
     }
 
-    /// Log-evidence of no switch from `law`; leaves the eliminated system behind.
-    pub(super) fn unswitched(&self, law: &NoChange, system: &mut System) -> f64 {
-        system.load(&self.information.matrix, Some(&self.prior));
-        system.set_right(self.information.score.iter().zip(&self.pull).map(|(score, pull)| score + pull));
+    /// Log-evidence of no switch from `law`, of whose error the data since the start say `told`; leaves the eliminated
+    /// system behind.
+    pub(super) fn unswitched(&self, law: &NoChange, told: &Information, system: &mut System) -> f64 {
+        system.load(&told.matrix, Some(&self.prior));
+        system.set_right(told.score.iter().zip(&self.pull).map(|(score, pull)| score + pull));
         law.isolate_inactive(system);
         system.eliminate(TOLERANCE);
         0.5 * (system.squares() - law.at_mean - (system.log_determinant() - law.log_determinant))
@@ -143,7 +147,7 @@ impl Hypothesis {
     /// Moves the point about which δ is counted: Λμ becomes Λ(μ − step).
     pub(super) fn shift(&mut self, step: &[f64]) {
         let (n, active) = (step.len(), &self.full.active);
-        self.information.shift(step);
+        self.state.shift(step, &mut self.information);
         let before: f64 = (0..n).filter(|row| active[*row]).map(|row| step[row] * self.pull[row]).sum();
         for row in (0..n).filter(|row| active[*row]) {
             self.pull[row] -= self.prior[row * n + row] * step[row];
@@ -173,18 +177,19 @@ mod tests {
         let mut information = Information::none(2);
         information.add(&[10.0, 0.0], 0.0, 1.0);
         information.add(&[0.0, told.sqrt()], 0.0, 1.0);
-        let law = Law { information: &information, open: &[true, true], own: &[true, false], explains: true };
+        let (open, own, sensitivity) = (&[true, true], &[true, false], &[[0.0; 2]; 2]);
+        let law = Law { information: &information, sensitivity, open, own, explains: true };
         let mut hypothesis = Hypothesis::none(2);
         hypothesis.begin(7, &law, &[4.0, 4.0], &mut System::new(2));
         [hypothesis.full.log_weight.exp(), hypothesis.own.log_weight.exp()]
     }
 
-    /// The odds are those of the std after and before the record; what it says counts [`CAUTION`] times.
+    /// The odds are those of the std after and before the record.
     #[test]
     fn a_dropped_term_of_which_the_record_says_nothing_is_as_likely_there_as_not() {
         for told in [1e-4, 1.0, 4000.0] {
             let [full, own] = weights(told);
-            let expected = (1.0 + CAUTION * told / 4.0).sqrt();
+            let expected = (1.0_f64 + told / 4.0).sqrt();
             assert!((own / full / expected - 1.0).abs() < 1e-9, "{told}: {} for {expected}", own / full);
         }
     }

@@ -111,7 +111,8 @@ impl Tracker {
         // unlikely
         let own = &monitor.law.active;
         let open = if self.regime.recognition().is_some() { own } else { &monitor.every_term };
-        let law = Law { information: &monitor.law.run.information, open, own, explains };
+        let run = &monitor.law.run;
+        let law = Law { information: &run.information, sensitivity: &run.sensitivity, open, own, explains };
         monitor.bank.spawn(number, &law);
     }
 
