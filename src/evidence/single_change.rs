@@ -33,8 +33,8 @@ impl SingleChange {
     }
 
     /// Log-evidence, nats, of a change of one coefficient, each as likely as the others, against none. `record` is what
-    /// the data say of changes, `shared` what they share with the law's error by the coefficients of both. `system` is A
-    /// and g + Λμ, eliminated, with what is not `open` isolated; `precision` is 1/τ² of each coefficient.
+    /// the data say of changes, `shared` what they share with the law's error by the coefficients of both. `system` is
+    /// A and g + Λμ, eliminated, with what is not `open` isolated; `precision` is 1/τ² of each coefficient.
     pub fn evidence(
         &mut self,
         record: &Information,
