@@ -2,14 +2,15 @@
 //!
 //! A law has many coefficients and a switch may move but one of them: to leave all of them open costs the evidence what
 //! each could have been. That one of n has changed and nothing else is a hypothesis of its own. Under the law as it was
-//! the coefficients have a posterior of precision A = M + Λ and mean x = A⁻¹(g + Λμ), M and g being the record's
-//! information and score. Beside them a change of coefficient k has the information and score
+//! its error has a posterior of precision A = M₀ + Λ and mean x = A⁻¹(g₀ + Λμ), M₀ and g₀ being the information and
+//! score that the record gives on it. Beside it a change of coefficient k has the information and score
 //!
 //! ```text
-//! i = Mₖₖ − Mₖ A⁻¹ Mₖᵀ,   s = gₖ − Mₖ x,
+//! i = Mₖₖ − Cₖ A⁻¹ Cₖᵀ,   s = gₖ − Cₖ x,
 //! ```
 //!
-//! and, with variance τ² before the record, the log-evidence ½ s²τ²/(1 + iτ²) − ½ ln(1 + iτ²) against no change.
+//! C being what a change shares with the law's error, M where both act from the start on; and, with variance τ² before
+//! the record, the log-evidence ½ s²τ²/(1 + iτ²) − ½ ln(1 + iτ²) against no change.
 
 use crate::estimation::{Information, Lane, System, WIDTH};
 use serde::{Deserialize, Serialize};
@@ -20,7 +21,7 @@ const OWN: f64 = 1e-9;
 /// Room for the changes of n coefficients, one at a time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SingleChange {
-    /// M through the elimination of A: n rows of as many lanes as n needs.
+    /// C through the elimination of A: n rows of as many lanes as n needs.
     crossed: Vec<Lane>,
     /// ½ s²τ²/(1 + iτ²) and 1 + iτ² of each.
     changes: Vec<[f64; 2]>,

@@ -2,8 +2,8 @@
 //!
 //! Each [`Hypothesis`] says: since its start the coefficients differ by δ from those in use. δ makes the innovations ε
 //! of the law in use linear in it, ε = ψδ + white, ψ carried from sensitivity 0 at the start (the state is continuous
-//! across a switch). With M = Σψψᵀ/s and g = Σψε/s, and a Gaussian prior N(μ, Λ⁻¹) of δ, the log-evidence of the data
-//! since the start is
+//! across a switch). "No switch" says that they differ by δ before it too, as far as that law errs (`state_error`).
+//! With M = Σψψᵀ/s and g = Σψε/s, and a Gaussian prior N(μ, Λ⁻¹) of δ, the log-evidence of the data since the start is
 //!
 //! ```text
 //! ½ (g + Λμ)ᵀ (M + Λ)⁻¹ (g + Λμ) − ½ μᵀΛμ − ½ ln det(M + Λ) + ½ ln det Λ   (+ what all priors share)
