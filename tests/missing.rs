@@ -37,6 +37,21 @@ fn a_hidden_effect_is_named() {
     }
 }
 
+/// A law without stiffness has no natural period.
+#[test]
+fn a_mass_that_rubs_is_said_to() {
+    let mut scenario = scenario("coulomb_friction = 0.6", 7);
+    scenario.terms.truncate(2);
+    scenario.stages[0].coefficients.truncate(2);
+    let model = Model::of("mass", ["qdd", "qd"].map(|term| (Term::parse(term).unwrap(), Given::Fit)));
+    let mut identifier = Identifier::new(&model, Settings::default()).unwrap();
+    for Reading { t, q, qd, excitation, .. } in record(&scenario).unwrap() {
+        identifier.step(Sample { t, q, qd, excitation }).unwrap();
+    }
+    let missing = identifier.output().missing.map(|missing| Catalogue::ENTRIES[missing.entry].id);
+    assert_eq!(missing, Some("coulomb_friction"));
+}
+
 #[test]
 fn a_complete_law_lacks_nothing() {
     for seed in [1, 2, 3] {

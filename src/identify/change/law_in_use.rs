@@ -19,7 +19,7 @@ const CAUTION: f64 = 10.0;
 const LINEAR: f64 = 4000.0;
 
 /// An error of the law acts one way for this many samples at most.
-const LONGEST_ERROR: f64 = 1000.0;
+pub const LONGEST_ERROR: f64 = 1000.0;
 
 /// The law in use, run along with the stream.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

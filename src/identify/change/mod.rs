@@ -14,5 +14,5 @@ mod prediction;
 
 pub use decision::{Decision, SUSPENSE, false_alarm_level};
 pub use empirical_null::EmpiricalNull;
-pub use law_in_use::LawInUse;
+pub use law_in_use::{LONGEST_ERROR, LawInUse};
 pub use prediction::Prediction;

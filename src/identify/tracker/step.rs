@@ -3,7 +3,7 @@
 use super::recognition::TRIAL_BUDGET;
 use super::state::{Setup, Tracker, YOUNG};
 use crate::evidence::Law;
-use crate::identify::change::SUSPENSE;
+use crate::identify::change::{LONGEST_ERROR, SUSPENSE};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::validation::TRUSTED;
@@ -156,11 +156,12 @@ impl Tracker {
         self.heed_run(setup);
     }
 
-    /// Whether the motion of the record is a natural period long: before that an effect is not told from what the law
-    /// would be with other coefficients.
+    /// Whether the motion of the record is a natural period long, or longer than an error acts one way where the law has
+    /// no stiffness: before that an effect is not told from what the law would be with other coefficients.
     fn has_gone_there_and_back(&self) -> bool {
+        let longest = LONGEST_ERROR * self.window.pace();
         let first = self.window.sample(self.segment.start.max(self.window.oldest())).t;
-        self.now() - first > TAU * self.segment.scales.natural_time()
+        self.now() - first > longest.min(TAU * self.segment.scales.natural_time())
     }
 
     /// What the run that has just closed says is made known, and taken into use where it is worth it.
