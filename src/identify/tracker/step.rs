@@ -156,8 +156,8 @@ impl Tracker {
         self.heed_run(setup);
     }
 
-    /// Whether the motion of the record is a natural period long, or longer than an error acts one way where the law has
-    /// no stiffness: before that an effect is not told from what the law would be with other coefficients.
+    /// Whether the motion of the record is a natural period long, or longer than an error acts one way where the law
+    /// has no stiffness: before that an effect is not told from what the law would be with other coefficients.
     fn has_gone_there_and_back(&self) -> bool {
         let longest = LONGEST_ERROR * self.window.pace();
         let first = self.window.sample(self.segment.start.max(self.window.oldest())).t;
