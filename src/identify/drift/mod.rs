@@ -1,15 +1,13 @@
 //! Coefficients that move while the record runs.
 //!
 //! - `weak_rows`: where no constant law explains the record; random walks (`random_walk`) measured by weak rows of many
-//!   lengths (`variation_length`), under the sensors' noise (`sensor_noise`), for motions of whatever period
-//!   (`oscillation`);
+//!   lengths (`variation_length`), for motions of whatever period (`oscillation`);
 //! - `augmented`: away from a law that explained its record; filters of the state together with the coefficients, on
 //!   trial at an alarm.
 
 mod augmented;
 mod oscillation;
 mod random_walk;
-mod sensor_noise;
 mod variation_length;
 mod weak_rows;
 

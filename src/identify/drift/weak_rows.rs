@@ -10,12 +10,10 @@
 //! that do not.
 
 use super::oscillation::Oscillation;
-use super::sensor_noise::SensorNoise;
 use super::variation_length::VariationLength;
 use crate::estimation::OVERLAP;
 use crate::identify::problem::Problem;
 use crate::identify::section::{LONGEST_VARIATION, SectionBuffer};
-use crate::identify::settings::Settings;
 use crate::identify::window::Window;
 use crate::weak::{Row, Variation};
 use serde::{Deserialize, Serialize};
@@ -50,7 +48,6 @@ const PATIENCE: u64 = 8;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WeakRowDrift {
     lengths: Vec<VariationLength>,
-    sensor: SensorNoise,
     oscillation: Oscillation,
     section: SectionBuffer,
     row: Row,
@@ -69,7 +66,6 @@ impl WeakRowDrift {
         let lengths = (0..).map(|octave| SHORTEST << octave).take_while(|samples| *samples <= longest);
         WeakRowDrift {
             lengths: lengths.map(|samples| VariationLength::new(problem, samples)).collect(),
-            sensor: SensorNoise::default(),
             oscillation: Oscillation::default(),
             section: SectionBuffer::new(longest + 1),
             row: Row::new(problem.terms.len()),
@@ -86,23 +82,15 @@ impl WeakRowDrift {
         (self.moving, self.quiet, self.since) = (0, 0, start);
     }
 
-    /// Takes the newest sample of the window and forms at most one row, under sensor noise of at most these variances;
-    /// returns whether the law was renewed. Unless it is to be `thorough`, the rows of the lengths that are not in use
-    /// do not overlap.
-    pub fn step(
-        &mut self,
-        problem: &Problem,
-        settings: &Settings,
-        window: &Window,
-        most: [f64; 2],
-        thorough: bool,
-    ) -> bool {
-        self.sensor.step(window);
+    /// Takes the newest sample of the window and forms at most one row, under sensor noise of these variances; returns
+    /// whether the law was renewed. Unless it is to be `thorough`, the rows of the lengths that are not in use do not
+    /// overlap.
+    pub fn step(&mut self, problem: &Problem, window: &Window, sensor: [f64; 2], thorough: bool) -> bool {
         self.oscillation.step(window.sample(window.end() - 1).q);
         let due = |length: &VariationLength| length.next < window.end();
         let Some(index) = self.lengths.iter().position(due) else { return false };
         let overlap = if thorough || index == self.chosen { OVERLAP } else { 1 };
-        self.form_row(problem, window, self.sensor.variances(settings, most), index, overlap) && self.choose(index)
+        self.form_row(problem, window, sensor, index, overlap) && self.choose(index)
     }
 
     fn form_row(&mut self, problem: &Problem, window: &Window, sensor: [f64; 2], index: usize, overlap: usize) -> bool {
@@ -163,10 +151,10 @@ impl WeakRowDrift {
         self.law().evidence > SEEN
     }
 
-    /// Whether the variations are longer than this many halves of an oscillation; below one no record of its own gives
-    /// an acceptable law.
-    pub fn spans(&self, halves: f64) -> bool {
-        self.law().samples as f64 > halves * self.oscillation.half_period()
+    /// Whether the variations are longer than half an oscillation: below that no record of its own gives an acceptable
+    /// law.
+    pub fn spans_half(&self) -> bool {
+        self.law().samples as f64 > self.oscillation.half_period()
     }
 
     /// Free coefficients.

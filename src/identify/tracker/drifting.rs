@@ -98,10 +98,10 @@ impl Tracker {
         if self.augmented_drift.is_following() {
             return;
         }
-        let Setup { problem, settings } = setup;
+        let problem = setup.problem;
         let thorough = self.regime.is_drifting() || !self.regime.is_valid();
-        let most = self.most_noise();
-        if !problem.channels.q || !self.weak_row_drift.step(problem, settings, &self.window, most, thorough) {
+        let sensor = self.likely_noise(setup);
+        if !problem.channels.q || !self.weak_row_drift.step(problem, &self.window, sensor, thorough) {
             return;
         }
         let drift = &self.weak_row_drift;
@@ -132,15 +132,16 @@ impl Tracker {
         let explained = self.is_refining() && self.segment.settled() && self.segment.fit.explains;
         match had_a_law {
             true => self.drifted,
-            false => !self.history.explained && !explained && drift.has_no_rest(&self.window) && drift.spans(1.0),
+            false => !self.history.explained && !explained && drift.has_no_rest(&self.window) && drift.spans_half(),
         }
     }
 
-    /// Most that the sensors' variances can be. Differences of q tell its noise by themselves; those of q̇ hold the
-    /// increments of a rough excitation: what the law in use says is less, where there is one.
-    fn most_noise(&self) -> [f64; 2] {
+    /// The sensors' variances. Differences of q tell its noise by themselves; those of q̇ may hold more than that: what
+    /// the law in use says is less, where there is one.
+    fn likely_noise(&self, setup: Setup) -> [f64; 2] {
+        let [q, qd] = setup.first_noise(&self.difference_noise);
         let settled = self.is_refining() && self.segment.settled();
-        [f64::INFINITY, if settled { self.segment.noise.sensor[1] } else { f64::INFINITY }]
+        [q, if settled { qd.min(self.segment.noise.sensor[1]) } else { qd }]
     }
 
     fn is_resting(&self) -> bool {
