@@ -50,11 +50,6 @@ impl Decision {
         self.caution() * (settings.false_alarm_interval / (trial * settings.sample_time)).ln().max(TWENTY_TO_ONE)
     }
 
-    /// Evidence that chance brings once in a sample, nats.
-    pub fn chance(&self) -> f64 {
-        if self.explains { -SAMPLES_PER_TRIAL.ln() } else { f64::NEG_INFINITY }
-    }
-
     /// Evidence from which on a law is not renewed: more than chance brings now and then.
     pub fn unusual(&self, threshold: f64) -> f64 {
         (UNUSUAL * self.caution()).min(0.5 * threshold)

@@ -158,10 +158,7 @@ impl Tracker {
     fn clear_suspicion(&mut self) {
         self.intake.undecided = false;
         self.monitor.bank.clear();
-        self.monitor.empirical_null.clear();
         self.monitor.unusual_since = None;
-        if self.regime.is_suspected() {
-            self.enter(Event::SuspicionCleared);
-        }
+        self.enter(Event::SuspicionCleared);
     }
 }

@@ -76,7 +76,6 @@ impl Tracker {
         self.segment.begin_later(problem, &self.window, later);
         self.monitor.law.begin_later(problem, &self.segment.timing.slope, later);
         self.monitor.bank.clear();
-        self.monitor.empirical_null.clear();
         self.begin_weak_rows(self.window.end());
         match self.regime.law() {
             Some(_) => self.publish_coefficients(problem),

@@ -5,7 +5,7 @@ use super::regime::{Event, Regime};
 use super::sighting::Library;
 use crate::estimation::{DifferenceNoise, KnownEffect};
 use crate::evidence::{Bank, SWITCH_SIZE};
-use crate::identify::change::{EmpiricalNull, LawInUse, Prediction};
+use crate::identify::change::{LawInUse, Prediction};
 use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
 use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition};
 use crate::identify::functional::WeakForm;
@@ -110,7 +110,6 @@ pub(super) struct Schedule {
 pub(super) struct Monitor {
     pub(super) law: LawInUse,
     pub(super) bank: Bank,
-    pub(super) empirical_null: EmpiricalNull,
     pub(super) prediction: Prediction,
     /// Since which sample the evidence of a switch is more than chance brings now and then.
     pub(super) unusual_since: Option<u64>,
@@ -183,7 +182,6 @@ impl Tracker {
             monitor: Monitor {
                 law: LawInUse::new(problem),
                 bank: Bank::new(n, HYPOTHESES),
-                empirical_null: EmpiricalNull::default(),
                 prediction: Prediction::new(settings),
                 unusual_since: None,
                 every_term: vec![true; n],

@@ -151,7 +151,6 @@ impl Tracker {
     /// The segment's law has an effect that the one in use lacks: what spoke against that one says nothing of a switch.
     pub(super) fn watch_with_effect(&mut self, setup: Setup) {
         self.monitor.bank.clear();
-        self.monitor.empirical_null.clear();
         self.monitor.unusual_since = None;
         self.heed_run(setup);
     }

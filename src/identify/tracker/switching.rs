@@ -17,10 +17,7 @@ impl Tracker {
     pub(super) fn judge(&mut self, setup: Setup, suspect: &Suspect) {
         let decision = self.decision(suspect);
         let monitor = &mut self.monitor;
-        let threshold = monitor.empirical_null.level(decision.threshold(setup.settings), decision.chance());
-        if self.regime.is_valid() {
-            monitor.empirical_null.add(suspect.evidence);
-        }
+        let threshold = decision.threshold(setup.settings);
         let end = self.window.end();
         let unusual = suspect.evidence > decision.unusual(threshold);
         monitor.unusual_since = unusual.then(|| monitor.unusual_since.unwrap_or(end));
@@ -39,10 +36,9 @@ impl Tracker {
                 Some(follower) => self.begin_drift(follower),
                 None => self.switch(setup.problem, suspect, threshold),
             }
-        } else if suspect.evidence > 0.5 * threshold {
-            self.enter(Event::SuspicionRaised);
-        } else if self.regime.is_suspected() {
-            self.enter(Event::SuspicionCleared);
+        } else {
+            let raised = suspect.evidence > 0.5 * threshold;
+            self.enter(if raised { Event::SuspicionRaised } else { Event::SuspicionCleared });
         }
     }
 
@@ -75,11 +71,10 @@ impl Tracker {
 
     /// What the law in use has to its credit.
     fn decision(&self, suspect: &Suspect) -> Decision {
-        // a segment that does not explain what a law like it did may hold a switch already
-        let overdispersion = match self.history.explained {
-            true => self.monitor.law.overdispersion,
-            false => self.segment.fit.overdispersion,
-        };
+        // what the segment leaves tells more than the law in use did when it began; not where one like it explained its
+        // record: a switch may be in this one already
+        let lately = if self.history.explained { 1.0 } else { self.segment.fit.overdispersion };
+        let overdispersion = self.monitor.law.overdispersion.max(lately);
         Decision {
             samples: self.segment.length(suspect.start) + self.known_samples(),
             overdispersion,
@@ -99,7 +94,6 @@ impl Tracker {
     fn supersede(&mut self) {
         self.monitor.stop();
         self.monitor.bank.clear();
-        self.monitor.empirical_null.clear();
         self.refute_law();
     }
 
@@ -137,7 +131,6 @@ impl Tracker {
         let post_alarm = self.post_alarm(instant);
         self.monitor.stop();
         self.monitor.prediction.forget_usual();
-        self.monitor.empirical_null.clear();
         self.count_switch(instant, distance);
         self.enter(Event::SwitchFound(post_alarm));
     }
