@@ -107,14 +107,14 @@ impl Tracker {
             |verdict: &Verdict| verdict.against_any > ON_TRIAL * level && verdict.against_known() > TWENTY_TO_ONE;
         let found = verdict.filter(stands_out).map(Sight::from);
         match (self.regime.recognition().map(|recognition| recognition.place), found) {
-            (Some(place), Some(found)) if place == found.place => self.enter(Event::RecognitionConfirmed),
+            (Some(place), Some(found)) if place == found.place => self.enter(Event::RecognitionWeighed(None)),
             (Some(place), _) if self.is_contradicted(place, verdict.is_some()) => {
                 self.withdraw(setup.problem, self.segment.start);
                 self.library.in_sight = found;
             }
             (Some(place), _) if verdict.is_some() => {
                 if let Some(verdict) = self.library.trials.on(place, &self.library.known) {
-                    self.enter(Event::RecognitionWeighed(Sight::from(verdict).mixture));
+                    self.enter(Event::RecognitionWeighed(Some(Sight::from(verdict).mixture)));
                 }
             }
             (None, Some(found)) if !self.regime.is_valid() => self.recognise(setup.problem, found),
@@ -142,7 +142,7 @@ impl Tracker {
         self.monitor.law.running = false;
         self.belief.spread.copy_from_slice(&law.spread);
         self.monitor.bank.set_spread(&self.belief.spread);
-        let recognition = Recognition { place, confirmed: false, mixture, samples: law.samples };
+        let recognition = Recognition { place, doubt: Some(mixture), samples: law.samples };
         let (library, spread) = (&self.library, &self.belief.spread);
         self.published.set(problem, |free, _| {
             let value = law.coefficients[free];

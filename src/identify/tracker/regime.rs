@@ -13,24 +13,14 @@ use serde::{Deserialize, Serialize};
 pub(super) enum Regime {
     /// No law of this record is validated, and none has been before.
     Acquiring,
-    /// A law that was identified from the record is validated.
+    /// A law is validated.
     Tracking {
         /// The law.
         law: Validated,
-    },
-    /// A known law was recognised as that of the record.
-    Recognised {
-        /// The law.
-        law: Validated,
-        /// Which known law it is.
-        recognition: Recognition,
-    },
-    /// Evidence of a switch is growing under a validated law.
-    SwitchSuspected {
-        /// The law.
-        law: Validated,
-        /// Which known law it is, where it was recognised.
+        /// Which known law it is, where it was recognised as one and not identified from the record.
         recognition: Option<Recognition>,
+        /// Whether evidence of a switch is growing.
+        suspected: bool,
     },
     /// The law before does not hold any more; that of the record is not validated yet.
     ReIdentifying {
@@ -58,10 +48,8 @@ pub(super) struct Validated {
 pub(super) struct Recognition {
     /// Its place in the library.
     pub(super) place: usize,
-    /// Whether its trial over the new record has confirmed it.
-    pub(super) confirmed: bool,
-    /// The laws that it may be instead, until then.
-    pub(super) mixture: Mixture,
+    /// The laws that it may be instead; none once its trial over the new record has confirmed it.
+    pub(super) doubt: Option<Mixture>,
     /// Samples that it is known from.
     pub(super) samples: u64,
 }
@@ -105,10 +93,8 @@ pub(super) enum Event {
     LawValidated(Validated),
     /// A known law stands out from every other one, on trial or by the hypotheses of a switch.
     LawRecognised(Validated, Recognition),
-    /// The trial of the recognised law singles it out over the new record.
-    RecognitionConfirmed,
-    /// The trial of the recognised law says how likely others are.
-    RecognitionWeighed(Mixture),
+    /// The trial of the recognised law says how likely others are; with none it singles that law out.
+    RecognitionWeighed(Option<Mixture>),
     /// The record speaks against the recognised law; whether a law was in use before it.
     RecognitionRefuted {
         /// Whether any law had been in use before it.
@@ -144,50 +130,32 @@ impl Regime {
         use Event::*;
         use Regime::*;
         match (self, event) {
-            (Acquiring | ReIdentifying { .. }, LawValidated(law)) => Tracking { law },
+            (Acquiring | ReIdentifying { .. }, LawValidated(law)) => Regime::in_use(law, None),
             (Drifting { drift }, LawValidated(law)) => {
-                Tracking { law: Validated { since: drift.since.unwrap_or(law.since), ..law } }
+                Regime::in_use(Validated { since: drift.since.unwrap_or(law.since), ..law }, None)
             }
 
             (Acquiring | ReIdentifying { .. } | Drifting { .. }, LawRecognised(law, recognition)) => {
-                Recognised { law, recognition }
+                Regime::in_use(law, Some(recognition))
             }
-            (Recognised { law, recognition }, RecognitionConfirmed) => {
-                Recognised { law, recognition: Recognition { confirmed: true, ..recognition } }
+            (Tracking { law, recognition: Some(known), suspected }, RecognitionWeighed(mixture)) => {
+                // what has been confirmed stays so
+                let recognition = Recognition { doubt: known.doubt.and(mixture), ..known };
+                Tracking { law, recognition: Some(recognition), suspected }
             }
-            (Recognised { law, recognition }, RecognitionWeighed(mixture)) => {
-                Recognised { law, recognition: Recognition { mixture, ..recognition } }
-            }
-            (SwitchSuspected { law, recognition: Some(recognition) }, RecognitionConfirmed) => {
-                SwitchSuspected { law, recognition: Some(Recognition { confirmed: true, ..recognition }) }
-            }
-            (SwitchSuspected { law, recognition: Some(recognition) }, RecognitionWeighed(mixture)) => {
-                SwitchSuspected { law, recognition: Some(Recognition { mixture, ..recognition }) }
-            }
-            (
-                Recognised { .. } | SwitchSuspected { recognition: Some(_), .. },
-                RecognitionRefuted { after_another: true },
-            ) => ReIdentifying { post_alarm: None },
-            (
-                Recognised { .. } | SwitchSuspected { recognition: Some(_), .. },
-                RecognitionRefuted { after_another: false },
-            ) => Acquiring,
+            (Tracking { recognition: Some(_), .. }, RecognitionRefuted { after_another }) => match after_another {
+                true => ReIdentifying { post_alarm: None },
+                false => Acquiring,
+            },
 
-            (Tracking { law }, SuspicionRaised) => SwitchSuspected { law, recognition: None },
-            (Recognised { law, recognition }, SuspicionRaised) => {
-                SwitchSuspected { law, recognition: Some(recognition) }
-            }
-            (SwitchSuspected { law, recognition: None }, SuspicionCleared) => Tracking { law },
-            (SwitchSuspected { law, recognition: Some(recognition) }, SuspicionCleared) => {
-                Recognised { law, recognition }
-            }
+            (Tracking { law, recognition, .. }, SuspicionRaised) => Tracking { law, recognition, suspected: true },
+            (Tracking { law, recognition, .. }, SuspicionCleared) => Tracking { law, recognition, suspected: false },
 
-            (Drifting { drift }, SwitchFound(_)) => Drifting { drift: Followed { known: false, since: None, ..drift } },
-            (_, SwitchFound(post_alarm)) => ReIdentifying { post_alarm },
-            (ReIdentifying { .. }, PostAlarmEnded) => ReIdentifying { post_alarm: None },
-            (Drifting { drift }, LawRefuted | StateLost) => {
+            (Drifting { drift }, SwitchFound(_) | LawRefuted | StateLost) => {
                 Drifting { drift: Followed { known: false, since: None, ..drift } }
             }
+            (_, SwitchFound(post_alarm)) => ReIdentifying { post_alarm },
+            (ReIdentifying { .. }, PostAlarmEnded) => ReIdentifying { post_alarm: None },
             (_, LawRefuted) => ReIdentifying { post_alarm: None },
             (_, StateLost) => Acquiring,
 
@@ -205,13 +173,18 @@ impl Regime {
         }
     }
 
-    /// The published status: a recognised law and one that drifts are tracked.
+    /// A law that has just been validated or recognised.
+    fn in_use(law: Validated, recognition: Option<Recognition>) -> Regime {
+        Regime::Tracking { law, recognition, suspected: false }
+    }
+
+    /// The published status: a law that drifts is tracked while it is known.
     pub(super) fn status(&self) -> Status {
         match self {
             Regime::Acquiring => Status::Acquiring,
             Regime::Drifting { drift } if !drift.known => Status::Acquiring,
-            Regime::Tracking { .. } | Regime::Recognised { .. } | Regime::Drifting { .. } => Status::Tracking,
-            Regime::SwitchSuspected { .. } => Status::SwitchSuspected,
+            Regime::Tracking { suspected: true, .. } => Status::SwitchSuspected,
+            Regime::Tracking { .. } | Regime::Drifting { .. } => Status::Tracking,
             Regime::ReIdentifying { .. } => Status::ReIdentifying,
         }
     }
@@ -242,9 +215,7 @@ impl Regime {
     /// The constant law that is validated.
     pub(super) fn law(&self) -> Option<Validated> {
         match self {
-            Regime::Tracking { law } | Regime::Recognised { law, .. } | Regime::SwitchSuspected { law, .. } => {
-                Some(*law)
-            }
+            Regime::Tracking { law, .. } => Some(*law),
             Regime::Acquiring | Regime::ReIdentifying { .. } | Regime::Drifting { .. } => None,
         }
     }
@@ -257,20 +228,14 @@ impl Regime {
     /// The known law in use, where one was recognised.
     pub(super) fn recognition(&self) -> Option<Recognition> {
         match self {
-            Regime::Recognised { recognition, .. } => Some(*recognition),
-            Regime::SwitchSuspected { recognition, .. } => *recognition,
+            Regime::Tracking { recognition, .. } => *recognition,
             _ => None,
         }
     }
 
     /// Whether the law in use was recognised and its trial has not confirmed it yet.
     pub(super) fn is_unconfirmed(&self) -> bool {
-        self.recognition().is_some_and(|recognition| !recognition.confirmed)
-    }
-
-    /// Whether a switch is suspected.
-    pub(super) fn is_suspected(&self) -> bool {
-        matches!(self, Regime::SwitchSuspected { .. })
+        self.recognition().is_some_and(|recognition| recognition.doubt.is_some())
     }
 
     /// The time after an alarm in which the bank of hypotheses goes on.
@@ -287,9 +252,9 @@ impl Regime {
 pub(super) fn letter(regime: Regime) -> char {
     match regime {
         Regime::Acquiring => 'a',
+        Regime::Tracking { suspected: true, .. } => 's',
+        Regime::Tracking { recognition: Some(_), .. } => 'r',
         Regime::Tracking { .. } => 't',
-        Regime::Recognised { .. } => 'r',
-        Regime::SwitchSuspected { .. } => 's',
         Regime::ReIdentifying { .. } => 'i',
         Regime::Drifting { .. } => 'd',
     }
@@ -303,7 +268,7 @@ mod tests {
     const SWITCH: Event = Event::SwitchFound(Some(PostAlarm { until: 50, left: Some(3) }));
 
     fn recognition() -> Recognition {
-        Recognition { place: 1, confirmed: false, mixture: Mixture::default(), samples: 700 }
+        Recognition { place: 1, doubt: Some(Mixture::default()), samples: 700 }
     }
 
     fn drifting(known: bool, since: Option<f64>) -> Regime {
@@ -313,10 +278,10 @@ mod tests {
     fn regimes() -> [Regime; 7] {
         [
             Regime::Acquiring,
-            Regime::Tracking { law: LAW },
-            Regime::Recognised { law: LAW, recognition: recognition() },
-            Regime::SwitchSuspected { law: LAW, recognition: None },
-            Regime::SwitchSuspected { law: LAW, recognition: Some(recognition()) },
+            Regime::in_use(LAW, None),
+            Regime::in_use(LAW, Some(recognition())),
+            Regime::in_use(LAW, None).after(Event::SuspicionRaised),
+            Regime::in_use(LAW, Some(recognition())).after(Event::SuspicionRaised),
             Regime::ReIdentifying { post_alarm: Some(PostAlarm { until: 50, left: Some(3) }) },
             drifting(true, Some(2.0)),
         ]
@@ -326,8 +291,8 @@ mod tests {
         [
             Event::LawValidated(LAW),
             Event::LawRecognised(LAW, recognition()),
-            Event::RecognitionConfirmed,
-            Event::RecognitionWeighed(Mixture::of(1.0, None)),
+            Event::RecognitionWeighed(None),
+            Event::RecognitionWeighed(Some(Mixture::of(1.0, None))),
             Event::RecognitionRefuted { after_another: true },
             Event::RecognitionRefuted { after_another: false },
             Event::SuspicionRaised,
@@ -386,16 +351,17 @@ mod tests {
 
     #[test]
     fn a_recognised_law_stays_recognised_under_suspicion() {
-        let suspected = Regime::Recognised { law: LAW, recognition: recognition() }.after(Event::SuspicionRaised);
-        assert!(suspected.is_unconfirmed() && suspected.is_suspected());
-        let confirmed = suspected.after(Event::RecognitionConfirmed).after(Event::SuspicionCleared);
-        let recognition = Recognition { confirmed: true, ..recognition() };
-        assert_eq!(confirmed, Regime::Recognised { law: LAW, recognition });
+        let suspected = Regime::in_use(LAW, Some(recognition())).after(Event::SuspicionRaised);
+        assert!(suspected.is_unconfirmed() && suspected.status() == Status::SwitchSuspected);
+        let confirmed = suspected.after(Event::RecognitionWeighed(None)).after(Event::SuspicionCleared);
+        let weighed = confirmed.after(Event::RecognitionWeighed(Some(Mixture::default())));
+        let recognition = Recognition { doubt: None, ..recognition() };
+        assert_eq!((confirmed, weighed), (Regime::in_use(LAW, Some(recognition)), confirmed));
     }
 
     #[test]
     fn a_drift_is_tracked_as_long_as_it_is_known() {
-        let drift = Regime::Tracking { law: LAW }.after(Event::DriftFound(Follower::WeakRows));
+        let drift = Regime::in_use(LAW, None).after(Event::DriftFound(Follower::WeakRows));
         assert_eq!(drift, drifting(true, Some(2.0)));
         let unknown = drift.after(Event::DriftValidated(false, 3.0));
         assert_eq!((unknown.status(), unknown.is_valid()), (Status::Acquiring, false));

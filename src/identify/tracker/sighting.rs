@@ -50,9 +50,7 @@ impl Library {
         value: f64,
         spread: f64,
     ) -> f64 {
-        match recognition.filter(|recognition| !recognition.confirmed && self.trials.is_running()) {
-            Some(recognition) => recognition.mixture.variance(self.known.laws(), free, value, spread).sqrt(),
-            None => 0.0,
-        }
+        let doubt = recognition.and_then(|recognition| recognition.doubt).filter(|_| self.trials.is_running());
+        doubt.map_or(0.0, |doubt| doubt.variance(self.known.laws(), free, value, spread).sqrt())
     }
 }
