@@ -47,6 +47,16 @@ impl Information {
         self.score.copy_from_slice(&other.score);
     }
 
+    /// Copies what these sums say of the first unknowns into that room for fewer.
+    pub fn lead(&self, fewer: &mut Information) {
+        let n = fewer.n;
+        for row in 0..n {
+            fewer.matrix[row * n + row..(row + 1) * n]
+                .copy_from_slice(&self.matrix[row * self.n + row..row * self.n + n]);
+        }
+        fewer.score.copy_from_slice(&self.score[..n]);
+    }
+
     /// Multiplies all sums.
     pub fn scale(&mut self, factor: f64) {
         self.matrix.iter_mut().chain(&mut self.score).for_each(|entry| *entry *= factor);

@@ -2,7 +2,7 @@
 //!
 //! Each [`Hypothesis`] says: since its start the coefficients differ by δ from those in use. δ makes the innovations ε
 //! of the law in use linear in it, ε = ψδ + white, ψ carried from sensitivity 0 at the start (the state is continuous
-//! across a switch). "No switch" says that they differ by δ before it too, as far as that law errs (`state_error`).
+//! across a switch). "No switch" says that they differ by δ before it too, as far as that law errs (`hypothesis`).
 //! With M = Σψψᵀ/s and g = Σψε/s, and a Gaussian prior N(μ, Λ⁻¹) of δ, the log-evidence of the data since the start is
 //!
 //! ```text
@@ -15,8 +15,7 @@
 //! of the maximum). Starts are kept on a grid whose spacing grows with age, and where the evidence has a peak.
 
 use super::hypothesis::{Hypothesis, Law};
-use super::state_error::Passage;
-use crate::estimation::{Information, Innovation, IntervalMap, Lane, Matrix, System, WIDTH};
+use crate::estimation::{Information, Innovation, IntervalMap, Lane, System, WIDTH};
 use crate::evidence::bayes_factor::{BayesFactor, GaussianPrior, TOLERANCE, likelihood};
 use crate::evidence::single_change::{SingleChange, either, log_sum};
 use serde::{Deserialize, Serialize};
@@ -64,8 +63,11 @@ pub struct Bank {
     spread: Vec<f64>,
     spread_log_determinant: f64,
     shared: Shared,
-    /// What the data since a hypothesis's start say of the error of the law in use.
+    /// What the data since a hypothesis's start say of a change there, and of the error of the law in use.
+    since: Information,
     told: Information,
+    /// Room for a step of the coefficients and of the state.
+    moved: Vec<f64>,
     system: System,
     single: SingleChange,
 }
@@ -73,7 +75,7 @@ pub struct Bank {
 impl Bank {
     /// Room for `capacity` ≥ 4 hypotheses on `n` coefficients.
     pub fn new(n: usize, capacity: usize) -> Bank {
-        let lanes = || vec![[0.0; WIDTH]; n.div_ceil(WIDTH)];
+        let lanes = || vec![[0.0; WIDTH]; (n + 2).div_ceil(WIDTH)];
         Bank {
             n,
             hypotheses: vec![Hypothesis::none(n); capacity],
@@ -81,7 +83,9 @@ impl Bank {
             spread: vec![1.0; n],
             spread_log_determinant: 0.0,
             shared: Shared { input: [lanes(), lanes()], rows: [lanes(), lanes()] },
+            since: Information::none(n),
             told: Information::none(n),
+            moved: vec![0.0; n + 2],
             system: System::new(n),
             single: SingleChange::new(n),
         }
@@ -122,7 +126,6 @@ impl Bank {
         self.shared.set_input(map);
         let said = innovations.map(|innovation| innovation.map_or(Said::NOTHING, Said::from));
         let (residuals, weights) = (said.each_ref().map(|said| said.residual), said.each_ref().map(|said| said.weight));
-        let passage = passage(&map.transition, &said);
         let unexplained = said.iter().map(|said| 0.5 * said.weight * said.residual * said.residual).sum::<f64>();
         for hypothesis in &mut self.hypotheses[..self.count] {
             hypothesis.age += 1;
@@ -130,14 +133,13 @@ impl Bank {
             self.shared.carry(&map.transition, &said, &mut hypothesis.sensitivity);
             let [q, qd] = &self.shared.rows;
             hypothesis.information.add_pair([q, qd], residuals, weights);
-            hypothesis.state.step(&passage, &self.shared.rows, residuals, weights);
         }
     }
 
     /// The coefficients in use have become those plus `step`.
     pub fn shift(&mut self, step: &[f64]) {
         for hypothesis in &mut self.hypotheses[..self.count] {
-            hypothesis.shift(step);
+            hypothesis.shift(step, &mut self.moved);
         }
     }
 
@@ -211,7 +213,8 @@ impl Bank {
 
     /// Writes the most plausible change of the coefficients under the suspect into `change`.
     pub fn change(&mut self, suspect: &Suspect, change: &mut [f64]) {
-        self.all_switched(suspect.index);
+        self.hypotheses[suspect.index].information.lead(&mut self.since);
+        self.all_switched();
         self.system.solve(change);
     }
 
@@ -219,15 +222,15 @@ impl Bank {
     /// use, at the start that suits them best; and of a switch to any law at that start. Both against the law in use
     /// exactly as it is.
     pub fn of_known_law(&mut self, belief: &GaussianPrior, weighing: &mut BayesFactor) -> [f64; 2] {
-        let fit = |index: usize| likelihood(&self.hypotheses[index].information, &belief.offset);
-        let starts = (0..self.count).map(|index| (index, fit(index)));
-        match starts.max_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((index, _)) => {
-                let known = weighing.evidence(&self.hypotheses[index].information, belief);
-                [known, self.weigh(index)[0]]
-            }
-            None => [f64::NEG_INFINITY, 0.0],
+        let mut best = (f64::NEG_INFINITY, None);
+        for index in 0..self.count {
+            self.hypotheses[index].information.lead(&mut self.since);
+            let fit = likelihood(&self.since, &belief.offset);
+            best = if fit > best.0 { (fit, Some(index)) } else { best };
         }
+        let Some(index) = best.1 else { return [f64::NEG_INFINITY, 0.0] };
+        let [any, _] = self.weigh(index);
+        [weighing.evidence(&self.since, belief), any]
     }
 
     /// Log-evidence of a switch against that of none.
@@ -236,14 +239,15 @@ impl Bank {
         switched - unswitched
     }
 
-    /// Log-evidence of a switch, of one coefficient or of all, and of none, against the law in use exactly as it is.
+    /// Log-evidence of a switch, of one coefficient or of all, and of none, against the law in use exactly as it is;
+    /// leaves what the data say of a change behind.
     fn weigh(&mut self, index: usize) -> [f64; 2] {
-        let all = self.all_switched(index);
-        let Bank { hypotheses, told, system, single, spread, .. } = self;
+        self.hypotheses[index].information.lead(&mut self.since);
+        let all = self.all_switched();
+        let Bank { hypotheses, since, told, system, single, spread, .. } = self;
         let hypothesis = &hypotheses[index];
-        let (since, state) = (&hypothesis.information, &hypothesis.state);
-        state.of_unbroken(since, told);
-        let shared = |changed, erring| state.shared(since, changed, erring);
+        hypothesis.tell_of_error(told);
+        let shared = |changed, erring| hypothesis.shared(changed, erring);
         let [mut one, mut none] = [f64::NEG_INFINITY; 2];
         for law in hypothesis.likely_laws() {
             let unswitched = law.log_weight + hypothesis.unswitched(law, told, system);
@@ -253,14 +257,13 @@ impl Bank {
         [either(all, one), none]
     }
 
-    /// Log-evidence of a switch of all coefficients; leaves the eliminated system behind.
-    fn all_switched(&mut self, index: usize) -> f64 {
-        let information = &self.hypotheses[index].information;
-        self.system.load(&information.matrix, None);
+    /// Log-evidence of a switch of all coefficients, of which the data say `since`; leaves the eliminated system behind.
+    fn all_switched(&mut self) -> f64 {
+        self.system.load(&self.since.matrix, None);
         for (row, spread) in self.spread.iter().enumerate() {
             self.system.row(row)[row] += spread;
         }
-        self.system.set_right(information.score.iter().copied());
+        self.system.set_right(self.since.score.iter().copied());
         self.system.eliminate(TOLERANCE);
         0.5 * (self.system.squares() - self.system.log_determinant() + self.spread_log_determinant)
     }
@@ -306,19 +309,6 @@ impl From<Innovation> for Said {
     fn from(innovation: Innovation) -> Said {
         Said { gain: innovation.gain, residual: innovation.residual, weight: innovation.precision }
     }
-}
-
-/// What an interval and its measurements do to an error of the state.
-fn passage(transition: &Matrix<2>, [q, qd]: &[Said; 2]) -> Passage {
-    let through = |column: usize| {
-        let [first, second] = [transition[0][column], transition[1][column]];
-        let seen = second - q.gain[1] * first;
-        let left = [first - q.gain[0] * first - qd.gain[0] * seen, seen - qd.gain[1] * seen];
-        (left, [first, seen])
-    };
-    let [(q_left, q_rows), (qd_left, qd_rows)] = [through(0), through(1)];
-    let columns = |first: [f64; 2], second: [f64; 2]| [[first[0], second[0]], [first[1], second[1]]];
-    Passage { state: columns(q_left, qd_left), rows: columns(q_rows, qd_rows) }
 }
 
 impl Shared {
@@ -398,11 +388,12 @@ mod tests {
 
     /// Of a switch that leaves every coefficient open.
     fn of_all(bank: &mut Bank, index: usize) -> f64 {
-        let all = bank.all_switched(index);
-        let Bank { hypotheses, system, .. } = bank;
+        bank.hypotheses[index].information.lead(&mut bank.since);
+        let all = bank.all_switched();
+        let Bank { hypotheses, since, system, .. } = bank;
         let hypothesis = &hypotheses[index];
         let law = hypothesis.likely_laws().next().unwrap();
-        all - hypothesis.unswitched(law, &hypothesis.information, system)
+        all - hypothesis.unswitched(law, since, system)
     }
 
     #[test]

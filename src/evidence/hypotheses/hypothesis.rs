@@ -1,7 +1,11 @@
 //! One hypothesis: since its start the law has been another one.
+//!
+//! Until the start the law in use erred by δ₀ in its coefficients, which leaves the state there off by Sδ₀, S being the
+//! run's sensitivity. With ψ the response of the innovations to coefficients from the start on, and η that to the state
+//! there, "no switch" is ε = (ψ + ηS)δ₀ + white: the error acts on. Where the motion is unstable for a while, or the
+//! filter remembers long, ηS is the larger part. The sums are those of (ψ, η), n + 2 unknowns.
 
 use super::no_change::NoChange;
-use super::state_error::StateError;
 use crate::estimation::{Information, Lane, System, WIDTH};
 use crate::evidence::bayes_factor::TOLERANCE;
 use serde::{Deserialize, Serialize};
@@ -49,15 +53,15 @@ pub(super) struct Hypothesis {
     pub(super) unexplained: f64,
     /// The same at the last look.
     pub(super) unexplained_then: f64,
-    /// ∂q/∂δ and ∂q̇/∂δ, each n long and filled up with zeros.
+    /// ∂q and ∂q̇ by δ and by the state at the start, each n + 2 long and filled up with zeros.
     pub(super) sensitivity: [Vec<Lane>; 2],
+    /// What has been measured since the start says of these.
     pub(super) information: Information,
-    pub(super) state: StateError,
-    /// Λ of "no switch", as [`Information::matrix`]: the record's, and of terms that the law has dropped what they
-    /// could be.
-    prior: Vec<f64>,
-    /// Λμ of "no switch": what the stage up to the start says about the coefficients in use.
-    pull: Vec<f64>,
+    /// S, n.
+    of_law: Vec<[f64; 2]>,
+    /// Λ and Λμ of "no switch": what the stage up to the start says about the coefficients in use, and of terms that the
+    /// law has dropped what they could be.
+    prior: Information,
     /// "No switch" with every coefficient that the law may have.
     full: NoChange,
     /// With its own alone, where it has dropped others.
@@ -67,7 +71,7 @@ pub(super) struct Hypothesis {
 impl Hypothesis {
     /// Room for `n` coefficients.
     pub(super) fn none(n: usize) -> Hypothesis {
-        let lanes = || vec![[0.0; WIDTH]; n.div_ceil(WIDTH)];
+        let lanes = || vec![[0.0; WIDTH]; (n + 2).div_ceil(WIDTH)];
         Hypothesis {
             start: 0,
             age: 0,
@@ -76,10 +80,9 @@ impl Hypothesis {
             unexplained: 0.0,
             unexplained_then: 0.0,
             sensitivity: [lanes(), lanes()],
-            information: Information::none(n),
-            state: StateError::none(n),
-            prior: Information::none(n).matrix,
-            pull: vec![0.0; n],
+            information: Information::none(n + 2),
+            of_law: vec![[0.0; 2]; n],
+            prior: Information::none(n),
             full: NoChange::none(n),
             own: NoChange::none(n),
         }
@@ -90,31 +93,57 @@ impl Hypothesis {
         let n = precision.len();
         (self.start, self.age, self.looked) = (start, 0, 0);
         (self.evidence, self.unexplained, self.unexplained_then) = (0.0, 0.0, 0.0);
-        self.sensitivity.iter_mut().for_each(|channel| channel.fill([0.0; WIDTH]));
+        for (component, channel) in self.sensitivity.iter_mut().enumerate() {
+            channel.fill([0.0; WIDTH]);
+            channel.as_flattened_mut()[n + component] = 1.0;
+        }
         self.information.clear();
-        self.state.begin(law.sensitivity);
+        self.of_law.copy_from_slice(law.sensitivity);
         let sharpest = (0..n).map(|k| law.information.matrix[k * n + k] / precision[k]).fold(0.0, f64::max);
         let trust = if law.explains { 1.0 } else { CAUTION }.min((FINEST * FINEST * sharpest).recip());
-        self.prior.iter_mut().zip(&law.information.matrix).for_each(|(slot, entry)| *slot = trust * entry);
-        self.pull.iter_mut().zip(&law.information.score).for_each(|(pull, score)| *pull = trust * score);
+        self.prior.clone_from_slices(law.information);
+        self.prior.scale(trust);
         for (index, (slot, open)) in self.full.active.iter_mut().zip(law.open).enumerate() {
             *slot = *open && law.information.matrix[index * n + index] > 0.0;
         }
         // a term that was dropped is 0 within what it could be, whatever the record leaves open
         for index in (0..n).filter(|index| self.full.active[*index] && !law.own[*index]) {
-            self.prior[index * n + index] += precision[index];
+            self.prior.add_prior(index, precision[index], 0.0);
         }
-        self.full.settle(&self.prior, &self.pull, system);
+        self.full.settle(&self.prior, system);
         for ((slot, full), own) in self.own.active.iter_mut().zip(&self.full.active).zip(law.own) {
             *slot = *full && *own;
         }
         if self.own.active == self.full.active {
             (self.full.log_weight, self.own.log_weight) = (0.0, f64::NEG_INFINITY);
         } else {
-            self.own.settle(&self.prior, &self.pull, system);
+            self.own.settle(&self.prior, system);
             self.full.share(&mut self.own, precision);
         }
-        self.pull.iter_mut().zip(&self.full.active).filter(|(_, active)| !**active).for_each(|(pull, _)| *pull = 0.0);
+        for unknown in (0..n).filter(|unknown| !self.full.active[*unknown]) {
+            (0..n).for_each(|other| *self.prior.entry_mut(unknown, other) = 0.0);
+            self.prior.score[unknown] = 0.0;
+        }
+    }
+
+    /// Entry of Σ (ψ, η)(ψ + ηS)ᵀ/s: what a change, or an error of the state from n on, shares with the law's error.
+    pub(super) fn shared(&self, changed: usize, erring: usize) -> f64 {
+        let (n, [q, qd]) = (self.of_law.len(), self.of_law[erring]);
+        let of = |other: usize| self.information.entry(changed, other);
+        of(erring) + q * of(n) + qd * of(n + 1)
+    }
+
+    /// What has been measured since the start says of an error that acts on.
+    pub(super) fn tell_of_error(&self, whole: &mut Information) {
+        let n = self.of_law.len();
+        for (row, [q, qd]) in self.of_law.iter().enumerate() {
+            for column in row..n {
+                whole.matrix[row * n + column] =
+                    self.shared(row, column) + q * self.shared(n, column) + qd * self.shared(n + 1, column);
+            }
+            let score = &self.information.score;
+            whole.score[row] = score[row] + q * score[n] + qd * score[n + 1];
+        }
     }
 
     /// The laws that there may have been until the start.
@@ -125,8 +154,8 @@ impl Hypothesis {
     /// Log-evidence of no switch from `law`, of whose error the data since the start say `told`; leaves the eliminated
     /// system behind.
     pub(super) fn unswitched(&self, law: &NoChange, told: &Information, system: &mut System) -> f64 {
-        system.load(&told.matrix, Some(&self.prior));
-        system.set_right(told.score.iter().zip(&self.pull).map(|(score, pull)| score + pull));
+        system.load(&told.matrix, Some(&self.prior.matrix));
+        system.set_right(told.score.iter().zip(&self.prior.score).map(|(score, pull)| score + pull));
         law.isolate_inactive(system);
         system.eliminate(TOLERANCE);
         0.5 * (system.squares() - law.at_mean - (system.log_determinant() - law.log_determinant))
@@ -144,22 +173,19 @@ impl Hypothesis {
         if self.unexplained > SILENT { wait } else { 0.0 }
     }
 
-    /// Moves the point about which δ is counted: Λμ becomes Λ(μ − step).
-    pub(super) fn shift(&mut self, step: &[f64]) {
-        let (n, active) = (step.len(), &self.full.active);
-        self.state.shift(step, &mut self.information);
-        let before: f64 = (0..n).filter(|row| active[*row]).map(|row| step[row] * self.pull[row]).sum();
-        for row in (0..n).filter(|row| active[*row]) {
-            self.pull[row] -= self.prior[row * n + row] * step[row];
-            for column in (row + 1..n).filter(|column| active[*column]) {
-                let entry = self.prior[row * n + column];
-                self.pull[row] -= entry * step[column];
-                self.pull[column] -= entry * step[row];
-            }
-        }
-        let after: f64 = (0..n).filter(|row| active[*row]).map(|row| step[row] * self.pull[row]).sum();
-        self.full.at_mean -= before + after;
-        self.own.at_mean -= before + after;
+    /// Moves the point about which δ is counted, in the past too: Λμ becomes Λ(μ − step); `moved` is room for n + 2.
+    pub(super) fn shift(&mut self, step: &[f64], moved: &mut [f64]) {
+        let n = step.len();
+        moved[..n].copy_from_slice(step);
+        let of_state = |component: usize| self.of_law.iter().zip(step).map(|(law, step)| law[component] * step).sum();
+        (moved[n], moved[n + 1]) = (of_state(0), of_state(1));
+        self.information.shift(moved);
+        let pulled = |prior: &Information| step.iter().zip(&prior.score).map(|(step, pull)| step * pull).sum::<f64>();
+        let before = pulled(&self.prior);
+        self.prior.shift(step);
+        let gained = before + pulled(&self.prior);
+        self.full.at_mean -= gained;
+        self.own.at_mean -= gained;
         // what it did not have moves: its terms are others now
         if (0..n).any(|row| step[row] != 0.0 && !self.own.active[row]) {
             (self.full.log_weight, self.own.log_weight) = (0.0, f64::NEG_INFINITY);
@@ -170,6 +196,10 @@ impl Hypothesis {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::estimation::{Innovation, IntervalMap};
+    use crate::evidence::hypotheses::Bank;
+
+    const SAMPLES: u64 = 300;
 
     /// The probabilities of a law with both of two coefficients and with the first alone, the second told to the std
     /// 1/√`told`.
@@ -192,5 +222,65 @@ mod tests {
             let expected = (1.0_f64 + told / 4.0).sqrt();
             assert!((own / full / expected - 1.0).abs() < 1e-9, "{told}: {} for {expected}", own / full);
         }
+    }
+
+    /// An unstable motion under a law whose one coefficient errs by `error`, without noise and with std 0.1 stated;
+    /// from half way on that coefficient hardly acts. What a run of the filter is told from there on, and the
+    /// hypothesis of a switch there.
+    fn halfway(error: f64) -> (Information, Bank) {
+        let (mut run, mut bank) = (Information::none(1), Bank::new(1, 4));
+        bank.set_spread(&[30.0]);
+        let transition = [[1.0, 0.02], [0.02, 1.0]];
+        let (mut sensitivity, mut state) = ([0.0; 2], [0.0; 2]);
+        for number in 1..=SAMPLES {
+            let push = if number > SAMPLES / 2 { 1e-4 } else { 0.02 };
+            let carried = |[q, qd]: [f64; 2], push: f64| [q + 0.02 * qd, 0.02 * q + qd + push];
+            (sensitivity, state) = (carried(sensitivity, push), carried(state, error * push));
+            let said = Innovation { residual: state[0], variance: 0.01, precision: 100.0, gain: [0.05, 0.05] };
+            run.add(&[sensitivity[0]], said.residual, said.variance);
+            let map = IntervalMap { transition, input: vec![[0.0, push]], push: [0.0; 2] };
+            bank.step(&map, &[Some(said), None]);
+            for carried in [&mut sensitivity, &mut state] {
+                let seen = carried[0];
+                carried.iter_mut().zip(said.gain).for_each(|(entry, gain)| *entry -= gain * seen);
+            }
+            if number == SAMPLES / 2 {
+                let sensitivity = &[sensitivity];
+                bank.spawn(
+                    number,
+                    &Law { information: &run, sensitivity, open: &[true], own: &[true], explains: true },
+                );
+                run.clear();
+            }
+        }
+        (run, bank)
+    }
+
+    #[test]
+    fn an_error_that_acts_on_is_told_as_by_the_run_itself() {
+        let (run, bank) = halfway(0.3);
+        let (hypothesis, mut whole) = (&bank.hypotheses[0], Information::none(1));
+        hypothesis.tell_of_error(&mut whole);
+        assert!((whole.matrix[0] / run.matrix[0] - 1.0).abs() < 1e-9, "{} {}", whole.matrix[0], run.matrix[0]);
+        assert!((whole.score[0] / run.score[0] - 1.0).abs() < 1e-9, "{} {}", whole.score[0], run.score[0]);
+        let part = hypothesis.information.matrix[0] / run.matrix[0];
+        assert!((part - 1.0).abs() > 0.1, "the error of before does not matter: {part}");
+    }
+
+    /// Without the state's part it would speak for one with 18 nats.
+    #[test]
+    fn an_error_of_the_law_is_no_switch() {
+        let (_, mut bank) = halfway(0.3);
+        bank.look_at_all();
+        let evidence = bank.suspect().unwrap().evidence;
+        assert!(evidence < 0.0, "{evidence}");
+    }
+
+    #[test]
+    fn with_the_error_taken_off_nothing_is_left_to_explain() {
+        let (_, mut bank) = halfway(0.3);
+        bank.shift(&[0.3]);
+        let scores = &bank.hypotheses[0].information.score;
+        assert!(scores.iter().all(|score| score.abs() < 1e-9), "{scores:?}");
     }
 }

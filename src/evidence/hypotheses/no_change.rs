@@ -1,6 +1,6 @@
 //! "No switch": the law until a hypothesis starts, with certain terms.
 
-use crate::estimation::System;
+use crate::estimation::{Information, System};
 use crate::evidence::bayes_factor::TOLERANCE;
 use serde::{Deserialize, Serialize};
 
@@ -22,9 +22,9 @@ impl NoChange {
     }
 
     /// Takes what its record says of it; a coefficient of which that says nothing is none of its own.
-    pub(super) fn settle(&mut self, prior: &[f64], pull: &[f64], system: &mut System) {
-        system.load(prior, None);
-        system.set_right(pull.iter().copied());
+    pub(super) fn settle(&mut self, prior: &Information, system: &mut System) {
+        system.load(&prior.matrix, None);
+        system.set_right(prior.score.iter().copied());
         self.isolate_inactive(system);
         system.eliminate(TOLERANCE);
         for (index, active) in self.active.iter_mut().enumerate() {
@@ -69,8 +69,8 @@ mod tests {
         let (mut system, mut full, mut own) = (System::new(2), NoChange::none(2), NoChange::none(2));
         full.active = vec![true, true];
         own.active = vec![true, false];
-        full.settle(&record.matrix, &record.score, &mut system);
-        own.settle(&record.matrix, &record.score, &mut system);
+        full.settle(&record, &mut system);
+        own.settle(&record, &mut system);
         full.share(&mut own, &[4.0, 4.0]);
         [full.log_weight.exp(), own.log_weight.exp()]
     }
