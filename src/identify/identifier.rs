@@ -52,11 +52,7 @@ impl Identifier {
     /// [`BuildError`] when settings or model are refused.
     pub fn new(model: &Model, settings: Settings) -> Result<Identifier, BuildError> {
         check(model, &settings)?;
-        let coefficients: Vec<Coefficient> = model
-            .terms
-            .iter()
-            .map(|entry| Coefficient { term: entry.term, value: 0.0, std: None, needed: None })
-            .collect();
+        let coefficients = model.terms.iter().map(|entry| Coefficient::unknown(entry.term)).collect();
         let problem = Problem::new(model, &settings);
         let engine = Engine::new(&problem, &settings);
         let potential = model.potential.clone();

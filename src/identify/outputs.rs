@@ -1,7 +1,7 @@
 //! What an identifier publishes, by name: outputs of the FMU, columns of the command line's trace.
 
 use super::identifier::Identifier;
-use super::report::{SensorState, Status};
+use super::report::{Coefficient, Output, SensorState, Status};
 use crate::law::Term;
 use serde::{Deserialize, Serialize};
 
@@ -77,103 +77,149 @@ pub struct Outputs {
     of_force: bool,
 }
 
-/// Name, kind and description.
-type Scalar = (&'static str, OutputKind, &'static str);
+const NUMBER: OutputKind = OutputKind::Real(None);
+const SECONDS: OutputKind = OutputKind::Real(Some("s"));
 
-/// What a law that gives F has in place of the predictions of a motion, and besides.
-const OF_FORCE: [Scalar; 3] = [
-    ("prediction.F", OutputKind::Real(None), "F that the present law gives for the last sample's q and qd"),
-    ("noise_estimate.F", OutputKind::Real(None), "Estimated std of what F has besides the law; 1e30 while not known"),
+fn or_unknown(value: Option<f64>) -> OutputValue {
+    OutputValue::Real(value.unwrap_or(UNKNOWN))
+}
+
+/// Stands for a term that the model leaves out.
+const ABSENT: Coefficient = Coefficient::unknown(Term::Inertia);
+
+/// An output's name, kind and description, and how it is read from what an `S` says.
+type Row<S> = (&'static str, OutputKind, &'static str, fn(&S) -> OutputValue);
+
+/// What there is of every term, whose name comes after that of the output: `std.q_2`.
+const OF_TERMS: &[Row<Coefficient>] = &[
     (
-        "explained",
-        OutputKind::Real(None),
-        "Share of the variance of F that the present law explains; 0 while not known",
+        "coef",
+        NUMBER,
+        "Coefficient of {term} on the left-hand side; keeps its last value while unknown",
+        |coefficient| OutputValue::Real(coefficient.value),
     ),
+    ("std", NUMBER, "Std of the coefficient of {term}; 1e30 while unknown", |coefficient| or_unknown(coefficient.std)),
+    (
+        "needed",
+        SECONDS,
+        "Further time of such motion until the coefficient of {term} is known as a law that is valid asks; 0 when it is, 1e30 while \
+         nothing can be said",
+        |coefficient| or_unknown(coefficient.needed),
+    ),
+    ("known", OutputKind::Flag, "Whether std.{name} is known; plot the two only where it is", |coefficient| {
+        OutputValue::Flag(coefficient.std.is_some())
+    }),
 ];
 
-const SCALARS: [Scalar; 21] = [
-    ("switch.count", OutputKind::Count, "Switches detected so far"),
-    ("switch.time", OutputKind::Real(Some("s")), "Estimated instant at which the present stage began"),
-    (
-        "switch.time_std",
-        OutputKind::Real(Some("s")),
-        "Std of switch.time; 1e30 in the first stage, which no switch began",
-    ),
+/// What there is once, whatever the terms are.
+const SCALARS: &[Row<Output>] = &[
+    ("switch.count", OutputKind::Count, "Switches detected so far", |output| OutputValue::Count(output.switch_count)),
+    ("switch.time", SECONDS, "Estimated instant at which the present stage began", |output| {
+        OutputValue::Real(output.switch_time)
+    }),
+    ("switch.time_std", SECONDS, "Std of switch.time; 1e30 in the first stage, which no switch began", |output| {
+        or_unknown(output.switch_time_std)
+    }),
     (
         "switch.detection_time",
-        OutputKind::Real(Some("s")),
+        SECONDS,
         "Time of the alarm that ended the last stage; 1e30 before the first alarm",
+        |output| or_unknown(output.detection_time),
     ),
-    ("status", OutputKind::Status, "What the identifier is doing"),
+    ("status", OutputKind::Status, "What the identifier is doing", |output| OutputValue::Status(output.status)),
     (
         "valid",
         OutputKind::Flag,
         "Whether the present law is validated, every std known, and the last samples were used",
+        |output| OutputValue::Flag(output.valid),
     ),
-    ("deviation", OutputKind::Real(None), "Mean deviation of prediction from observation over deviation.interval"),
-    ("threshold", OutputKind::Real(None), "Deviation that is out of the ordinary"),
-    ("prediction.q", OutputKind::Real(None), "q that the present law predicts for the last sample"),
-    ("prediction.qd", OutputKind::Real(None), "qd that the present law predicts for the last sample"),
-    ("noise_estimate.q", OutputKind::Real(None), "Estimated std of the sensor noise on q; 1e30 while not known"),
-    ("noise_estimate.qd", OutputKind::Real(None), "Estimated std of the sensor noise on qd; 1e30 while not known"),
-    ("identified_time", OutputKind::Real(Some("s")), "First time at which the present law was validated; 1e30 before"),
+    ("deviation", NUMBER, "Mean deviation of prediction from observation over deviation.interval", |output| {
+        OutputValue::Real(output.deviation)
+    }),
+    ("threshold", NUMBER, "Deviation that is out of the ordinary", |output| OutputValue::Real(output.threshold)),
+    ("prediction.q", NUMBER, "q that the present law predicts for the last sample", |output| {
+        OutputValue::Real(output.prediction.q)
+    }),
+    ("prediction.qd", NUMBER, "qd that the present law predicts for the last sample", |output| {
+        OutputValue::Real(output.prediction.qd)
+    }),
+    ("noise_estimate.q", NUMBER, "Estimated std of the sensor noise on q; 1e30 while not known", |output| {
+        or_unknown(output.noise.q)
+    }),
+    ("noise_estimate.qd", NUMBER, "Estimated std of the sensor noise on qd; 1e30 while not known", |output| {
+        or_unknown(output.noise.qd)
+    }),
+    ("identified_time", SECONDS, "First time at which the present law was validated; 1e30 before", |output| {
+        or_unknown(output.identified_time)
+    }),
     (
         "missing.effect",
         OutputKind::Effect,
         "The effect of the catalogue that the present law lacks most; none where no evidence stands out",
+        |output| OutputValue::Effect(output.missing.map_or(1, |missing| missing.entry as u8 + 2)),
     ),
     (
         "missing.evidence",
-        OutputKind::Real(None),
+        NUMBER,
         "Log-likelihood that missing.effect would gain, less that of chance among all candidates, nats",
+        |output| OutputValue::Real(output.missing.map_or(0.0, |missing| missing.evidence)),
     ),
     (
         "law.number",
         OutputKind::Count,
         "Number of the law in use among those validated so far, the same whenever it returns; 0 while there is none",
+        |output| OutputValue::Count(output.law_number.unwrap_or(0)),
     ),
-    ("drifting", OutputKind::Flag, "Whether the coefficients move: they are followed as they go"),
+    ("drifting", OutputKind::Flag, "Whether the coefficients move: they are followed as they go", |output| {
+        OutputValue::Flag(output.drifting)
+    }),
     (
         "switch.named_time",
-        OutputKind::Real(Some("s")),
+        SECONDS,
         "Time at which the alarm that ended the last stage had its name, no sensor's fault; 1e30 before the first one",
+        |output| or_unknown(output.named_time),
     ),
-    ("sensor.q", OutputKind::Sensor, "What the sensor of q does"),
-    ("sensor.qd", OutputKind::Sensor, "What the sensor of qd does"),
-    ("sensor.F", OutputKind::Sensor, "What the sensor of F does"),
+    ("sensor.q", OutputKind::Sensor, "What the sensor of q does", |output| OutputValue::Sensor(output.sensors[0])),
+    ("sensor.qd", OutputKind::Sensor, "What the sensor of qd does", |output| OutputValue::Sensor(output.sensors[1])),
+    ("sensor.F", OutputKind::Sensor, "What the sensor of F does", |output| OutputValue::Sensor(output.sensors[2])),
+    ("prediction.F", NUMBER, "F that the present law gives for the last sample's q and qd", |output| {
+        OutputValue::Real(output.prediction.force)
+    }),
+    ("noise_estimate.F", NUMBER, "Estimated std of what F has besides the law; 1e30 while not known", |output| {
+        or_unknown(output.noise.force)
+    }),
+    ("explained", NUMBER, "Share of the variance of F that the present law explains; 0 while not known", |output| {
+        OutputValue::Real(output.explained.unwrap_or(0.0))
+    }),
 ];
+
+/// What only a law of motion has.
+const OF_MOTION: &[&str] = &["prediction.q", "prediction.qd"];
+
+/// What only a law that gives F has.
+const OF_FORCE: &[&str] = &["prediction.F", "noise_estimate.F", "explained"];
+
+fn scalars(of_force: bool) -> impl Iterator<Item = &'static Row<Output>> {
+    let of_others = if of_force { OF_MOTION } else { OF_FORCE };
+    SCALARS.iter().filter(move |(name, ..)| !of_others.contains(name))
+}
 
 impl Outputs {
     /// The outputs for these terms, with the names that FMU and trace give them: all `coef.`, all `std.`, all
     /// `needed.`, all `known.`, the rest.
     pub fn describe(terms: &[Term]) -> Vec<OutputDescription> {
-        let real =
-            |name: String, description: String| OutputDescription { name, kind: OutputKind::Real(None), description };
-        let coefficients = terms.iter().map(|term| {
-            let description =
-                format!("Coefficient of {term} on the left-hand side; keeps its last value while unknown");
-            real(format!("coef.{}", term.fmu_name()), description)
+        let of_terms = OF_TERMS.iter().flat_map(|(before, kind, text, _)| {
+            terms.iter().map(move |term| {
+                let description = text.replace("{term}", &term.name()).replace("{name}", &term.fmu_name());
+                OutputDescription { name: format!("{before}.{}", term.fmu_name()), kind: *kind, description }
+            })
         });
-        let stds = terms.iter().map(|term| {
-            real(format!("std.{}", term.fmu_name()), format!("Std of the coefficient of {term}; 1e30 while unknown"))
+        let scalars = scalars(is_force_law(terms)).map(|(name, kind, text, _)| OutputDescription {
+            name: (*name).into(),
+            kind: *kind,
+            description: (*text).into(),
         });
-        let needed = terms.iter().map(|term| OutputDescription {
-            name: format!("needed.{}", term.fmu_name()),
-            kind: OutputKind::Real(Some("s")),
-            description: format!(
-                "Further time of such motion until the coefficient of {term} is known as a law that is valid asks; 0 when it is, 1e30 while \
-                 nothing can be said"
-            ),
-        });
-        let known = terms.iter().map(|term| OutputDescription {
-            name: format!("known.{}", term.fmu_name()),
-            kind: OutputKind::Flag,
-            description: format!("Whether std.{} is known; plot the two only where it is", term.fmu_name()),
-        });
-        let scalars = scalars_of(is_force_law(terms));
-        let scalars =
-            scalars.map(|(name, kind, text)| OutputDescription { name: name.into(), kind, description: text.into() });
-        coefficients.chain(stds).chain(needed).chain(known).chain(scalars).collect()
+        of_terms.chain(scalars).collect()
     }
 
     /// The outputs of this identifier over these terms.
@@ -185,72 +231,22 @@ impl Outputs {
 
     /// Every value, in the order of [`Outputs::describe`].
     pub fn values<'a>(&'a self, identifier: &'a Identifier) -> impl Iterator<Item = OutputValue> + 'a {
-        let coefficients = identifier.coefficients();
-        let at = |place: &Option<usize>| place.and_then(|place| coefficients.get(place));
-        let values = self.places.iter().map(move |place| at(place).map_or(0.0, |found| found.value));
-        let stds = self.places.iter().map(move |place| at(place).and_then(|found| found.std).unwrap_or(UNKNOWN));
-        let needed = self.places.iter().map(move |place| at(place).and_then(|found| found.needed).unwrap_or(UNKNOWN));
-        let known = self.places.iter().map(move |place| at(place).is_some_and(|found| found.std.is_some()));
-        let scalars = SCALARS.iter().zip(scalars(identifier)).map(|((name, ..), value)| (*name, value));
-        let kept = scalars.filter(|(name, _)| !self.of_force || !PREDICTIONS.contains(name)).map(|(_, value)| value);
-        let of_force = of_force(identifier).into_iter().filter(|_| self.of_force);
-        let reals = values.chain(stds).chain(needed).map(OutputValue::Real);
-        reals.chain(known.map(OutputValue::Flag)).chain(kept).chain(of_force)
+        let at = |place: &Option<usize>| place.and_then(|place| identifier.coefficients().get(place));
+        let coefficients = self.places.iter().map(move |place| at(place).unwrap_or(&ABSENT));
+        let of_terms = OF_TERMS.iter().flat_map(move |(.., value)| coefficients.clone().map(value));
+        of_terms.chain(scalars(self.of_force).map(|(.., value)| value(identifier.output())))
     }
 }
 
-/// Predictions that a law which gives F does not make.
-const PREDICTIONS: [&str; 2] = ["prediction.q", "prediction.qd"];
-
 fn is_force_law(terms: &[Term]) -> bool {
     terms.iter().all(|term| !term.is_inertial())
-}
-
-fn scalars_of(force_law: bool) -> impl Iterator<Item = Scalar> {
-    let kept = SCALARS.into_iter().filter(move |(name, ..)| !force_law || !PREDICTIONS.contains(name));
-    kept.chain(OF_FORCE.into_iter().filter(move |_| force_law))
-}
-
-/// In the order of [`OF_FORCE`].
-fn of_force(identifier: &Identifier) -> [OutputValue; OF_FORCE.len()] {
-    let output = identifier.output();
-    let (noise, explained) = (output.noise.force.unwrap_or(UNKNOWN), output.explained.unwrap_or(0.0));
-    [output.prediction.force, noise, explained].map(OutputValue::Real)
-}
-
-fn scalars(identifier: &Identifier) -> [OutputValue; SCALARS.len()] {
-    let output = identifier.output();
-    let or_unknown = |value: Option<f64>| OutputValue::Real(value.unwrap_or(UNKNOWN));
-    [
-        OutputValue::Count(output.switch_count),
-        OutputValue::Real(output.switch_time),
-        or_unknown(output.switch_time_std),
-        or_unknown(output.detection_time),
-        OutputValue::Status(output.status),
-        OutputValue::Flag(output.valid),
-        OutputValue::Real(output.deviation),
-        OutputValue::Real(output.threshold),
-        OutputValue::Real(output.prediction.q),
-        OutputValue::Real(output.prediction.qd),
-        or_unknown(output.noise.q),
-        or_unknown(output.noise.qd),
-        or_unknown(output.identified_time),
-        OutputValue::Effect(output.missing.map_or(1, |missing| missing.entry as u8 + 2)),
-        OutputValue::Real(output.missing.map_or(0.0, |missing| missing.evidence)),
-        OutputValue::Count(output.law_number.unwrap_or(0)),
-        OutputValue::Flag(output.drifting),
-        or_unknown(output.named_time),
-        OutputValue::Sensor(output.sensors[0]),
-        OutputValue::Sensor(output.sensors[1]),
-        OutputValue::Sensor(output.sensors[2]),
-    ]
 }
 
 #[cfg(test)]
 mod tests {
     use super::{Outputs, UNKNOWN};
     use crate::identify::{Identifier, Settings};
-    use crate::law::{Model, Term};
+    use crate::law::{Given, Model, Term};
 
     #[test]
     fn a_term_that_the_model_leaves_out_is_listed_as_unknown() {
@@ -267,5 +263,18 @@ mod tests {
         assert_eq!((at("std.qdd"), at("status")), (UNKNOWN, 1.0));
         assert_eq!((at("needed.qdd"), at("switch.time_std")), (UNKNOWN, UNKNOWN));
         assert_eq!((at("known.qdd"), at("known.q_2_qd")), (0.0, 0.0));
+    }
+
+    #[test]
+    fn every_value_is_of_the_kind_that_is_said() {
+        let variant = |of: &dyn std::fmt::Debug| format!("{of:?}").split('(').next().map(String::from);
+        for model in [Model::cubic_library(), Model::of("force law", [(Term::power(1, 0), Given::Fit)])] {
+            let terms: Vec<Term> = model.terms.iter().map(|entry| entry.term).collect();
+            let identifier = Identifier::new(&model, Settings::default()).unwrap();
+            let outputs = Outputs::new(&terms, &identifier);
+            for (said, value) in Outputs::describe(&terms).iter().zip(outputs.values(&identifier)) {
+                assert_eq!(variant(&said.kind), variant(&value), "{}", said.name);
+            }
+        }
     }
 }

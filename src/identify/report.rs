@@ -88,6 +88,13 @@ pub struct Coefficient {
     pub needed: Option<f64>,
 }
 
+impl Coefficient {
+    /// Of that term, before anything is known.
+    pub const fn unknown(term: Term) -> Coefficient {
+        Coefficient { term, value: 0.0, std: None, needed: None }
+    }
+}
+
 /// One value for each quantity that is measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ByQuantity<T> {
