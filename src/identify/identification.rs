@@ -12,7 +12,7 @@ use crate::law::{Hold, Model, Term, equation};
 use std::ops::Range;
 
 /// A time over which one law held.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stage {
     /// Estimated instant at which it began, s; the first sample's time where the record or a gap begins it.
     pub start: f64,
@@ -87,7 +87,7 @@ pub struct SensorFault {
 const CHANNELS: [&str; 3] = ["q", "qd", "F"];
 
 /// What was found in a recording.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Identification {
     /// The stages, in the order of time; at least one.
     pub stages: Vec<Stage>,
@@ -183,14 +183,7 @@ pub fn identify_knowing(
     mut watch: impl FnMut(&Identifier, usize),
 ) -> Result<Identification, BuildError> {
     let fresh = Identifier::new(model, settings)?;
-    let mut found = Identification {
-        stages: Vec::new(),
-        noise: ByQuantity::default(),
-        known_laws: known.clone(),
-        hold: settings.hold,
-        sensors: Vec::new(),
-        skipped: Vec::new(),
-    };
+    let mut found = Identification { known_laws: known.clone(), hold: settings.hold, ..Identification::default() };
     for piece in recording.pieces() {
         let identifier = fresh.clone().with_known_laws(&found.known_laws)?;
         follow(identifier, recording, piece, &mut found, &mut watch);
@@ -246,22 +239,17 @@ fn note_faults(faults: &mut Vec<SensorFault>, before: [SensorState; 3], now: [Se
     }
 }
 
+/// A stage that begins; what else its samples tell, [`renew`] takes over.
 fn begin(identifier: &Identifier, start: f64) -> Stage {
+    let output = identifier.output();
     Stage {
         start,
-        start_std: identifier.output().switch_time_std,
-        end: start,
-        detected: identifier.output().detection_time,
-        named: identifier.output().named_time,
-        identified: None,
-        law_number: None,
-        recognised: false,
-        drifting: false,
-        valid: false,
-        explained: None,
+        start_std: output.switch_time_std,
+        detected: output.detection_time,
+        named: output.named_time,
         coefficients: identifier.coefficients().to_vec(),
         unidentifiable: identifier.unidentifiable(),
-        missing: None,
+        ..Stage::default()
     }
 }
 

@@ -6,7 +6,7 @@ use super::force_law::ForceTracker;
 use super::library::{SavedLaws, SavedLawsError};
 use super::problem::Problem;
 use super::published_method::Publication;
-use super::report::{ByQuantity, Coefficient, Output, SensorState, Status};
+use super::report::{Coefficient, Output, SensorState};
 use super::sample::{Sample, Skipped};
 use super::settings::{Method, Settings};
 use super::timing::Alignment;
@@ -56,27 +56,7 @@ impl Identifier {
         let problem = Problem::new(model, &settings);
         let engine = Engine::new(&problem, &settings);
         let potential = model.potential.clone();
-        let output = Output {
-            switch_count: 0,
-            switch_time: 0.0,
-            switch_time_std: None,
-            detection_time: None,
-            identified_time: None,
-            law_number: None,
-            recognised: false,
-            named_time: None,
-            sensors: [SensorState::Ok; 3],
-            status: Status::Acquiring,
-            valid: false,
-            drifting: false,
-            deviation: 0.0,
-            threshold: 0.0,
-            prediction: ByQuantity::default(),
-            explained: None,
-            noise: ByQuantity::default(),
-            missing: None,
-            hold: settings.hold,
-        };
+        let output = Output { hold: settings.hold, ..Output::default() };
         let (clock, alignment) = (Clock::default(), Alignment::default());
         Ok(Identifier { settings, problem, engine, potential, coefficients, output, clock, alignment })
     }

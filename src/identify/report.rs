@@ -5,9 +5,10 @@ use crate::law::{Hold, Term};
 use serde::{Deserialize, Serialize};
 
 /// What the identifier is doing; numbered as in the FMU.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Status {
     /// No law yet.
+    #[default]
     Acquiring = 1,
     /// The law explains the data.
     Tracking = 2,
@@ -106,8 +107,8 @@ pub struct ByQuantity<T> {
     pub force: T,
 }
 
-/// All other outputs after a step.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// All other outputs after a step; by default those before the first one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Output {
     /// Switches detected so far.
     pub switch_count: u32,

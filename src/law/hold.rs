@@ -3,10 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 /// How the excitation continues between two samples.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Hold {
     /// The value at a sample stays until the next one, as co-simulation holds its inputs.
+    #[default]
     Zero,
     /// A straight line from sample to sample.
     Linear,
