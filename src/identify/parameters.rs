@@ -1,6 +1,9 @@
-//! The settings that a user reaches by name: parameters of the FMU, options of the command line.
+//! The settings that a user reaches by name: parameters of the FMU, options of the command line; and their ranges.
 
-use super::settings::Settings;
+use super::settings::{Settings, SettingsError};
+
+/// Samples that are kept at most: half a gigabyte.
+const LONGEST: f64 = 1e7;
 
 /// A setting that is a number.
 #[derive(Clone, Copy, Debug)]
@@ -9,7 +12,7 @@ pub struct Parameter {
     pub name: &'static str,
     /// Its unit, where it has one.
     pub unit: Option<&'static str>,
-    /// Smallest allowed value.
+    /// Smallest value that the FMU takes; above 0 where 0 is refused.
     pub min: f64,
     /// What it does, and what 0 means where that is special.
     pub description: &'static str,
@@ -107,11 +110,61 @@ impl Parameter {
 
     /// Its value in settings that nobody touched.
     pub fn default(&self) -> f64 {
-        *(self.field)(&mut Settings::default())
+        self.value(Settings::default())
+    }
+
+    fn value(&self, mut settings: Settings) -> f64 {
+        *(self.field)(&mut settings)
     }
 
     /// Puts its value into the settings; [`Settings::check`] judges it.
     pub fn set(&self, settings: &mut Settings, value: f64) {
         *(self.field)(settings) = value;
+    }
+
+    fn check(&self, settings: Settings) -> Result<(), SettingsError> {
+        let (name, value) = (self.name, self.value(settings));
+        let (holds, range) = match self.min > 0.0 {
+            true => (value > 0.0, "a positive number of seconds"),
+            false => (value >= 0.0, "0 or a positive number"),
+        };
+        if holds && value.is_finite() { Ok(()) } else { Err(SettingsError::OutOfRange { name, value, range }) }
+    }
+}
+
+impl Settings {
+    /// Checks every range.
+    ///
+    /// # Errors
+    /// The first setting that is refused.
+    pub fn check(&self) -> Result<(), SettingsError> {
+        if !self.channels.q && !self.channels.qd {
+            return Err(SettingsError::NothingMeasured);
+        }
+        Parameter::ALL.iter().try_for_each(|parameter| parameter.check(*self))?;
+        let samples = self.max_window / self.sample_time;
+        if !(100.0..=LONGEST).contains(&samples) {
+            return Err(SettingsError::Window { samples });
+        }
+        let samples = self.deviation_interval / self.sample_time;
+        if samples > LONGEST {
+            return Err(SettingsError::DeviationInterval { samples });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_would_keep_too_many_samples_is_refused() {
+        let refused = |settings: Settings| settings.check().unwrap_err().to_string();
+        let window = refused(Settings { max_window: 1e6, ..Settings::default() });
+        assert!(window.starts_with("max_window ÷ sample_time = 1000000000 samples"), "{window}");
+        let deviation = refused(Settings { deviation_interval: 1e6, ..Settings::default() });
+        assert!(deviation.starts_with("deviation.interval ÷ sample_time = 1000000000 samples"), "{deviation}");
+        assert_eq!(Settings::default().check(), Ok(()));
     }
 }
