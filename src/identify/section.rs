@@ -1,4 +1,4 @@
-//! A stretch of the window laid out for weak rows, with estimates in place of the channel that is not measured.
+//! Samples laid out for weak rows; of a stretch of the window, with estimates in place of what is not measured.
 
 use super::packed;
 use super::problem::Problem;
@@ -7,6 +7,7 @@ use super::window::Window;
 use crate::law::Hold;
 use crate::weak::{Section, differentiate, integrate};
 use serde::{Deserialize, Serialize};
+use std::ops::RangeInclusive;
 
 /// Samples in the longest variation of weak rows, where the window has room for it: half a period of a motion of 4096
 /// samples a period.
@@ -16,9 +17,9 @@ pub const LONGEST_VARIATION: usize = 2048;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(from = "PackedSection", into = "PackedSection")]
 pub struct SectionBuffer {
-    t: Vec<f64>,
-    q: Vec<f64>,
-    qd: Vec<f64>,
+    pub t: Vec<f64>,
+    pub q: Vec<f64>,
+    pub qd: Vec<f64>,
     excitation: Vec<f64>,
 }
 
@@ -35,28 +36,32 @@ impl From<SectionBuffer> for PackedSection {
 
 impl From<PackedSection> for SectionBuffer {
     fn from(PackedSection(samples): PackedSection) -> SectionBuffer {
-        let column = |value: fn(&Sample) -> f64| samples.iter().map(value).collect();
-        let (t, q) = (column(|sample| sample.t), column(|sample| sample.q));
-        SectionBuffer { t, q, qd: column(|sample| sample.qd), excitation: column(|sample| sample.excitation) }
+        let mut buffer = SectionBuffer::new(samples.len());
+        samples.iter().enumerate().for_each(|(slot, sample)| buffer.put(slot, sample));
+        buffer
     }
 }
 
 impl SectionBuffer {
     /// Room for `length` samples.
     pub fn new(length: usize) -> SectionBuffer {
-        let empty = || vec![0.0; length];
-        SectionBuffer { t: empty(), q: empty(), qd: empty(), excitation: empty() }
+        let [t, q, qd, excitation] = std::array::from_fn(|_| vec![0.0; length]);
+        SectionBuffer { t, q, qd, excitation }
+    }
+
+    /// Writes one sample.
+    pub fn put(&mut self, slot: usize, sample: &Sample) {
+        self.t[slot] = sample.t;
+        self.q[slot] = sample.q;
+        self.qd[slot] = sample.qd;
+        self.excitation[slot] = sample.excitation;
     }
 
     /// Copies the samples `first` to `last`; a displacement or velocity that is not measured is estimated from the
     /// other.
     pub fn load(&mut self, problem: &Problem, window: &Window, first: u64, last: u64) {
         for (slot, number) in (first..=last).enumerate() {
-            let sample = window.sample(number);
-            self.t[slot] = sample.t;
-            self.q[slot] = sample.q;
-            self.qd[slot] = sample.qd;
-            self.excitation[slot] = if problem.channels.excitation { sample.excitation } else { 0.0 };
+            self.put(slot, window.sample(number));
         }
         let length = (last - first) as usize + 1;
         if !problem.channels.qd {
@@ -67,14 +72,19 @@ impl SectionBuffer {
         }
     }
 
-    /// The first `length` samples that were loaded.
+    /// The first `length` samples.
     pub fn view(&self, problem: &Problem, length: usize) -> Section<'_> {
+        self.part(problem, 0..=length - 1)
+    }
+
+    /// The samples in this range, as weak rows want them.
+    pub fn part(&self, problem: &Problem, range: RangeInclusive<usize>) -> Section<'_> {
         Section {
-            t: &self.t[..length],
-            q: &self.q[..length],
-            qd: &self.qd[..length],
+            t: &self.t[range.clone()],
+            q: &self.q[range.clone()],
+            qd: &self.qd[range.clone()],
             qd_measured: problem.channels.qd,
-            excitation: &self.excitation[..length],
+            excitation: &self.excitation[range],
             hold: if problem.channels.excitation { problem.timing.hold } else { Hold::Zero },
         }
     }

@@ -2,8 +2,8 @@
 
 use crate::identify::problem::Problem;
 use crate::identify::sample::Sample;
+use crate::identify::section::SectionBuffer;
 use crate::identify::settings::Channels;
-use crate::law::Hold;
 use crate::weak::Section;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
@@ -17,18 +17,14 @@ pub struct Capture {
     /// Its length, s.
     length: f64,
     count: usize,
-    t: Vec<f64>,
-    q: Vec<f64>,
-    qd: Vec<f64>,
-    excitation: Vec<f64>,
+    record: SectionBuffer,
 }
 
 impl Capture {
     /// Room for `length` s of samples at least half a `sample_time` apart.
     pub fn new(length: f64, sample_time: f64) -> Capture {
         let capacity = FEWEST.max((2.0 * length / sample_time).ceil() as usize + 2);
-        let [t, q, qd, excitation] = std::array::from_fn(|_| vec![0.0; capacity]);
-        Capture { length, count: 0, t, q, qd, excitation }
+        Capture { length, count: 0, record: SectionBuffer::new(capacity) }
     }
 
     /// Forgets everything.
@@ -43,40 +39,34 @@ impl Capture {
 
     /// Whether it is as long as it should be, to half a sample.
     pub fn is_complete(&self) -> bool {
+        let t = &self.record.t;
         match self.count {
-            count if count == self.t.len() => true,
+            count if count == t.len() => true,
             count if count < FEWEST => false,
             count => {
-                let (last, before) = (self.t[count - 1], self.t[count - 2]);
-                last - self.t[0] >= self.length - 0.5 * (last - before)
+                let (last, before) = (t[count - 1], t[count - 2]);
+                last - t[0] >= self.length - 0.5 * (last - before)
             }
         }
     }
 
     /// Takes a sample, completed; a full record takes none.
     pub fn push(&mut self, sample: Sample, channels: Channels) {
-        let at = self.count;
-        if at == self.t.len() {
+        let (at, record) = (self.count, &mut self.record);
+        if at == record.t.len() {
             return;
         }
-        (self.t[at], self.q[at], self.qd[at], self.excitation[at]) = (sample.t, sample.q, sample.qd, sample.excitation);
+        record.put(at, &sample);
         if !channels.qd && at >= 2 {
             // now that there is a sample on both sides
-            self.qd[at - 1] = (self.q[at] - self.q[at - 2]) / (self.t[at] - self.t[at - 2]);
+            record.qd[at - 1] = (record.q[at] - record.q[at - 2]) / (record.t[at] - record.t[at - 2]);
         }
         self.count += 1;
     }
 
     /// Samples in this range, as weak rows want them.
     pub fn section(&self, problem: &Problem, range: RangeInclusive<usize>) -> Section<'_> {
-        Section {
-            t: &self.t[range.clone()],
-            q: &self.q[range.clone()],
-            qd: &self.qd[range.clone()],
-            qd_measured: problem.channels.qd,
-            excitation: &self.excitation[range],
-            hold: if problem.channels.excitation { problem.timing.hold } else { Hold::Zero },
-        }
+        self.record.part(problem, range)
     }
 }
 
@@ -136,7 +126,7 @@ mod tests {
         let error = |sample_time| {
             let capture = captured(POSITION_ONLY, sample_time);
             let inner = 1..capture.count() - 1;
-            inner.map(|k| (capture.qd[k] - motion(capture.t[k]).qd).abs()).fold(0.0, f64::max)
+            inner.map(|k| (capture.record.qd[k] - motion(capture.record.t[k]).qd).abs()).fold(0.0, f64::max)
         };
         let order = (error(4e-3) / error(2e-3)).log2();
         assert!((1.9..2.1).contains(&order), "order {order}");
@@ -144,7 +134,7 @@ mod tests {
 
     #[test]
     fn a_missing_displacement_is_completed_up_to_its_start() {
-        let capture = captured(VELOCITY_ONLY, 1e-3);
-        assert!(capture.q.iter().zip(&capture.t).all(|(q, t)| (q - motion(*t).q).abs() < 1e-6));
+        let SectionBuffer { t, q, .. } = captured(VELOCITY_ONLY, 1e-3).record;
+        assert!(q.iter().zip(&t).all(|(q, t)| (q - motion(*t).q).abs() < 1e-6));
     }
 }
