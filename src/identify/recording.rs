@@ -218,8 +218,12 @@ impl Recording {
     /// # Errors
     /// [`RecordingError`] where the part has too few samples, or does not move.
     pub fn section(&self, range: Range<usize>) -> Result<Recording, RecordingError> {
-        let cut = |values: &[f64]| values[range.clone()].to_vec();
-        let of = |values: &Option<Vec<f64>>| values.as_deref().map(cut);
+        self.cut(|values| values[range.clone()].to_vec())
+    }
+
+    /// The recording of what is cut from every signal.
+    fn cut(&self, cut: impl Fn(&[f64]) -> Vec<f64>) -> Result<Recording, RecordingError> {
+        let of = |values: &Option<Vec<f64>>| values.as_deref().map(&cut);
         Recording::new(&self.source, cut(&self.t), of(&self.q), of(&self.qd), of(&self.excitation))
     }
 
@@ -231,11 +235,7 @@ impl Recording {
             return None;
         }
         let start = |part: usize| (self.count() - length) * part / (parts - 1);
-        let cut = |values: &[f64]| {
-            (0..parts).flat_map(|part| values[start(part)..start(part) + length].iter().copied()).collect()
-        };
-        let of = |values: &Option<Vec<f64>>| values.as_deref().map(cut);
-        Recording::new(&self.source, cut(&self.t), of(&self.q), of(&self.qd), of(&self.excitation)).ok()
+        self.cut(|values| (0..parts).flat_map(|part| values[start(part)..][..length].to_vec()).collect()).ok()
     }
 
     /// The runs of samples between gaps.
