@@ -4,7 +4,7 @@ use super::check::BuildError;
 use super::identifier::Identifier;
 use super::library::SavedLaws;
 use super::recording::Recording;
-use super::report::{ByQuantity, Coefficient, SensorState};
+use super::report::{ByQuantity, CHANNELS, Coefficient, SensorState};
 use super::sample::Skipped;
 use super::settings::{Method, Settings};
 use crate::estimation::Missing;
@@ -82,9 +82,6 @@ pub struct SensorFault {
     /// When it was over, s; `None` where the record ends before.
     pub end: Option<f64>,
 }
-
-/// The channels in the order of [`super::Output::sensors`].
-const CHANNELS: [&str; 3] = ["q", "qd", "F"];
 
 /// What was found in a recording.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -6,7 +6,7 @@ use super::force_law::ForceTracker;
 use super::library::{SavedLaws, SavedLawsError};
 use super::problem::Problem;
 use super::published_method::Publication;
-use super::report::{Coefficient, Output, SensorState};
+use super::report::{CHANNELS, Coefficient, Output, SensorState};
 use super::sample::{Sample, Skipped};
 use super::settings::{Method, Settings};
 use super::timing::Alignment;
@@ -66,12 +66,12 @@ impl Identifier {
     /// # Errors
     /// [`Skipped`] says why the sample was not used; the identifier goes on unchanged.
     pub fn step(&mut self, sample: Sample) -> Result<(), Skipped> {
-        let sample = match self.accept(&sample) {
-            Ok(t) => self.measured(Sample { t, ..sample }),
-            Err(skipped) => return Err(self.skip(&sample, skipped)),
+        let measured = self.measured(sample);
+        let t = self.accept(&measured).map_err(|skipped| self.skip(sample.t, skipped))?;
+        self.clock.advance(t);
+        let Some(sample) = self.alignment.align(self.problem.timing.lag, Sample { t, ..measured }) else {
+            return Ok(());
         };
-        self.clock.advance(sample.t);
-        let Some(sample) = self.alignment.align(self.problem.timing.lag, sample) else { return Ok(()) };
         let Identifier { settings, problem, engine, coefficients, output, .. } = self;
         match engine {
             Engine::Default(tracker) => {
@@ -99,31 +99,24 @@ impl Identifier {
     }
 
     /// What is published does not hold for the present once samples are missing.
-    fn skip(&mut self, sample: &Sample, skipped: Skipped) -> Skipped {
-        let lost = self.clock.is_stale(sample.t);
-        if lost {
+    fn skip(&mut self, t: f64, skipped: Skipped) -> Skipped {
+        if self.clock.is_stale(t) {
             self.output.valid = false;
             if let Skipped::NotFinite { channel, .. } = skipped {
-                let index = ["q", "qd", "F"].iter().position(|name| *name == channel);
-                index.into_iter().for_each(|index| self.output.sensors[index] = SensorState::Missing);
+                let sensor = CHANNELS.into_iter().zip(&mut self.output.sensors).find(|(name, _)| *name == channel);
+                sensor.into_iter().for_each(|(_, state)| *state = SensorState::Missing);
             }
         }
         skipped
     }
 
-    /// The sample's time in the record.
-    fn accept(&mut self, sample: &Sample) -> Result<f64, Skipped> {
-        let channels = self.settings.channels;
-        let values = [
-            ("t", true, sample.t),
-            ("q", channels.q, sample.q),
-            ("qd", channels.qd, sample.qd),
-            ("F", channels.excitation, sample.excitation),
-        ];
-        if let Some((channel, ..)) = values.into_iter().find(|(_, used, value)| *used && !value.is_finite()) {
-            return Err(Skipped::NotFinite { t: sample.t, channel });
+    /// The time in the record of a sample as it was measured.
+    fn accept(&mut self, &Sample { t, q, qd, excitation }: &Sample) -> Result<f64, Skipped> {
+        let values = [("t", t), ("q", q), ("qd", qd), ("F", excitation)];
+        match values.into_iter().find(|(_, value)| !value.is_finite()) {
+            Some((channel, _)) => Err(Skipped::NotFinite { t, channel }),
+            None => self.clock.time(t, self.settings.sample_time),
         }
-        self.clock.time(sample.t, self.settings.sample_time)
     }
 
     /// The laws that it knows, the present one among them where it is validated; none of the publication's method.

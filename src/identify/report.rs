@@ -75,6 +75,9 @@ impl SensorState {
     }
 }
 
+/// The channels in the order of [`Output::sensors`].
+pub const CHANNELS: [&str; 3] = ["q", "qd", "F"];
+
 /// A published coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Coefficient {
