@@ -62,6 +62,6 @@ mod tests {
             deviation.add(0.1 * f64::from(k), f64::from(k));
         }
         assert!((deviation.mean() - 17.0).abs() < 1e-12, "{}", deviation.mean());
-        assert!(!deviation.is_full(10.0 * 0.0));
+        assert!(!deviation.is_full(1.9) && deviation.is_full(2.0));
     }
 }

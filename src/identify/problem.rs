@@ -41,17 +41,13 @@ impl Problem {
         let entries: Vec<(Term, Given)> =
             model.terms.iter().map(|entry| (entry.term, given(entry.term, entry.given))).collect();
         let free: Vec<usize> = (0..entries.len()).filter(|index| entries[*index].1.is_free()).collect();
-        let terms = entries.iter().map(|(term, _)| *term);
+        let known = |(_, given): &(Term, Given)| if let Given::Known(value) = given { *value } else { 0.0 };
         Problem {
-            terms: terms.collect(),
+            terms: entries.iter().map(|(term, _)| *term).collect(),
             own: model.expressions.clone(),
             free_terms: free.iter().map(|index| entries[*index].0).collect(),
             maybe: free.iter().map(|index| entries[*index].1 == Given::Maybe).collect(),
-            known: entries
-                .iter()
-                .map(|(_, given)| if let Given::Known(value) = given { *value } else { 0.0 })
-                .chain([0.0])
-                .collect(),
+            known: entries.iter().map(known).chain([0.0]).collect(),
             inertia: model.position(Term::Inertia).unwrap_or(0),
             free,
             channels,
