@@ -240,7 +240,7 @@ mod tests {
         let mut late = Timing::new(Hold::Zero).corrected(&found(1.0), 1000).unwrap();
         let mut said = |is_valid| {
             let mut sensors = [SensorState::Ok; 3];
-            late.say_late(is_valid, Channels { q: true, qd: true, excitation: true }, &mut sensors);
+            late.say_late(is_valid, Channels::ALL, &mut sensors);
             sensors[0]
         };
         let (ok, late) = (SensorState::Ok, SensorState::Late);

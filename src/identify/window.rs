@@ -201,7 +201,7 @@ impl Window {
             true => middle(number + 1) - now,
             false => 0.0,
         };
-        [before, if self.channels.excitation { after } else { 0.0 }]
+        [before, after]
     }
 
     /// The state at sample `start` from that sample and the next alone, where a filter run begins.
@@ -233,8 +233,7 @@ mod tests {
 
     /// A window that has dropped its oldest samples.
     fn window(lag: f64) -> Window {
-        let channels = Channels { q: true, qd: true, excitation: true };
-        let (mut window, mut alignment) = (Window::new(8, channels, Hold::Linear), Alignment::default());
+        let (mut window, mut alignment) = (Window::new(8, Channels::ALL, Hold::Linear), Alignment::default());
         for k in 0..12 {
             let sample = Sample { t: f64::from(k), excitation: f64::from(k * k), ..Sample::default() };
             alignment.align(lag, sample).into_iter().for_each(|sample| window.push(sample));

@@ -70,19 +70,14 @@ impl Capture {
     }
 }
 
-/// The sample with every channel: q̇ as the last difference of q, q as the trapezoidal sum of q̇ on top of the
-/// completed sample before, F = 0.
+/// The sample, with 0 in the channels that are not measured, completed: q̇ as the last difference of q, q as the
+/// trapezoidal sum of q̇ on top of the completed sample before.
 pub fn complete(sample: Sample, before: Option<&Sample>, channels: Channels) -> Sample {
-    let excitation = if channels.excitation { sample.excitation } else { 0.0 };
-    let Some(before) = before else {
-        let [q, qd] = [(channels.q, sample.q), (channels.qd, sample.qd)]
-            .map(|(measured, value)| if measured { value } else { 0.0 });
-        return Sample { q, qd, excitation, ..sample };
-    };
+    let Some(before) = before else { return sample };
     let dt = sample.t - before.t;
     let qd = if channels.qd { sample.qd } else { (sample.q - before.q) / dt };
     let q = if channels.q { sample.q } else { before.q + 0.5 * dt * (before.qd + sample.qd) };
-    Sample { q, qd, excitation, ..sample }
+    Sample { q, qd, ..sample }
 }
 
 #[cfg(test)]
@@ -103,8 +98,8 @@ mod tests {
         while !capture.is_complete() {
             let whole = motion(f64::from(number) * sample_time);
             let hidden = Sample {
-                q: if channels.q { whole.q } else { f64::NAN },
-                qd: if channels.qd { whole.qd } else { f64::NAN },
+                q: if channels.q { whole.q } else { 0.0 },
+                qd: if channels.qd { whole.qd } else { 0.0 },
                 ..whole
             };
             let sample = complete(hidden, before.as_ref(), channels);
