@@ -5,9 +5,7 @@
 //! is a word of four 4-bit counts, then the bytes.
 
 use super::sample::Sample;
-use serde::de::{Error, Visitor};
-use serde::{Deserializer, Serializer};
-use std::fmt;
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 type Channels = [f64; 4];
 
@@ -16,7 +14,7 @@ type Channels = [f64; 4];
 /// # Errors
 /// What the serializer says.
 pub fn serialize<S: Serializer>(samples: &[Sample], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_bytes(&pack(samples))
+    pack(samples).serialize(serializer)
 }
 
 /// Reads them back.
@@ -24,29 +22,8 @@ pub fn serialize<S: Serializer>(samples: &[Sample], serializer: S) -> Result<S::
 /// # Errors
 /// Bytes that [`serialize`] did not write, and what the deserializer says.
 pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Sample>, D::Error> {
-    deserializer.deserialize_bytes(Bytes)
-}
-
-struct Bytes;
-
-impl<'de> Visitor<'de> for Bytes {
-    type Value = Vec<Sample>;
-
-    fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
-        out.write_str("packed samples")
-    }
-
-    fn visit_bytes<E: Error>(self, bytes: &[u8]) -> Result<Vec<Sample>, E> {
-        unpack(bytes).ok_or_else(|| E::custom("packed samples end too early"))
-    }
-
-    fn visit_seq<A: serde::de::SeqAccess<'de>>(self, mut sequence: A) -> Result<Vec<Sample>, A::Error> {
-        let mut bytes = Vec::new();
-        while let Some(byte) = sequence.next_element()? {
-            bytes.push(byte);
-        }
-        self.visit_bytes(&bytes)
-    }
+    let bytes = Vec::<u8>::deserialize(deserializer)?;
+    unpack(&bytes).ok_or_else(|| D::Error::custom("packed samples end too early"))
 }
 
 fn pack(samples: &[Sample]) -> Vec<u8> {
