@@ -64,9 +64,7 @@ impl Timing {
     /// What else F does by such a record: a hold or a late channel where one stands out from the others, else a lag of
     /// its own.
     fn likeliest(&self, found: &Lag) -> Rival {
-        let mut rivals = self.rivals(found);
-        let own = rivals[RIVALS - 1];
-        let apart = &mut rivals[..RIVALS - 1];
+        let [mut apart @ .., own] = self.rivals(found);
         apart.sort_unstable_by(|a, b| b.odds.total_cmp(&a.odds));
         let stands_out = apart[0].odds > own.odds && apart[0].odds - apart[1].odds > TWENTY_TO_ONE;
         if stands_out { apart[0] } else { own }

@@ -194,12 +194,11 @@ impl Window {
         let middle = |number: u64| self.drive(number).part(0, 1)[1];
         let now = middle(number);
         let before = if number > self.oldest() + 1 { middle(number - 1) - now } else { 0.0 };
-        // of a force that moves straight nobody knows where to before the next sample
-        let known = number + 1 < self.end() || self.hold == Hold::Zero && number < self.end();
-        let after = match known {
-            true if self.hold == Hold::Zero => self.sample(number).excitation - now,
-            true => middle(number + 1) - now,
-            false => 0.0,
+        let after = match self.hold {
+            Hold::Zero if number < self.end() => self.sample(number).excitation - now,
+            // of a force that moves straight nobody knows where to before the next sample
+            _ if number + 1 < self.end() => middle(number + 1) - now,
+            _ => 0.0,
         };
         [before, after]
     }
