@@ -12,7 +12,7 @@
 //! C being what a change shares with the law's error, M where both act from the start on; and, with variance τ² before
 //! the record, the log-evidence ½ s²τ²/(1 + iτ²) − ½ ln(1 + iτ²) against no change.
 
-use crate::estimation::{Information, Lane, System, WIDTH};
+use crate::estimation::{Information, Lane, System, WIDTH, log_sum};
 use serde::{Deserialize, Serialize};
 
 /// What a change has of its own beside the law's uncertainty, relative to all that it has; less is rounding.
@@ -73,11 +73,6 @@ impl SingleChange {
 /// Log-evidence of either of two hypotheses, each as likely beforehand.
 pub fn either(first: f64, second: f64) -> f64 {
     log_sum(first, second) - std::f64::consts::LN_2
-}
-
-/// ln(exp(first) + exp(second)); not both may be −∞.
-pub fn log_sum(first: f64, second: f64) -> f64 {
-    first.max(second) + (-(first - second).abs()).exp().ln_1p()
 }
 
 #[cfg(test)]

@@ -15,9 +15,9 @@
 //! of the maximum). Starts are kept on a grid whose spacing grows with age, and where the evidence has a peak.
 
 use super::hypothesis::{Hypothesis, Law};
-use crate::estimation::{Information, Innovation, IntervalMap, Lane, System, WIDTH};
+use crate::estimation::{Information, Innovation, IntervalMap, Lane, System, WIDTH, log_sum};
 use crate::evidence::bayes_factor::{BayesFactor, GaussianPrior, TOLERANCE, likelihood};
-use crate::evidence::single_change::{SingleChange, either, log_sum};
+use crate::evidence::single_change::{SingleChange, either};
 use serde::{Deserialize, Serialize};
 
 /// Evidence of this many levels at once comes from the last samples alone: what grows sample by sample would have

@@ -5,7 +5,8 @@
 //! weighed against each other and each against "a law that a switch may lead to".
 
 use super::known_laws::{KnownLaws, ROOM};
-use crate::estimation::{KnownEffect, Noise, Pass};
+use super::mixture::Mixture;
+use crate::estimation::{KnownEffect, Noise, Pass, TWENTY_TO_ONE};
 use crate::identify::problem::Problem;
 use crate::identify::window::Window;
 use crate::law::{Motion, Term};
@@ -39,7 +40,7 @@ struct Trial {
 }
 
 /// What the record says on one known law against the others.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
     /// Its place among the known laws.
     pub place: usize,
@@ -51,8 +52,23 @@ pub struct Verdict {
 
 impl Verdict {
     /// Log-evidence against the best other known law, nats.
-    pub fn against_known(&self) -> f64 {
+    fn against_known(&self) -> f64 {
         self.rival.map_or(f64::INFINITY, |(_, against)| against)
+    }
+
+    /// Whether the law stands out from every other known one, and by that many nats from any.
+    pub fn stands_out(&self, level: f64) -> bool {
+        self.against_any > level && self.against_known() > TWENTY_TO_ONE
+    }
+
+    /// Whether another law does, a known one or any.
+    pub fn is_against(&self) -> bool {
+        self.against_any.min(self.against_known()) < -TWENTY_TO_ONE
+    }
+
+    /// What the law may be instead.
+    pub fn doubt(&self) -> Mixture {
+        Mixture::of(self.against_any, self.rival)
     }
 }
 

@@ -3,7 +3,6 @@
 use super::new_record::PRIOR_WIDTH;
 use super::state::{FRESH_START, Fitting, NOTHING_KNOWN, Setup, Tracker};
 use crate::estimation::{KnownEffect, Noise, TWENTY_TO_ONE};
-use crate::evidence::INERTIA_SPREAD;
 use crate::identify::problem::Problem;
 use crate::identify::segment::{Guess, IN_THE_SENSORS, Prior, Segment};
 use crate::law::Compiled;
@@ -83,15 +82,7 @@ impl Tracker {
             belief.spread[index] = fit.reach[index].max(START_STDS * guess.std[index]).min(NOTHING_KNOWN);
             belief.centre[index] = if problem.maybe[index] { 0.0 } else { fit.coefficients[index] };
         }
-        let prior = Prior {
-            centre: &belief.centre,
-            std: &belief.spread,
-            log_inertia: INERTIA_SPREAD,
-            structure: before.map(|law| law.active.as_slice()),
-            noise_weight: belief.samples,
-            effect: belief.effect,
-            scales: &belief.scales,
-        };
+        let prior = belief.prior(&belief.centre, before.map(|law| law.active.as_slice()));
         let (begun, fitting) = match self.fitting {
             Fitting::Starting => (&mut self.segment, Fitting::Refining),
             Fitting::Refining | Fitting::Contested => (&mut self.alternative, Fitting::Contested),
@@ -157,15 +148,8 @@ impl Tracker {
         self.set_spread(problem);
         self.belief.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
         let Tracker { segment, alternative, belief, monitor, window, .. } = self;
-        let prior = Prior {
-            centre: &segment.coefficients,
-            std: &belief.spread,
-            log_inertia: INERTIA_SPREAD,
-            structure: (belief.samples > 0.0).then_some(monitor.law.active.as_slice()),
-            noise_weight: 0.0,
-            effect,
-            scales: &belief.scales,
-        };
+        let structure = (belief.samples > 0.0).then_some(monitor.law.active.as_slice());
+        let prior = Prior { noise_weight: 0.0, effect, ..belief.prior(&segment.coefficients, structure) };
         alternative.begin(problem, window, segment.start, &belief.from, prior, noise);
         self.fitting = Fitting::Contested;
     }

@@ -3,9 +3,9 @@
 use super::regime::Event;
 use super::state::{Fitting, History, Schedule, Tracker};
 use crate::estimation::{Lag, Noise};
-use crate::evidence::{INERTIA_SPREAD, SWITCH_SIZE};
+use crate::evidence::SWITCH_SIZE;
 use crate::identify::problem::Problem;
-use crate::identify::segment::{NOISE_MEMORY, Prior};
+use crate::identify::segment::NOISE_MEMORY;
 use crate::identify::timing::Timing;
 
 /// The prior of a new law is this much wider than the switch that is looked for.
@@ -32,15 +32,7 @@ impl Tracker {
         let noise = Noise { sensor: law.noise.sensor, process: process.max(law.noise.process) };
         self.belief.spread.iter_mut().for_each(|spread| *spread *= PRIOR_WIDTH);
         self.belief.samples = NOISE_MEMORY;
-        let prior = Prior {
-            centre: &self.belief.centre,
-            std: &self.belief.spread,
-            log_inertia: INERTIA_SPREAD,
-            structure: Some(&law.active),
-            noise_weight: self.belief.samples,
-            effect: self.belief.effect,
-            scales: &self.belief.scales,
-        };
+        let prior = self.belief.prior(&self.belief.centre, Some(&law.active));
         self.segment.begin(problem, &self.window, start, &self.belief.from, prior, noise);
     }
 

@@ -36,9 +36,8 @@ pub(super) struct Switches {
 impl Published {
     /// Nothing is known.
     pub(super) fn new(problem: &Problem) -> Published {
-        let unknown = |term: &_| Coefficient { term: *term, value: 0.0, std: None, needed: None };
         Published {
-            coefficients: problem.terms.iter().map(unknown).collect(),
+            coefficients: problem.terms.iter().map(|term| Coefficient::unknown(*term)).collect(),
             noise: [None; 2],
             noise_by_law: false,
             missing: None,

@@ -5,11 +5,9 @@
 //! start.
 
 use super::regime::{Event, PostAlarm, Recognition, Validated};
-use super::sighting::Sight;
 use super::state::{Fitting, Setup, Tracker};
-use crate::estimation::TWENTY_TO_ONE;
 use crate::identify::change::false_alarm_level;
-use crate::identify::library::{Mixture, ROOM, SavedLaw, SavedLaws, SavedLawsError, Verdict, Weighed};
+use crate::identify::library::{ROOM, SavedLaw, SavedLaws, SavedLawsError, Verdict, Weighed};
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::validation::VALIDATED;
@@ -62,34 +60,34 @@ impl Tracker {
         self.monitor.bank.clear();
     }
 
-    /// The place of the known law that the bank's hypotheses speak for, other than the one of that number.
-    fn in_sight(&mut self, setup: Setup, number: Option<u32>) -> Option<Sight> {
-        let nobody = (f64::NEG_INFINITY, 0.0, None);
-        let (mut best, mut next) = (nobody, nobody);
+    /// What the bank's hypotheses say on the known law that they speak for, other than the one of that number.
+    fn in_sight(&mut self, setup: Setup, number: Option<u32>) -> Option<Verdict> {
+        let (mut best, mut next) = (None, None);
         let Tracker { library, monitor, .. } = self;
         for place in 0..library.known.laws().len() {
             if Some(library.known.laws()[place].number) == number {
                 continue;
             }
-            let Weighed { known, any } =
-                library.known.at_a_switch(place, setup.problem, &monitor.law.all, &mut monitor.bank);
-            match known > best.0 {
-                true => (best, next) = ((known, any, Some(place)), best),
-                false if known > next.0 => next = (known, any, Some(place)),
+            let own = library.known.at_a_switch(place, setup.problem, &monitor.law.all, &mut monitor.bank);
+            let is_more =
+                |than: Option<(usize, Weighed)>| own.known > than.map_or(f64::NEG_INFINITY, |than| than.1.known);
+            match is_more(best) {
+                true => (best, next) = (Some((place, own)), best),
+                false if is_more(next) => next = Some((place, own)),
                 false => {}
             }
         }
-        let (known, any, place) = best;
-        let level = false_alarm_level(setup.settings);
-        let place = place.filter(|_| known - any > AT_ALARM * level && known - next.0 > TWENTY_TO_ONE)?;
-        Some(Sight { place, mixture: Mixture::of(known - any, next.2.map(|rival| (rival, known - next.0))) })
+        let (place, own) = best?;
+        let rival = next.map(|(rival, other)| (rival, own.known - other.known));
+        let verdict = Verdict { place, against_any: own.known - own.any, rival };
+        Some(verdict).filter(|verdict| verdict.stands_out(AT_ALARM * false_alarm_level(setup.settings)))
     }
 
     /// Carries the trial of the known laws on; returns how many samples it ran, of [`TRIAL_BUDGET`] at most.
     pub(super) fn try_known(&mut self, setup: Setup) -> usize {
         self.weigh_after_alarm(setup);
-        if let Some(sight) = self.library.in_sight.take() {
-            self.recognise(setup.problem, sight);
+        if let Some(verdict) = self.library.in_sight.take() {
+            self.recognise(setup.problem, verdict);
         }
         let place = self.regime.recognition().map(|recognition| recognition.place);
         let library = &mut self.library;
@@ -102,10 +100,8 @@ impl Tracker {
 
     /// What the trials say is followed.
     fn heed(&mut self, setup: Setup, verdict: Option<Verdict>) {
-        let level = false_alarm_level(setup.settings);
-        let stands_out =
-            |verdict: &Verdict| verdict.against_any > ON_TRIAL * level && verdict.against_known() > TWENTY_TO_ONE;
-        let found = verdict.filter(stands_out).map(Sight::from);
+        let level = ON_TRIAL * false_alarm_level(setup.settings);
+        let found = verdict.filter(|verdict| verdict.stands_out(level));
         match (self.regime.recognition().map(|recognition| recognition.place), found) {
             (Some(place), Some(found)) if place == found.place => self.enter(Event::RecognitionWeighed(None)),
             (Some(place), _) if self.is_contradicted(place, verdict.is_some()) => {
@@ -114,7 +110,7 @@ impl Tracker {
             }
             (Some(place), _) if verdict.is_some() => {
                 if let Some(verdict) = self.library.trials.on(place, &self.library.known) {
-                    self.enter(Event::RecognitionWeighed(Some(Sight::from(verdict).mixture)));
+                    self.enter(Event::RecognitionWeighed(Some(verdict.doubt())));
                 }
             }
             (None, Some(found)) if !self.regime.is_valid() => self.recognise(setup.problem, found),
@@ -124,15 +120,14 @@ impl Tracker {
 
     /// Whether the record rules the recognised law out, or what has just been weighed speaks for another one.
     fn is_contradicted(&self, place: usize, weighed: bool) -> bool {
-        let against = |verdict: Verdict| verdict.against_any.min(verdict.against_known()) < -TWENTY_TO_ONE;
         let Tracker { library, .. } = self;
         let verdict = library.trials.on(place, &library.known);
-        library.trials.is_running() && verdict.is_none_or(|verdict| weighed && against(verdict))
+        library.trials.is_running() && verdict.is_none_or(|verdict| weighed && verdict.is_against())
     }
 
     /// The law in sight is the law in use from now on, until the segment's own estimate takes over from it.
-    fn recognise(&mut self, problem: &Problem, sight: Sight) {
-        let Sight { place, mixture } = sight;
+    fn recognise(&mut self, problem: &Problem, verdict: Verdict) {
+        let place = verdict.place;
         self.end_post_alarm();
         let law = &self.library.known.laws()[place];
         let noise = self.library.trials.noise(place);
@@ -142,7 +137,7 @@ impl Tracker {
         self.monitor.law.running = false;
         self.belief.spread.copy_from_slice(&law.spread);
         self.monitor.bank.set_spread(&self.belief.spread);
-        let recognition = Recognition { place, doubt: Some(mixture), samples: law.samples };
+        let recognition = Recognition { place, doubt: Some(verdict.doubt()), samples: law.samples };
         let (library, spread) = (&self.library, &self.belief.spread);
         self.published.set(problem, |free, _| {
             let value = law.coefficients[free];

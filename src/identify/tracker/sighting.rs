@@ -1,7 +1,7 @@
 //! The library as the identifier uses it: known laws, their trials, and the one that stands out.
 
 use super::regime::Recognition;
-use crate::identify::library::{KnownLaws, Mixture, Trials, Verdict};
+use crate::identify::library::{KnownLaws, Trials, Verdict};
 use crate::identify::problem::Problem;
 use serde::{Deserialize, Serialize};
 
@@ -10,23 +10,10 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Library {
     pub(super) known: KnownLaws,
     pub(super) trials: Trials,
-    /// The law that is to be recognised in the next step.
-    pub(super) in_sight: Option<Sight>,
+    /// What says that a law is to be recognised in the next step.
+    pub(super) in_sight: Option<Verdict>,
     /// Start of a record on which the known laws are to be tried as soon as it has begun.
     pub(super) trial_due: Option<u64>,
-}
-
-/// A known law that stands out, and what speaks against it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Sight {
-    pub(super) place: usize,
-    pub(super) mixture: Mixture,
-}
-
-impl From<Verdict> for Sight {
-    fn from(verdict: Verdict) -> Sight {
-        Sight { place: verdict.place, mixture: Mixture::of(verdict.against_any, verdict.rival) }
-    }
 }
 
 impl Library {

@@ -4,13 +4,13 @@ use super::published::Published;
 use super::regime::{Event, Regime};
 use super::sighting::Library;
 use crate::estimation::{DifferenceNoise, KnownEffect};
-use crate::evidence::{Bank, SWITCH_SIZE};
+use crate::evidence::{Bank, INERTIA_SPREAD, SWITCH_SIZE};
 use crate::identify::change::{LawInUse, Prediction};
 use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
 use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition};
 use crate::identify::functional::WeakForm;
 use crate::identify::problem::Problem;
-use crate::identify::segment::{MotionScales, Segment, WeakStart};
+use crate::identify::segment::{MotionScales, Prior, Segment, WeakStart};
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
 use serde::{Deserialize, Serialize};
@@ -147,6 +147,21 @@ pub(super) struct History {
     pub(super) mixed_runs: u32,
     /// Since which sample the segment's record has been explained by another law than the one in use, run by run.
     pub(super) contradicted_since: Option<u64>,
+}
+
+impl ChangeBelief {
+    /// It as a segment takes it, about `centre`; `structure` are the terms that the law before had, where there was one.
+    pub(super) fn prior<'a>(&'a self, centre: &'a [f64], structure: Option<&'a [bool]>) -> Prior<'a> {
+        Prior {
+            centre,
+            std: &self.spread,
+            log_inertia: INERTIA_SPREAD,
+            structure,
+            noise_weight: self.samples,
+            effect: self.effect,
+            scales: &self.scales,
+        }
+    }
 }
 
 impl Monitor {
