@@ -59,8 +59,8 @@ pub(super) struct Hypothesis {
     pub(super) information: Information,
     /// S, n.
     of_law: Vec<[f64; 2]>,
-    /// Λ and Λμ of "no switch": what the stage up to the start says about the coefficients in use, and of terms that the
-    /// law has dropped what they could be.
+    /// Λ and Λμ of "no switch": what the stage up to the start says about the coefficients in use, and of terms that
+    /// the law has dropped what they could be.
     prior: Information,
     /// "No switch" with every coefficient that the law may have.
     full: NoChange,

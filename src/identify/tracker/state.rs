@@ -150,7 +150,7 @@ pub(super) struct History {
 }
 
 impl ChangeBelief {
-    /// It as a segment takes it, about `centre`; `structure` are the terms that the law before had, where there was one.
+    /// It as a segment takes it, about `centre`; `structure` are the terms of the law before, where there was one.
     pub(super) fn prior<'a>(&'a self, centre: &'a [f64], structure: Option<&'a [bool]>) -> Prior<'a> {
         Prior {
             centre,
