@@ -131,13 +131,12 @@ impl System {
         }
     }
 
-    /// Takes the unknown out of the system: a row of its own, with b = 0.
+    /// Takes the unknown out of the system: it is fixed to 0.
     pub fn isolate(&mut self, unknown: usize) {
         for row in 0..unknown {
             self.row(row)[unknown] = 0.0;
         }
         self.row(unknown)[unknown..].fill(0.0);
-        self.row(unknown)[unknown] = 1.0;
     }
 
     /// Eliminates. A pivot that falls below `tolerance` times its diagonal entry is not positive for what rounding

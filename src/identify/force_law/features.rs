@@ -5,7 +5,8 @@
 //! E f_j, not on f_j(x̂), leaves no
 //! bias by the sensors' noise (regression calibration; Carroll et al., *Measurement Error in Nonlinear Models*, 2006,
 //! ch. 4). Expectations are sums over
-//! Gauss–Hermite points, exact for powers up to the fifth of q and the ninth of q̇.
+//! Gauss–Hermite points, exact for powers up to
+//! the fifth of q and the ninth of q̇.
 
 use super::super::problem::Problem;
 use super::smoother::Instant;

@@ -165,8 +165,12 @@ impl Segment {
     /// white (Brown, Durbin and Evans, J. Royal Statistical Society B 37, 1975).
     fn compare(&mut self, residual: f64, features: &[f64], weight: Weight, of_motion: f64) {
         let n = features.len();
-        let leverage: f64 =
-            (0..n).map(|row| features[row] * dot(&self.inverse[row * n..(row + 1) * n], features)).sum();
+        let leverage = |row: usize| match self.active[row] {
+            true => features[row] * dot(&self.inverse[row * n..(row + 1) * n], features),
+            // a dropped term counts as one of variance 1
+            false => features[row] * features[row],
+        };
+        let leverage: f64 = (0..n).map(leverage).sum();
         let scaled = residual * (weight.value / weight.freedom / (1.0 + weight.value * leverage.max(0.0))).sqrt();
         let last = std::mem::replace(&mut self.last_residual, scaled);
         self.means = (self.means + 1.0).min(SAMPLES_OF_A_VARIANCE);
