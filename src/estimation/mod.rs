@@ -54,7 +54,7 @@ pub use pass::{IntervalMap, Observation, Pass, gains};
 pub use rivals::{RIVALS, Rivals};
 pub use score_test::{Lacked, Missing, ScoreTest};
 pub use smoother::{Smoothable, smooth};
-pub use symmetric::{Lane, LogSum, System, WIDTH};
+pub use symmetric::{Lane, LogSum, System, WIDTH, dot};
 pub use term_selection::{TermSelection, price_of_a_term};
 pub use track::Track;
 pub use weak_start::{OVERLAP, RowsOfLength, VARIATION};

@@ -49,6 +49,12 @@ impl LogSum {
     }
 }
 
+/// Σ a b.
+#[inline]
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
 /// row − factor · above, which have as many lanes.
 ///
 /// Loops of a length that the compiler knows have neither counters nor checks; of a factor 0 nothing is taken: unknowns
@@ -183,6 +189,12 @@ impl System {
         })
     }
 
+    /// βᵀ A⁻¹ γ, β and γ being columns of B that [`System::forward`] made of.
+    pub fn product(&self, columns: &[Lane], [first, second]: [usize; 2]) -> f64 {
+        let rows = columns.chunks_exact(self.n.div_ceil(WIDTH)).map(<[Lane]>::as_flattened);
+        rows.zip(&self.inverse_pivots).map(|(row, inverse)| row[first] * row[second] * inverse).sum()
+    }
+
     /// Whether the unknown could be solved for.
     #[inline]
     pub fn is_solved(&self, unknown: usize) -> bool {
@@ -211,8 +223,7 @@ impl System {
     pub fn solve(&self, x: &mut [f64]) {
         for k in (0..self.n).rev() {
             let row = self.rows[k * self.lanes..(k + 1) * self.lanes].as_flattened();
-            let known: f64 = row[k + 1..self.n].iter().zip(&x[k + 1..]).map(|(a, x)| a * x).sum();
-            x[k] = (row[self.n] - known) * self.inverse_pivots[k];
+            x[k] = (row[self.n] - dot(&row[k + 1..self.n], &x[k + 1..])) * self.inverse_pivots[k];
         }
     }
 
@@ -225,7 +236,7 @@ impl System {
             // A⁻¹ = D⁻¹ + (1 − U) A⁻¹ on and above the diagonal, from the last row up
             for column in (row..n).rev() {
                 let behind = &inverse[column * n + row + 1..(column + 1) * n];
-                let known: f64 = entries[row + 1..n].iter().zip(behind).map(|(a, x)| a * x).sum();
+                let known = dot(&entries[row + 1..n], behind);
                 let own = if column == row { 1.0 } else { 0.0 };
                 let value = if self.is_solved(column) { (own - known) * scale } else { 0.0 };
                 inverse[row * n + column] = value;

@@ -3,6 +3,7 @@
 //! [`Settings`] are checked once at construction; [`Identifier`] is plain data that clones, compares and serialises.
 //! A step does a bounded amount of work, allocates nothing, and cannot fail.
 
+mod blocks;
 mod change;
 mod check;
 mod deviation;
@@ -13,6 +14,7 @@ mod functional;
 mod identification;
 mod identifier;
 mod library;
+mod moments;
 mod outputs;
 mod packed;
 mod packed_readings;

@@ -11,7 +11,6 @@
 //! and of how far the estimate moves when the variation is half or twice as long: what a coefficient owes to the scale
 //! is not known of it.
 
-mod blocks;
 mod octave;
 mod regression;
 

@@ -1,7 +1,8 @@
 //! One length of variation: rows from samples averaged so far that there are two in a time constant of the variation.
 
-use super::blocks::Blocks;
-use super::regression::{Errors, Estimate, FEWEST, Regression};
+use super::regression::{Errors, Estimate, Regression};
+use crate::identify::blocks::{Blocks, FEWEST};
+use crate::identify::moments::Weight;
 use crate::identify::problem::Problem;
 use crate::identify::sample::{GAP, Sample};
 use crate::law::{State, Term};
@@ -139,7 +140,7 @@ impl Octave {
             let off = self.row[n] - self.mean;
             self.mean += off / self.rows;
             self.spread += off * (self.row[n] - self.mean);
-            self.solved &= !self.blocks.add(&self.row);
+            self.solved &= !self.blocks.add(&self.row, Weight::WHOLE);
         }
     }
 
@@ -150,7 +151,7 @@ impl Octave {
 
     /// Whether there are blocks enough for a regression.
     pub(super) fn is_ready(&self) -> bool {
-        self.blocks.count() >= FEWEST
+        self.blocks.full().len() >= FEWEST
     }
 
     /// rms q̈ ÷ rms q̇ of the motion as this octave sees it, rad/s; none before it has seen any, or where noise is most
@@ -193,7 +194,7 @@ impl Octave {
             };
         }
         let errors = Errors { noise: columns, variance: self.spread / self.rows };
-        regression.solve(&self.blocks, &errors, problem.free_inertia(), &mut self.estimate);
+        regression.solve(self.blocks.full(), &errors, problem.free_inertia(), &mut self.estimate);
         self.solved = true;
         true
     }
