@@ -1,19 +1,17 @@
 //! Hypotheses "the coefficients changed at sample k", and the log Bayes factor of each against "they did not".
 //!
-//! The sums before k tell θ, those since k tell θ + δ. With θ marginalised the record since k has information V = Λ₁ −
-//! Λ₁(Λ₀ + Λ₁)⁻¹Λ₁ on δ and
-//! score h = g − Λ₁(Λ₀ + Λ₁)⁻¹g, g = b₁ − Λ₁θ₀. Under δ ~ N(0, T) and an unknown variance of which the record before k
-//! has ν degrees of freedom (the normal
-//! inverse-gamma pair; Bernardo and Smith, *Bayesian Theory*, 1994, 5.2) the factor is
-//! −½ ln det(1 + VT/σ²) + ½(ν + n₁) ln((νσ² + Q)/(νσ² + Q − hᵀ(V + σ²T⁻¹)⁻¹h)), Q what the law leaves since k. T is a
-//! switch of all coefficients, or of
-//! one alone, even chances each. Summed over the instants that each hypothesis stands for this is the Shiryaev–Roberts
-//! statistic: mean time
-//! between false alarms at least its threshold, in samples (Pollak, *Annals of Statistics* 13, 1985).
+//! The moments before k tell θ, those since k tell θ + δ. With θ marginalised the record since k has information V =
+//! Λ₁ − Λ₁(Λ₀ + Λ₁)⁻¹Λ₁ on δ and score h = g − Λ₁(Λ₀ + Λ₁)⁻¹g, g = b₁ − Λ₁θ₀. Under δ ~ N(0, T) and an unknown variance
+//! of which the record before k has ν degrees of freedom (the normal inverse-gamma pair; Bernardo and Smith, *Bayesian
+//! Theory*, 1994, 5.2) the factor is −½ ln det(1 + VT/σ²) + ½(ν + n₁) ln((νσ² + Q)/(νσ² + Q − hᵀ(V + σ²T⁻¹)⁻¹h)), Q
+//! what the law leaves since k. T is a switch of all coefficients, or of one alone, even chances each. Summed over the
+//! instants that each hypothesis stands for this is the Shiryaev–Roberts statistic: mean time between false alarms at
+//! least its threshold, in samples (Pollak, *Annals of Statistics* 13, 1985).
 
-use super::sums::{Sums, dot};
-use crate::estimation::System;
+use super::segment::ROUNDING;
+use crate::estimation::{Lane, System, WIDTH, log_sum};
 use crate::evidence::SWITCH_SIZE;
+use crate::identify::moments::Moments;
 use serde::{Deserialize, Serialize};
 
 /// Most hypotheses: twice those of the tracker of motion, since each costs a regression and no filter.
@@ -34,8 +32,8 @@ struct Hypothesis {
     /// Time of that sample and of the one before it, s.
     t: f64,
     previous: f64,
-    /// Sums before it.
-    before: Sums,
+    /// Moments before it.
+    before: Moments,
     /// Log Bayes factor, and the sample at which it was looked at.
     evidence: f64,
     looked: u64,
@@ -49,18 +47,25 @@ pub struct Changes {
     work: Work,
 }
 
-/// Room for the sums since an instant and what is made of them.
+/// Room to weigh a hypothesis in.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Work {
-    since: Sums,
-    both: Sums,
+    since: Moments,
+    /// θ₀, and −1 of the force.
     law: Vec<f64>,
-    score: Vec<f64>,
-    inverse: Vec<f64>,
-    /// Λ₁(Λ₀ + Λ₁)⁻¹, then V.
-    matrix: Vec<f64>,
-    h: Vec<f64>,
+    /// Λ₁ through the elimination of Λ₀ + Λ₁: n rows of as many lanes as n needs.
+    crossed: Vec<Lane>,
+    /// Λ₀ + Λ₁ and g.
     system: System,
+    /// V + σ²T⁻¹ and h.
+    change: System,
+}
+
+/// What noise of unknown variance leaves: νσ² + Q, and half its degrees of freedom.
+#[derive(Clone, Copy, Debug)]
+struct Rest {
+    squares: f64,
+    power: f64,
 }
 
 /// Where the law switched, as far as the evidence tells.
@@ -77,17 +82,14 @@ pub struct Switch {
 impl Changes {
     /// For n unknowns.
     pub fn new(n: usize) -> Changes {
-        let hypothesis =
-            Hypothesis { sample: 0, t: 0.0, previous: 0.0, before: Sums::none(n), evidence: 0.0, looked: 0 };
+        let before = Moments::none(n + 2);
+        let hypothesis = Hypothesis { sample: 0, t: 0.0, previous: 0.0, before, evidence: 0.0, looked: 0 };
         let work = Work {
-            since: Sums::none(n),
-            both: Sums::none(n),
-            law: vec![0.0; n],
-            score: vec![0.0; n],
-            inverse: vec![0.0; n * n],
-            matrix: vec![0.0; n * n],
-            h: vec![0.0; n],
+            since: Moments::none(n + 2),
+            law: [vec![0.0; n], vec![-1.0]].concat(),
+            crossed: vec![[0.0; WIDTH]; n * n.div_ceil(WIDTH)],
             system: System::new(n),
+            change: System::new(n),
         };
         Changes { hypotheses: vec![hypothesis; MOST], count: 0, work }
     }
@@ -97,14 +99,14 @@ impl Changes {
         self.count = 0;
     }
 
-    /// The law may have changed between two samples, at times `previous` and `t`; `before` are the sums without the
-    /// latter.
-    pub fn suppose(&mut self, sample: u64, [previous, t]: [f64; 2], before: &Sums) {
+    /// The law may have changed between two samples, at times `previous` and `t`; `before` are the moments without
+    /// the latter.
+    pub fn suppose(&mut self, sample: u64, [previous, t]: [f64; 2], before: &Moments) {
         if self.count == MOST {
             self.thin(sample);
         }
         let slot = &mut self.hypotheses[self.count];
-        slot.before.copy(before);
+        slot.before.copy_from(before);
         (slot.sample, slot.previous, slot.t) = (sample, previous, t);
         (slot.evidence, slot.looked) = (f64::NEG_INFINITY, sample);
         self.count += 1;
@@ -129,30 +131,30 @@ impl Changes {
 
     /// Looks again at the likeliest hypothesis and at those that have waited longest for their age; `inflation`
     /// divides what the record says.
-    pub fn look(&mut self, now: u64, total: &Sums, active: &[bool], inflation: f64) {
+    pub fn look(&mut self, now: u64, total: &Moments, inflation: f64) {
         if self.count == 0 {
             return;
         }
         let best = self.likeliest();
-        self.weigh(best, now, total, active, inflation);
+        self.weigh(best, now, total, inflation);
         for _ in 1..LOOKS.min(self.count) {
             let waited =
                 |hypothesis: &Hypothesis| (now + 1 - hypothesis.looked) as f64 / (now + 1 - hypothesis.sample) as f64;
             let all = self.hypotheses[..self.count].iter().enumerate();
             let longest = all.max_by(|a, b| waited(a.1).total_cmp(&waited(b.1))).map_or(0, |(index, _)| index);
-            self.weigh(longest, now, total, active, inflation);
+            self.weigh(longest, now, total, inflation);
         }
     }
 
     /// Looks at every hypothesis.
-    pub fn look_at_all(&mut self, now: u64, total: &Sums, active: &[bool], inflation: f64) {
-        (0..self.count).for_each(|index| self.weigh(index, now, total, active, inflation));
+    pub fn look_at_all(&mut self, now: u64, total: &Moments, inflation: f64) {
+        (0..self.count).for_each(|index| self.weigh(index, now, total, inflation));
     }
 
-    fn weigh(&mut self, index: usize, now: u64, total: &Sums, active: &[bool], inflation: f64) {
+    fn weigh(&mut self, index: usize, now: u64, total: &Moments, inflation: f64) {
         let hypothesis = &mut self.hypotheses[index];
         hypothesis.looked = now + 1;
-        hypothesis.evidence = self.work.evidence(&hypothesis.before, total, active, inflation);
+        hypothesis.evidence = self.work.evidence(&hypothesis.before, total, inflation);
     }
 
     /// Largest log Bayes factor of an instant.
@@ -203,7 +205,7 @@ impl Changes {
     }
 
     /// Leaves in `total` only what came since the switch; returns the number of its first sample.
-    pub fn cut(&self, switch: &Switch, total: &mut Sums) -> u64 {
+    pub fn cut(&self, switch: &Switch, total: &mut Moments) -> u64 {
         let hypothesis = &self.hypotheses[switch.place];
         total.merge(&hypothesis.before, -1.0);
         hypothesis.sample
@@ -212,114 +214,78 @@ impl Changes {
 
 impl Work {
     /// The log Bayes factor of a change behind `before`.
-    fn evidence(&mut self, before: &Sums, total: &Sums, active: &[bool], inflation: f64) -> f64 {
-        let n = total.n();
-        let unknowns = active.iter().filter(|active| **active).count() as f64;
-        let freedom = before.count - unknowns;
-        if freedom < unknowns.max(1.0) {
+    fn evidence(&mut self, before: &Moments, total: &Moments, inflation: f64) -> f64 {
+        let n = self.law.len() - 1;
+        let freedom = before.count - n as f64;
+        if freedom < n as f64 {
             return f64::NEG_INFINITY;
         }
-        before.eliminate(active, &mut self.system);
+        before.load(n, &mut self.system);
+        self.system.eliminate(ROUNDING);
         self.system.solve(&mut self.law);
-        let variance = floor(before.loss(&self.law), before) / freedom;
-        self.since.copy(total);
+        let variance = floor(before.quadratic(&self.law), before.entry(n, n)) / freedom;
+        self.since.copy_from(total);
         self.since.merge(before, -1.0);
-        self.since.score(&self.law, &mut self.score);
-        let loss = self.since.loss(&self.law);
-        total.eliminate(active, &mut self.system);
-        self.system.invert(&mut self.inverse);
+        let loss = self.since.quadratic(&self.law).max(0.0);
+        self.marginalise(total);
+        let squares = freedom * variance + (loss - self.system.squares()).max(0.0);
+        let rest = Rest { squares, power: 0.5 * (freedom + self.since.count) / inflation };
+        self.mixture(before, rest, variance * inflation)
+    }
+
+    /// Takes the law that both records share out of what those since tell: V and h, up to its sign.
+    fn marginalise(&mut self, total: &Moments) {
+        let Work { since, law, crossed, system, change } = self;
+        let n = law.len() - 1;
+        let score = |row: usize| since.row_times(row, law);
+        total.load(n, system);
+        system.set_right((0..n).map(score));
+        system.eliminate(ROUNDING);
+        for (row, columns) in crossed.chunks_exact_mut(n.div_ceil(WIDTH)).enumerate() {
+            let columns = columns.as_flattened_mut()[..n].iter_mut().enumerate();
+            columns.for_each(|(column, entry)| *entry = since.entry(row, column));
+        }
+        system.forward(crossed);
         for row in 0..n {
-            for column in 0..n {
-                let own = &self.since.information[row * n..(row + 1) * n];
-                let of_total = &self.inverse[column * n..(column + 1) * n];
-                self.matrix[row * n + column] = if active[row] && active[column] { dot(own, of_total) } else { 0.0 };
+            for column in row..n {
+                change.row(row)[column] = since.entry(row, column) - system.product(crossed, [row, column]);
             }
         }
-        self.marginalise(n);
-        let left = loss - self.pulled_by_law(n, active);
-        let freedom = [freedom * variance, freedom + self.since.count];
-        self.mixture(before, active, freedom, left.max(0.0), variance, inflation)
+        change.set_right((0..n).map(|row| score(row) - system.products(crossed, row)[1]));
     }
 
-    /// V and h in place of Λ₁(Λ₀ + Λ₁)⁻¹ and g.
-    fn marginalise(&mut self, n: usize) {
-        for row in 0..n {
-            let gain = &self.matrix[row * n..(row + 1) * n];
-            self.h[row] = self.score[row] - dot(gain, &self.score);
-            for (column, entry) in self.law.iter_mut().enumerate() {
-                // the law's coefficients are no longer needed
-                *entry = self.since.information[row * n + column]
-                    - (0..n).map(|k| gain[k] * self.since.information[k * n + column]).sum::<f64>();
-            }
-            self.both.information[row * n..(row + 1) * n].copy_from_slice(&self.law);
-        }
-    }
-
-    /// gᵀ(Λ₀ + Λ₁)⁻¹g.
-    fn pulled_by_law(&self, n: usize, active: &[bool]) -> f64 {
-        let rows = (0..n).filter(|row| active[*row]);
-        rows.map(|row| {
-            let columns = (0..n).filter(|column| active[*column]);
-            self.score[row] * columns.map(|column| self.inverse[row * n + column] * self.score[column]).sum::<f64>()
-        })
-        .sum()
-    }
-
-    /// Even chances of a switch of all coefficients, and of one alone, any.
-    fn mixture(
-        &mut self,
-        before: &Sums,
-        active: &[bool],
-        freedom: [f64; 2],
-        left: f64,
-        variance: f64,
-        inflation: f64,
-    ) -> f64 {
-        let n = active.len();
-        let [known, freedom] = freedom;
-        let factor = |gained: f64| {
-            let rest = (known + left - gained).max(f64::MIN_POSITIVE);
-            0.5 * freedom / inflation * ((known + left) / rest).ln()
-        };
-        // T ÷ σ² of each coefficient
-        let mean = before.squares / before.count;
+    /// Even chances of a switch of all coefficients, and of one alone, any; `variance` is σ² with all that inflates it.
+    fn mixture(&mut self, before: &Moments, rest: Rest, variance: f64) -> f64 {
+        let n = self.law.len() - 1;
+        // T ÷ σ² of each coefficient: of one without a force of its own so far nothing is known
         let width = |row: usize| {
-            let feature = before.information[row * n + row] / before.count;
-            if active[row] && feature > 0.0 {
-                SWITCH_SIZE * SWITCH_SIZE * mean / (feature * variance * inflation)
-            } else {
-                0.0
-            }
+            let share = before.entry(n, n) / (before.entry(row, row) * variance);
+            if share.is_finite() { SWITCH_SIZE * SWITCH_SIZE * share } else { 0.0 }
         };
-        let sought = || (0..n).filter(|row| width(*row) > 0.0);
-        let single = |row: usize| {
-            let (own, width) = (self.both.information[row * n + row].max(0.0), width(row));
-            factor(self.h[row] * self.h[row] / (own + width.recip())) - 0.5 * (own * width).ln_1p()
-        };
-        let singles = sought().map(single).fold(f64::NEG_INFINITY, log_sum) - (sought().count() as f64).ln();
-        for row in 0..n {
-            let entries = self.system.row(row);
-            entries[..n].copy_from_slice(&self.both.information[row * n..(row + 1) * n]);
-            entries[row] += if width(row) > 0.0 { width(row).recip() } else { 1.0 };
+        let (mut singles, mut sought, mut widths) = (f64::NEG_INFINITY, 0, 0.0);
+        for row in (0..n).filter(|row| width(*row) > 0.0) {
+            let (entries, width) = (self.change.row(row), width(row));
+            let (own, h) = (entries[row].max(0.0), entries[n]);
+            let single = rest.evidence(h * h / (own + width.recip())) - 0.5 * (own * width).ln_1p();
+            entries[row] += width.recip();
+            (singles, sought, widths) = (log_sum(singles, single), sought + 1, widths + width.ln());
         }
-        self.system.set_right(self.h.iter().copied());
-        (0..n).filter(|row| width(*row) == 0.0).for_each(|row| self.system.isolate(row));
-        self.system.eliminate(0.0);
-        let widths: f64 = sought().map(|row| width(row).ln()).sum();
-        let all = factor(self.system.squares()) - 0.5 * (self.system.log_determinant() + widths);
-        log_sum(all, singles) - 2.0_f64.ln()
+        (0..n).filter(|row| width(*row) == 0.0).for_each(|row| self.change.isolate(row));
+        self.change.eliminate(0.0);
+        let all = rest.evidence(self.change.squares()) - 0.5 * (self.change.log_determinant() + widths);
+        log_sum(all, singles - f64::from(sought).ln()) - std::f64::consts::LN_2
     }
 }
 
-/// ln(eᵃ + eᵇ).
-fn log_sum(a: f64, b: f64) -> f64 {
-    let (low, high) = if a < b { (a, b) } else { (b, a) };
-    if low == f64::NEG_INFINITY { high } else { high + (low - high).exp().ln_1p() }
+impl Rest {
+    /// What it is worth to explain so much of the squares.
+    fn evidence(&self, gained: f64) -> f64 {
+        self.power * (self.squares / (self.squares - gained).max(f64::MIN_POSITIVE)).ln()
+    }
 }
 
-/// What a law leaves, but no less than rounding.
-fn floor(loss: f64, sums: &Sums) -> f64 {
-    // what sums of squares lose to rounding
+/// What a law leaves of that sum of squares, but no less than it loses to rounding.
+fn floor(loss: f64, squares: f64) -> f64 {
     const ROUNDING: f64 = 1e-14;
-    loss.max(ROUNDING * sums.squares).max(f64::MIN_POSITIVE)
+    loss.max(ROUNDING * squares).max(f64::MIN_POSITIVE)
 }

@@ -44,7 +44,7 @@ pub fn fit_force_law(model: &Model, recording: &Recording) -> Result<Option<Forc
         segment.restart();
         for instant in &instants {
             let of_motion = expect(&problem, segment.known(), instant, &mut features);
-            segment.add(&problem, &mut features, instant, of_motion);
+            segment.add(&problem, &features, instant, of_motion);
         }
         segment.solve(&problem, true);
     }

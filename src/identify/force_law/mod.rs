@@ -2,16 +2,15 @@
 //! joints).
 //!
 //! There is no motion to predict, so nothing is integrated: with the motion known, F is a linear regression on the
-//! features.
+//! features, of rows [features of the free terms…, F less the known terms, 1].
 //!
 //! - `kinematics`, `noise`, `smoother`: what the motion was, as a Gaussian belief, from q, from q̇, or from both;
 //! - `features`: the regressors under that belief, and what it leaves open of the force;
-//! - `sums`: the regression; `blocks`: whether what it leaves is white, and its covariance where it is not;
+//! - `whiteness`: whether what the regression leaves is white, and its variances where it is not;
 //! - `changes`: at which instant the law switched;
 //! - `segment`: the law of one stage; `tracker`: the stages, one after the other;
 //! - `fit`: one law over a whole recording.
 
-mod blocks;
 mod changes;
 mod features;
 mod fit;
@@ -19,8 +18,8 @@ mod kinematics;
 mod noise;
 mod segment;
 mod smoother;
-mod sums;
 mod tracker;
+mod whiteness;
 
 pub use fit::{ForceFit, fit_force_law};
 pub use tracker::ForceTracker;

@@ -1,15 +1,19 @@
 //! The regression of one stage: its coefficients, how well they are known, and whether they explain the force.
 
-use super::blocks::{Blocks, SURPRISE};
 use super::features::Known;
 use super::smoother::{Instant, LONGEST};
-use super::sums::{Sums, Weight, dot};
-use crate::estimation::{SAMPLES_OF_A_VARIANCE, System, price_of_a_term};
+use super::whiteness::{SURPRISE, Whiteness};
+use crate::estimation::{SAMPLES_OF_A_VARIANCE, System, dot, price_of_a_term};
+use crate::identify::blocks::Blocks;
+use crate::identify::moments::{Moments, Weight};
 use crate::identify::problem::Problem;
 use crate::identify::report::Coefficient;
 use crate::identify::settings::Settings;
 use crate::identify::validation::VALIDATED;
 use serde::{Deserialize, Serialize};
+
+/// Part of a pivot's diagonal entry below which it is rounding: what the others leave of its term is nothing.
+pub const ROUNDING: f64 = 1e-10;
 
 /// Part of a term that another one must be for both to count as not told apart.
 const TOUCHED: f64 = 1e-3;
@@ -29,20 +33,21 @@ const RECORD: f64 = 8.0;
 /// The regression of one stage.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Segment {
-    pub sums: Sums,
+    pub sums: Moments,
     blocks: Blocks,
+    whiteness: Whiteness,
+    row: Vec<f64>,
     pub samples: u64,
     pub start: f64,
     system: System,
     /// Λ⁻¹ over the active terms.
     inverse: Vec<f64>,
-    /// Free coefficients; all of them, with the known ones.
-    free: Vec<f64>,
+    /// Free coefficients, and −1 of the force; all of them, with the known ones.
+    law: Vec<f64>,
     pub all: Vec<f64>,
     /// Variances of all coefficients, but no more than the law's own force allows.
     variances: Vec<f64>,
     active: Vec<bool>,
-    pub every: Vec<bool>,
     /// Whether the record determines the coefficient.
     determined: Vec<bool>,
     /// Mean square of the recursive residuals, their mean product with the one before, and mean variance by the
@@ -64,17 +69,18 @@ impl Segment {
     pub fn new(problem: &Problem) -> Segment {
         let n = problem.n();
         Segment {
-            sums: Sums::none(n),
-            blocks: Blocks::new(n),
+            sums: Moments::none(n + 2),
+            blocks: Blocks::new(n + 2),
+            whiteness: Whiteness::unknown(n),
+            row: vec![1.0; n + 2],
             samples: 0,
             start: 0.0,
             system: System::new(n),
             inverse: vec![0.0; n * n],
-            free: vec![0.0; n],
+            law: [vec![0.0; n], vec![-1.0]].concat(),
             all: problem.known.clone(),
             variances: vec![0.0; problem.terms.len()],
             active: vec![true; n],
-            every: vec![true; n],
             determined: vec![false; n],
             residual: 0.0,
             lagged: 0.0,
@@ -92,9 +98,15 @@ impl Segment {
         self.samples -= first;
         self.start = start;
         self.blocks.begin(&self.sums);
+        self.whiteness.clear();
         self.active.fill(true);
         (self.established, self.means) = (false, 0.0);
         self.solve(problem, false);
+    }
+
+    /// Number of free coefficients.
+    fn n(&self) -> usize {
+        self.active.len()
     }
 
     /// With a force sensor whose noise has at least that std.
@@ -105,7 +117,8 @@ impl Segment {
     /// Forgets the record; the law and what is known of the force's noise stay.
     pub fn restart(&mut self) {
         self.sums.clear();
-        self.blocks.begin(&self.sums);
+        self.blocks.clear();
+        self.whiteness.clear();
         (self.samples, self.means) = (0, 0.0);
     }
 
@@ -116,33 +129,29 @@ impl Segment {
 
     /// Whether the record determines every coefficient that the law has.
     pub fn is_determined(&self) -> bool {
-        (0..self.free.len()).all(|row| self.std(row).is_some())
+        (0..self.n()).all(|row| self.std(row).is_some())
     }
 
     /// Takes the law for one in which a switch can be seen, where its record is long enough.
     pub fn establish(&mut self) {
-        self.established |= self.is_long() && self.blocks.verdict().is_known;
+        self.established |= self.is_long() && self.whiteness.is_known;
     }
 
     fn is_long(&self) -> bool {
-        self.sums.count >= RECORD * self.free.len() as f64
+        self.sums.count >= RECORD * self.n() as f64
     }
 
-    /// Takes one instant, whose features stand in `features`; true where that filled a block.
-    pub fn add(&mut self, problem: &Problem, features: &mut [f64], instant: &Instant, of_motion: f64) -> bool {
-        let residual = instant.force - dot(features, &self.all);
-        let held: f64 = dot(features, &problem.known);
-        for (place, index) in problem.free.iter().enumerate() {
-            features[place] = features[*index];
-        }
-        let (features, force) = (&features[..problem.n()], instant.force - held);
+    /// Takes one instant, whose features are given; true where that filled a block.
+    pub fn add(&mut self, problem: &Problem, features: &[f64], instant: &Instant, of_motion: f64) -> bool {
+        self.row.iter_mut().zip(&problem.free).for_each(|(slot, index)| *slot = features[*index]);
+        self.row[problem.n()] = instant.force - dot(features, &problem.known);
         let weight = self.weight(of_motion);
         if self.is_long() {
-            self.compare(residual, features, weight, of_motion);
+            self.compare(instant.force - dot(features, &self.all), weight, of_motion);
         }
-        self.sums.add(features, force, &weight);
+        self.sums.add(&self.row, weight);
         self.samples += 1;
-        let is_full = self.blocks.add(features, force, &weight);
+        let is_full = self.blocks.add(&self.row, weight);
         if is_full && self.is_long() {
             self.white = Some(self.variance());
         }
@@ -153,8 +162,7 @@ impl Segment {
     /// that lasts: errors that the motion
     /// makes are one error over [`COHERENT`] samples.
     fn weight(&self, of_motion: f64) -> Weight {
-        let whole = Weight { value: 1.0, freedom: 1.0 };
-        self.white.map_or(whole, |white| {
+        self.white.map_or(Weight::WHOLE, |white| {
             let value = white / (white + COHERENT * of_motion);
             Weight { value, freedom: value * (white + of_motion) / white }
         })
@@ -163,14 +171,14 @@ impl Segment {
     /// Takes the residual that the law of the samples before leaves: under the right law these recursive residuals,
     /// scaled to equal variance, are
     /// white (Brown, Durbin and Evans, J. Royal Statistical Society B 37, 1975).
-    fn compare(&mut self, residual: f64, features: &[f64], weight: Weight, of_motion: f64) {
-        let n = features.len();
+    fn compare(&mut self, residual: f64, weight: Weight, of_motion: f64) {
+        let features = &self.row[..self.n()];
         let leverage = |row: usize| match self.active[row] {
-            true => features[row] * dot(&self.inverse[row * n..(row + 1) * n], features),
+            true => features[row] * dot(self.inverse_row(row), features),
             // a dropped term counts as one of variance 1
             false => features[row] * features[row],
         };
-        let leverage: f64 = (0..n).map(leverage).sum();
+        let leverage: f64 = (0..self.n()).map(leverage).sum();
         let scaled = residual * (weight.value / weight.freedom / (1.0 + weight.value * leverage.max(0.0))).sqrt();
         let last = std::mem::replace(&mut self.last_residual, scaled);
         self.means = (self.means + 1.0).min(SAMPLES_OF_A_VARIANCE);
@@ -191,19 +199,19 @@ impl Segment {
         if choose {
             self.find_determined();
             let variance = self.variance();
-            self.blocks.judge(&self.free, &self.inverse, &self.active, variance);
+            self.whiteness.judge(self.blocks.full(), &self.law, &self.inverse, variance);
         }
-        problem.scatter(&self.free, &mut self.all);
+        problem.scatter(&self.law, &mut self.all);
         self.renew_variances(problem);
     }
 
     /// A coefficient that the record does not determine is one whose force is within the force measured.
     fn renew_variances(&mut self, problem: &Problem) {
-        let (n, variance) = (self.free.len(), self.variance());
+        let (n, variance) = (self.n(), self.variance());
         for (row, index) in problem.free.iter().enumerate() {
-            let widest = self.sums.squares / self.sums.information[row * n + row];
-            let own = self.inverse[row * n + row];
-            let stated = if own > 0.0 && self.active[row] { variance * own } else { f64::INFINITY };
+            let widest = self.sums.entry(n, n) / self.sums.entry(row, row);
+            let own = self.own(row);
+            let stated = if own > 0.0 { variance * own } else { f64::INFINITY };
             self.variances[*index] = if widest.is_finite() { stated.min(widest) } else { 0.0 };
         }
     }
@@ -214,18 +222,29 @@ impl Segment {
     }
 
     fn regress(&mut self) {
-        self.sums.eliminate(&self.active, &mut self.system);
-        self.system.solve(&mut self.free);
+        let n = self.n();
+        self.sums.load(n, &mut self.system);
+        (0..n).filter(|row| !self.active[*row]).for_each(|row| self.system.isolate(row));
+        self.system.eliminate(ROUNDING);
+        self.system.solve(&mut self.law);
         self.system.invert(&mut self.inverse);
+    }
+
+    fn inverse_row(&self, row: usize) -> &[f64] {
+        &self.inverse[row * self.n()..(row + 1) * self.n()]
+    }
+
+    /// Variance of a coefficient under noise of variance 1; 0 where the law has none or the record tells none.
+    fn own(&self, row: usize) -> f64 {
+        self.inverse_row(row)[row]
     }
 
     /// Drops the "maybe" term that is worth least, where it is not worth its price.
     fn drop_one(&mut self, problem: &Problem) -> bool {
-        let n = self.free.len();
         let scale = self.variance() * self.inflation();
         let price = price_of_a_term(self.sums.count);
-        let worth = |row: &usize| self.free[*row].powi(2) / (scale * self.inverse[row * n + row]);
-        let candidates = (0..n).filter(|row| self.active[*row] && problem.maybe[*row]);
+        let worth = |row: &usize| self.law[*row].powi(2) / (scale * self.own(*row));
+        let candidates = (0..self.n()).filter(|row| self.active[*row] && problem.maybe[*row]);
         let least = candidates.min_by(|a, b| worth(a).total_cmp(&worth(b)));
         match least.filter(|row| worth(row).is_nan() || worth(row) < price) {
             Some(row) => {
@@ -240,21 +259,20 @@ impl Segment {
     pub fn variance(&self) -> f64 {
         let unknowns = self.active.iter().filter(|active| **active).count() as f64;
         let freedom = (self.sums.count - unknowns).max(1.0);
-        let rounding = 1e-14 * self.sums.squares;
-        (self.sums.loss(&self.free).max(rounding) / freedom).max(self.least)
+        let rounding = 1e-14 * self.sums.entry(self.n(), self.n());
+        (self.sums.quadratic(&self.law).max(rounding) / freedom).max(self.least)
     }
 
     /// Terms that nothing tells apart from others have no value of their own.
     fn find_determined(&mut self) {
-        let n = self.free.len();
+        let n = self.n();
         self.determined.fill(true);
-        let information = &self.sums.information;
         for unknown in (0..n).filter(|unknown| self.active[*unknown] && !self.system.is_solved(*unknown)) {
-            let column = &information[unknown * n..(unknown + 1) * n];
             for other in (0..n).filter(|other| self.active[*other]) {
                 // what the other solved term takes of this one, in units of their features
-                let share = dot(&self.inverse[other * n..(other + 1) * n], column);
-                let touched = share * share * information[other * n + other] > TOUCHED * TOUCHED * column[unknown];
+                let share = self.sums.row_times(unknown, self.inverse_row(other));
+                let [own, square] = [unknown, other].map(|row| self.sums.entry(row, row));
+                let touched = share * share * square > TOUCHED * TOUCHED * own;
                 self.determined[other] &= other != unknown && !touched;
             }
         }
@@ -265,29 +283,27 @@ impl Segment {
         if !self.is_long() {
             return Vec::new();
         }
-        let open = (0..self.free.len()).filter(|row| self.active[*row] && !self.determined[*row]);
+        let open = (0..self.n()).filter(|row| self.active[*row] && !self.determined[*row]);
         let open: Vec<usize> = open.collect();
         if open.is_empty() { Vec::new() } else { vec![problem.together(&open)] }
     }
 
     /// Std of a free coefficient: the sandwich where the rest is not white.
     fn std(&self, row: usize) -> Option<f64> {
-        let n = self.free.len();
-        let verdict = self.blocks.verdict();
-        if !(verdict.is_known && self.determined[row]) {
+        if !(self.whiteness.is_known && self.determined[row]) {
             return None;
         }
         if !self.active[row] {
             return Some(0.0);
         }
-        let white = self.variance() * self.inverse[row * n + row];
-        let variance = if self.is_coloured() { verdict.covariance[row * n + row].max(white) } else { white };
+        let white = self.variance() * self.own(row);
+        let variance = if self.is_coloured() { self.whiteness.variances[row].max(white) } else { white };
         Some(variance.sqrt()).filter(|std| std.is_finite())
     }
 
     /// e of eq. (8) by the stated covariance.
     fn error(&self) -> Option<f64> {
-        let squares = (0..self.free.len()).map(|row| self.std(row).map(|std| std * std)).sum::<Option<f64>>()?;
+        let squares = (0..self.n()).map(|row| self.std(row).map(|std| std * std)).sum::<Option<f64>>()?;
         let size: f64 = self.all.iter().map(|value| value * value).sum();
         (size > 0.0).then_some(squares / size)
     }
@@ -303,34 +319,36 @@ impl Segment {
     /// (Bartlett, J. Royal Statistical Society 8 Suppl., 1946).
     pub fn inflation(&self) -> f64 {
         let correlation = self.correlation();
-        self.blocks.verdict().inflation.max((1.0 + correlation) / (1.0 - correlation))
+        self.whiteness.inflation.max((1.0 + correlation) / (1.0 - correlation))
     }
 
     /// Whether what the law leaves is no white noise.
     pub fn is_coloured(&self) -> bool {
-        self.blocks.verdict().is_coloured || self.correlation() > 0.0
+        self.whiteness.is_coloured || self.correlation() > 0.0
     }
 
     /// Whether the law explains its record down to white noise, holds throughout it, and is known.
     pub fn is_valid(&self) -> bool {
         let is_known = self.error().is_some_and(|error| error < VALIDATED);
-        self.established && self.blocks.verdict().is_known && !self.is_coloured() && is_known
+        self.established && self.whiteness.is_known && !self.is_coloured() && is_known
     }
 
     /// Share of the force's variance that the law explains.
     pub fn explained(&self, problem: &Problem) -> Option<f64> {
-        let spread = self.sums.spread();
-        let is_known = self.blocks.verdict().is_known && problem.n() > 0 && spread > 0.0;
-        is_known.then(|| (1.0 - self.sums.loss(&self.free) / spread).max(0.0))
+        let n = self.n();
+        let [square, mean, weight] = [(n, n), (n, n + 1), (n + 1, n + 1)].map(|(a, b)| self.sums.entry(a, b));
+        let spread = square - mean * mean / weight;
+        let is_known = self.whiteness.is_known && spread > 0.0;
+        is_known.then(|| (1.0 - self.sums.quadratic(&self.law).max(0.0) / spread).max(0.0))
     }
 
     /// Writes the coefficients that are known, with their std.
     pub fn publish(&self, problem: &Problem, coefficients: &mut [Coefficient], is_valid: bool) {
         for (row, index) in problem.free.iter().enumerate() {
-            let std = self.std(row).filter(|std| is_valid || *std < self.free[row].abs() || !self.active[row]);
+            let std = self.std(row).filter(|std| is_valid || *std < self.law[row].abs() || !self.active[row]);
             let coefficient = &mut coefficients[*index];
             if std.is_some() {
-                coefficient.value = self.free[row];
+                coefficient.value = self.law[row];
             }
             coefficient.std = std;
             coefficient.needed = if is_valid { Some(0.0) } else { None };

@@ -5,9 +5,7 @@ use super::features::expect;
 use super::noise::{ChannelNoise, Smoothness};
 use super::segment::{COHERENT, Segment};
 use super::smoother::{Instant, LONGEST, Smoother};
-use super::sums::dot;
-use crate::estimation::Channel;
-use crate::estimation::OUTLYING;
+use crate::estimation::{Channel, OUTLYING, dot};
 use crate::identify::change::SUSPENSE;
 use crate::identify::deviation::Deviation;
 use crate::identify::problem::Problem;
@@ -206,12 +204,12 @@ impl ForceTracker {
         }
         self.changes.suppose(stage.samples, [self.previous.max(stage.start), instant.t], &stage.sums);
         self.previous = instant.t;
-        let block_is_full = stage.add(problem, &mut self.features, &instant, of_motion);
-        self.changes.look(stage.samples, &stage.sums, &stage.every, stage.inflation());
+        let block_is_full = stage.add(problem, &self.features, &instant, of_motion);
+        self.changes.look(stage.samples, &stage.sums, stage.inflation());
         let evidence = self.changes.evidence();
         let level = (settings.false_alarm_interval / settings.sample_time).ln().max(0.0);
         if stage.established && evidence > level {
-            self.changes.look_at_all(stage.samples, &stage.sums, &stage.every, stage.inflation());
+            self.changes.look_at_all(stage.samples, &stage.sums, stage.inflation());
             if let Some(switch) = self.changes.switch() {
                 self.switch(switch, now, problem, output);
                 return;
