@@ -2,10 +2,8 @@
 //! leaves open of the force.
 //!
 //! F = Σ θ_j f_j(q, q̇) with (q, q̇) ~ N(x̂, P) has expectation Σ θ_j E f_j and variance Var Σ θ_j f_j. Regressing on
-//! E f_j, not on f_j(x̂), leaves no
-//! bias by the sensors' noise (regression calibration; Carroll et al., *Measurement Error in Nonlinear Models*, 2006,
-//! ch. 4). Expectations are sums over
-//! Gauss–Hermite points, exact for powers up to
+//! E f_j, not on f_j(x̂), leaves no bias by the sensors' noise (regression calibration; Carroll et al., *Measurement
+//! Error in Nonlinear Models*, 2006, ch. 4). Expectations are sums over Gauss–Hermite points, exact for powers up to
 //! the fifth of q and the ninth of q̇.
 
 use super::super::problem::Problem;
@@ -25,35 +23,46 @@ const OF_QD: [(f64, f64); 5] = [
     (-2.856_970_013_872_805_6, 0.011_257_411_327_720_69),
 ];
 
-/// What is known of a law's coefficients: value and variance of each.
+/// Numbers from which on sums of products of four overflow.
+const LARGEST: f64 = 1e60;
+
+/// What a law gives at an instant.
 #[derive(Clone, Copy, Debug)]
-pub struct Known<'a> {
-    /// One per term.
-    pub values: &'a [f64],
-    /// One per term; 0 where the value is exact.
-    pub variances: &'a [f64],
+pub struct Expected {
+    /// E f_j of every term; 0 behind the last.
+    pub features: [f64; Model::MAX_TERMS],
+    /// Σ θ_j E f_j.
+    pub force: f64,
+    /// Var Σ θ_j f_j by the motion's belief, the coefficients known as they are.
+    pub of_motion: f64,
 }
 
-/// Writes E f_j of every term into `expected`; returns Var Σ θ_j f_j by the motion's belief, the coefficients known as
-/// they are.
-pub fn expect(problem: &Problem, known: Known, instant: &Instant, expected: &mut [f64]) -> f64 {
-    expected.fill(0.0);
-    let mut squares = [0.0; Model::MAX_TERMS];
+/// What coefficients of these values and variances give, 0 where the value is exact; none where that is too large to be
+/// weighed.
+pub fn expect(problem: &Problem, values: &[f64], variances: &[f64], instant: &Instant) -> Option<Expected> {
+    let (mut features, mut squares) = ([0.0; Model::MAX_TERMS], [0.0; Model::MAX_TERMS]);
     let (mut mean, mut square) = (0.0, 0.0);
     for (q, qd, weight) in points(instant) {
         let mut force = 0.0;
         for (index, term) in problem.terms.iter().enumerate() {
             let feature = term.force_of(&problem.own, State { q, qd }, 0.0);
-            expected[index] += weight * feature;
+            features[index] += weight * feature;
             squares[index] += weight * feature * feature;
-            force += known.values[index] * feature;
+            force += values[index] * feature;
         }
         square += weight * force * force;
         mean += weight * force;
     }
-    let features = squares.iter().zip(expected.iter()).zip(known.variances);
-    let unknown: f64 = features.map(|((square, mean), variance)| variance * (square - mean * mean).max(0.0)).sum();
-    (square - mean * mean).max(0.0) + unknown
+    let moments = squares.iter().zip(&features).zip(variances);
+    let unknown: f64 = moments.map(|((square, mean), variance)| variance * (square - mean * mean).max(0.0)).sum();
+    let of_motion = (square - mean * mean).max(0.0) + unknown;
+    let weighable = is_weighable(of_motion) && features.iter().copied().all(is_weighable);
+    weighable.then_some(Expected { features, force: mean, of_motion })
+}
+
+/// Whether products of the number with its like are numbers too.
+pub fn is_weighable(number: f64) -> bool {
+    number.abs() < LARGEST
 }
 
 /// (q, q̇, weight) of every point.

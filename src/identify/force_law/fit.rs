@@ -1,12 +1,9 @@
 //! One law over a whole recording: the regression that the stream comes to, with the motion as all readings tell it.
 
-use super::features::expect;
-use super::noise::ChannelNoise;
+use super::noise::MotionNoise;
 use super::segment::Segment;
 use super::smoother::{Instant, LONGEST, Smoother};
-use crate::estimation::Channel;
-use crate::identify::check::BuildError;
-use crate::identify::check::check;
+use crate::identify::check::{BuildError, check};
 use crate::identify::problem::Problem;
 use crate::identify::recording::{Recording, settings_for};
 use crate::identify::settings::Settings;
@@ -37,14 +34,14 @@ pub fn fit_force_law(model: &Model, recording: &Recording) -> Result<Option<Forc
     let settings = settings_for(recording, Settings::default());
     check(model, &settings)?;
     let problem = Problem::new(model, &settings);
-    let instants = believed(&problem, &settings, recording);
-    let mut segment = Segment::new(&problem);
-    let mut features = vec![0.0; problem.terms.len()];
+    let instants = believed(&settings, recording);
+    let mut segment = Segment::new(&problem, settings.noise_excitation);
     for _ in 0..ROUNDS {
         segment.restart();
         for instant in &instants {
-            let of_motion = expect(&problem, segment.known(), instant, &mut features);
-            segment.add(&problem, &features, instant, of_motion);
+            if let Some(expected) = segment.expected(&problem, instant) {
+                segment.add(&problem, instant, &expected);
+            }
         }
         segment.solve(&problem, true);
     }
@@ -59,24 +56,14 @@ pub fn fit_force_law(model: &Model, recording: &Recording) -> Result<Option<Forc
 }
 
 /// The motion of every piece between gaps.
-fn believed(problem: &Problem, settings: &Settings, recording: &Recording) -> Vec<Instant> {
-    let measured = [problem.channels.q, problem.channels.qd];
-    let mut noises = Channel::ALL.map(|channel| ChannelNoise::new(channel, settings.sample_time));
-    let mut instants = Vec::with_capacity(recording.count());
+fn believed(settings: &Settings, recording: &Recording) -> Vec<Instant> {
+    let mut noise = MotionNoise::new(settings);
     for piece in recording.pieces() {
-        noises.iter_mut().for_each(ChannelNoise::interrupt);
-        for index in piece.clone() {
-            let sample = recording.sample(index);
-            let readings = [sample.q, sample.qd];
-            for channel in (0..2).filter(|channel| measured[*channel]) {
-                noises[channel].add(sample.t, readings[channel]);
-            }
-        }
+        noise.interrupt();
+        piece.for_each(|index| noise.add(&recording.sample(index)));
     }
-    let beliefs = [0, 1].map(|channel| noises[channel].likeliest().filter(|_| measured[channel]));
-    if (0..2).any(|channel| measured[channel] && beliefs[channel].is_none()) {
-        return instants;
-    }
+    let Some(beliefs) = noise.likeliest(settings) else { return Vec::new() };
+    let mut instants = Vec::with_capacity(recording.count());
     for piece in recording.pieces() {
         let mut smoother = Smoother::new();
         smoother.believe(beliefs);

@@ -5,6 +5,8 @@
 
 use super::kinematics::{Kinematics, advance, begin};
 use crate::estimation::{Channel, LogSum};
+use crate::identify::sample::Sample;
+use crate::identify::settings::Settings;
 use serde::{Deserialize, Serialize};
 
 /// Ratios that are tried: of the filter's corner frequency from 0.003 rad per sample on …
@@ -34,9 +36,15 @@ struct Rival {
     logarithms: LogSum,
 }
 
+/// The noise of q and of q̇; none of what is not measured.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MotionNoise {
+    channels: [Option<ChannelNoise>; 2],
+}
+
 /// The noise of one channel.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ChannelNoise {
+struct ChannelNoise {
     channel: Channel,
     rivals: Vec<Rival>,
     /// Readings since the motion began, those that count, and those since the last interruption.
@@ -57,9 +65,47 @@ pub struct Smoothness {
     pub intensity: f64,
 }
 
+impl MotionNoise {
+    /// No reading yet.
+    pub fn new(settings: &Settings) -> MotionNoise {
+        let of = |channel, is_measured: bool| is_measured.then(|| ChannelNoise::new(channel, settings.sample_time));
+        MotionNoise { channels: [of(Channel::Q, settings.channels.q), of(Channel::Qd, settings.channels.qd)] }
+    }
+
+    /// Takes a sample.
+    pub fn add(&mut self, sample: &Sample) {
+        for (noise, value) in self.channels.iter_mut().zip([sample.q, sample.qd]) {
+            noise.iter_mut().for_each(|noise| noise.add(sample.t, value));
+        }
+    }
+
+    /// The next sample is not the last one's neighbour.
+    pub fn interrupt(&mut self) {
+        self.channels.iter_mut().flatten().for_each(|noise| noise.since = 0);
+    }
+
+    /// Whether every channel has so many readings since the motion began.
+    pub fn has_seen(&self, readings: u32) -> bool {
+        self.channels.iter().flatten().all(|noise| noise.begun >= readings)
+    }
+
+    /// What each channel that is measured tells, with the noise that is given where it is; none before enough readings.
+    pub fn likeliest(&self, settings: &Settings) -> Option<[Option<Smoothness>; 2]> {
+        let mut found = [None; 2];
+        let given = [settings.noise_q, settings.noise_qd].map(|std| std * std);
+        for ((slot, noise), given) in found.iter_mut().zip(&self.channels).zip(given) {
+            if let Some(noise) = noise {
+                let Smoothness { variance, intensity } = noise.likeliest()?;
+                *slot = Some(Smoothness { variance: if given > 0.0 { given } else { variance }, intensity });
+            }
+        }
+        Some(found)
+    }
+}
+
 impl ChannelNoise {
     /// For a channel read about every `sample_time` s.
-    pub fn new(channel: Channel, sample_time: f64) -> ChannelNoise {
+    fn new(channel: Channel, sample_time: f64) -> ChannelNoise {
         let rival = |index: i32| {
             let corner = LOWEST * FACTOR.powi(index) / sample_time;
             let ratio = corner.powi(6 - 2 * channel as i32) * sample_time;
@@ -70,7 +116,7 @@ impl ChannelNoise {
     }
 
     /// Takes a reading at time t, s.
-    pub fn add(&mut self, t: f64, value: f64) {
+    fn add(&mut self, t: f64, value: f64) {
         let [before, last] = self.last;
         let (dt, channel) = (t - before, self.channel);
         self.last = [t, value];
@@ -91,18 +137,8 @@ impl ChannelNoise {
         }
     }
 
-    /// Readings since the motion began.
-    pub fn count(&self) -> usize {
-        self.begun as usize
-    }
-
-    /// The next reading is not the last one's neighbour.
-    pub fn interrupt(&mut self) {
-        self.since = 0;
-    }
-
     /// The roughest motion that the readings do not refute; none before enough readings.
-    pub fn likeliest(&self) -> Option<Smoothness> {
+    fn likeliest(&self) -> Option<Smoothness> {
         let count = f64::from(Some(self.count).filter(|count| *count > 0)?);
         let floor = ROUNDING * ROUNDING * self.power.max(f64::MIN_POSITIVE);
         let loss = |rival: &Rival| (rival.squares / count).max(floor).ln() + rival.logarithms.total() / count;

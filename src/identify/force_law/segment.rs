@@ -1,9 +1,9 @@
 //! The regression of one stage: its coefficients, how well they are known, and whether they explain the force.
 
-use super::features::Known;
+use super::features::{Expected, expect};
 use super::smoother::{Instant, LONGEST};
 use super::whiteness::{SURPRISE, Whiteness};
-use crate::estimation::{SAMPLES_OF_A_VARIANCE, System, dot, price_of_a_term};
+use crate::estimation::{OUTLYING, SAMPLES_OF_A_VARIANCE, System, dot, price_of_a_term};
 use crate::identify::blocks::Blocks;
 use crate::identify::moments::{Moments, Weight};
 use crate::identify::problem::Problem;
@@ -44,7 +44,7 @@ pub struct Segment {
     inverse: Vec<f64>,
     /// Free coefficients, and −1 of the force; all of them, with the known ones.
     law: Vec<f64>,
-    pub all: Vec<f64>,
+    all: Vec<f64>,
     /// Variances of all coefficients, but no more than the law's own force allows.
     variances: Vec<f64>,
     active: Vec<bool>,
@@ -65,8 +65,8 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// Of no record.
-    pub fn new(problem: &Problem) -> Segment {
+    /// Of no record; the force sensor's noise has at least that std.
+    pub fn new(problem: &Problem, noise: f64) -> Segment {
         let n = problem.n();
         Segment {
             sums: Moments::none(n + 2),
@@ -89,7 +89,7 @@ impl Segment {
             means: 0.0,
             white: None,
             established: false,
-            least: f64::MIN_POSITIVE,
+            least: (noise * noise).max(f64::MIN_POSITIVE),
         }
     }
 
@@ -107,11 +107,6 @@ impl Segment {
     /// Number of free coefficients.
     fn n(&self) -> usize {
         self.active.len()
-    }
-
-    /// With a force sensor whose noise has at least that std.
-    pub fn with_noise(self, std: f64) -> Segment {
-        Segment { least: (std * std).max(f64::MIN_POSITIVE), ..self }
     }
 
     /// Forgets the record; the law and what is known of the force's noise stay.
@@ -141,13 +136,19 @@ impl Segment {
         self.sums.count >= RECORD * self.n() as f64
     }
 
-    /// Takes one instant, whose features are given; true where that filled a block.
-    pub fn add(&mut self, problem: &Problem, features: &[f64], instant: &Instant, of_motion: f64) -> bool {
+    /// What the law gives at an instant; none where that is too large to be weighed.
+    pub fn expected(&self, problem: &Problem, instant: &Instant) -> Option<Expected> {
+        expect(problem, &self.all, &self.variances, instant)
+    }
+
+    /// Takes one instant, of which that is expected; true where that filled a block.
+    pub fn add(&mut self, problem: &Problem, instant: &Instant, expected: &Expected) -> bool {
+        let Expected { features, force, of_motion } = expected;
         self.row.iter_mut().zip(&problem.free).for_each(|(slot, index)| *slot = features[*index]);
         self.row[problem.n()] = instant.force - dot(features, &problem.known);
-        let weight = self.weight(of_motion);
+        let weight = self.weight(*of_motion);
         if self.is_long() {
-            self.compare(instant.force - dot(features, &self.all), weight, of_motion);
+            self.compare(instant.force - force, weight, *of_motion);
         }
         self.sums.add(&self.row, weight);
         self.samples += 1;
@@ -158,9 +159,15 @@ impl Segment {
         is_full
     }
 
+    /// Whether the instant's force is no part of an established law.
+    pub fn is_outlier(&self, instant: &Instant, expected: &Expected) -> bool {
+        let residual = instant.force - expected.force;
+        let variance = self.variance() + expected.of_motion;
+        self.established && self.white.is_some() && residual * residual > OUTLYING * OUTLYING * variance
+    }
+
     /// What a sample counts. Where the motion hardly tells which side of a jump it is on, it does so for as long as
-    /// that lasts: errors that the motion
-    /// makes are one error over [`COHERENT`] samples.
+    /// that lasts: errors that the motion makes are one error over [`COHERENT`] samples.
     fn weight(&self, of_motion: f64) -> Weight {
         self.white.map_or(Weight::WHOLE, |white| {
             let value = white / (white + COHERENT * of_motion);
@@ -169,8 +176,7 @@ impl Segment {
     }
 
     /// Takes the residual that the law of the samples before leaves: under the right law these recursive residuals,
-    /// scaled to equal variance, are
-    /// white (Brown, Durbin and Evans, J. Royal Statistical Society B 37, 1975).
+    /// scaled to equal variance, are white (Brown, Durbin and Evans, J. Royal Statistical Society B 37, 1975).
     fn compare(&mut self, residual: f64, weight: Weight, of_motion: f64) {
         let features = &self.row[..self.n()];
         let leverage = |row: usize| match self.active[row] {
@@ -214,11 +220,6 @@ impl Segment {
             let stated = if own > 0.0 { variance * own } else { f64::INFINITY };
             self.variances[*index] = if widest.is_finite() { stated.min(widest) } else { 0.0 };
         }
-    }
-
-    /// The coefficients as they are known.
-    pub fn known(&self) -> Known<'_> {
-        Known { values: &self.all, variances: &self.variances }
     }
 
     fn regress(&mut self) {
@@ -315,8 +316,7 @@ impl Segment {
     }
 
     /// Samples that say as much as one independent sample: residuals that follow from one another say less, as those
-    /// of an autoregression do
-    /// (Bartlett, J. Royal Statistical Society 8 Suppl., 1946).
+    /// of an autoregression do (Bartlett, J. Royal Statistical Society 8 Suppl., 1946).
     pub fn inflation(&self) -> f64 {
         let correlation = self.correlation();
         self.whiteness.inflation.max((1.0 + correlation) / (1.0 - correlation))
@@ -343,7 +343,8 @@ impl Segment {
     }
 
     /// Writes the coefficients that are known, with their std.
-    pub fn publish(&self, problem: &Problem, coefficients: &mut [Coefficient], is_valid: bool) {
+    pub fn publish(&self, problem: &Problem, coefficients: &mut [Coefficient]) {
+        let is_valid = self.is_valid();
         for (row, index) in problem.free.iter().enumerate() {
             let std = self.std(row).filter(|std| is_valid || *std < self.law[row].abs() || !self.active[row]);
             let coefficient = &mut coefficients[*index];
@@ -351,7 +352,7 @@ impl Segment {
                 coefficient.value = self.law[row];
             }
             coefficient.std = std;
-            coefficient.needed = if is_valid { Some(0.0) } else { None };
+            coefficient.needed = is_valid.then_some(0.0);
         }
         for index in (0..coefficients.len()).filter(|index| !problem.free.contains(index)) {
             coefficients[index].value = problem.known[index];

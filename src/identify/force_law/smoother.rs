@@ -36,7 +36,7 @@ struct Past {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Smoother {
     present: Kinematics,
-    /// Noise of q and q̇; none of what is not measured.
+    /// Variances of the noise of q and q̇; none of what is not measured.
     noise: [Option<f64>; 2],
     intensity: f64,
     past: Vec<Past>,
@@ -64,6 +64,11 @@ impl Smoother {
         self.noise = channels.map(|channel| channel.map(|channel| channel.variance));
         // the smoother of two beliefs would round off what the other channel resolves
         self.intensity = channels.into_iter().flatten().map(|channel| channel.intensity).fold(0.0, f64::max);
+    }
+
+    /// Std of the noise of q and q̇.
+    pub fn noise(&self) -> [Option<f64>; 2] {
+        self.noise.map(|variance| variance.map(f64::sqrt))
     }
 
     /// Samples so far.
