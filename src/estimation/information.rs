@@ -1,6 +1,6 @@
 //! Fisher information and score of the coefficients, and what follows from them.
 
-use super::symmetric::{Lane, System, WIDTH};
+use super::symmetric::{Lane, System, WIDTH, dot};
 use crate::limits::ROUNDING;
 use serde::{Deserialize, Serialize};
 
@@ -163,7 +163,7 @@ impl Information {
     #[inline]
     pub fn row_times(&self, row: usize, vector: &[f64]) -> f64 {
         let n = self.n;
-        let upper: f64 = self.matrix[row * n + row..(row + 1) * n].iter().zip(&vector[row..]).map(|(a, b)| a * b).sum();
+        let upper = dot(&self.matrix[row * n + row..(row + 1) * n], &vector[row..]);
         let lower: f64 = (0..row).map(|column| self.matrix[column * n + row] * vector[column]).sum();
         lower + upper
     }

@@ -289,13 +289,10 @@ impl Segment {
         if open.is_empty() { Vec::new() } else { vec![problem.together(&open)] }
     }
 
-    /// Std of a free coefficient: the sandwich where the rest is not white.
+    /// Std of a free coefficient: the sandwich where the rest is not white; 0 of one that the law does not have.
     fn std(&self, row: usize) -> Option<f64> {
         if !(self.whiteness.is_known && self.determined[row]) {
             return None;
-        }
-        if !self.active[row] {
-            return Some(0.0);
         }
         let white = self.variance() * self.own(row);
         let variance = if self.is_coloured() { self.whiteness.variances[row].max(white) } else { white };
@@ -334,7 +331,7 @@ impl Segment {
     }
 
     /// Share of the force's variance that the law explains.
-    pub fn explained(&self, problem: &Problem) -> Option<f64> {
+    pub fn explained(&self) -> Option<f64> {
         let n = self.n();
         let [square, mean, weight] = [(n, n), (n, n + 1), (n + 1, n + 1)].map(|(a, b)| self.sums.entry(a, b));
         let spread = square - mean * mean / weight;
@@ -346,7 +343,7 @@ impl Segment {
     pub fn publish(&self, problem: &Problem, coefficients: &mut [Coefficient]) {
         let is_valid = self.is_valid();
         for (row, index) in problem.free.iter().enumerate() {
-            let std = self.std(row).filter(|std| is_valid || *std < self.law[row].abs() || !self.active[row]);
+            let std = self.std(row).filter(|std| is_valid || *std <= self.law[row].abs());
             let coefficient = &mut coefficients[*index];
             if std.is_some() {
                 coefficient.value = self.law[row];

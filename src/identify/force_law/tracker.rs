@@ -96,7 +96,7 @@ impl ForceTracker {
             self.wait(&mut step, sample);
         }
         self.stage.publish(problem, coefficients);
-        self.publish(problem, sample.t, output);
+        self.publish(sample.t, output);
         self.predict(problem, settings, sample, output);
     }
 
@@ -207,13 +207,13 @@ impl ForceTracker {
         output.identified_time = None;
     }
 
-    fn publish(&self, problem: &Problem, now: f64, output: &mut Output) {
+    fn publish(&self, now: f64, output: &mut Output) {
         let stage = &self.stage;
         output.valid = stage.is_valid() && self.suspected.is_none();
         if output.valid && output.identified_time.is_none() {
             output.identified_time = Some(now);
         }
-        output.explained = stage.explained(problem);
+        output.explained = stage.explained();
         output.status = match (self.suspected, stage.established, output.switch_count) {
             (Some(_), ..) => Status::SwitchSuspected,
             (None, true, _) => Status::Tracking,

@@ -47,7 +47,6 @@ const FORESEEN: f64 = 10.0;
 pub struct WeakForm {
     octaves: Vec<Octave>,
     regression: Regression,
-    columns: Vec<f64>,
     gains: [f64; 3],
     /// The first octave that forms rows.
     finest: usize,
@@ -64,7 +63,6 @@ impl WeakForm {
         WeakForm {
             octaves: vec![Octave::new(n); OCTAVES],
             regression: Regression::new(n),
-            columns: vec![0.0; n + 1],
             gains: [0, 1, 2].map(|order| Functional::noise_gain(order, ADVANCE)),
             finest: 0,
             begun: None,
@@ -147,9 +145,9 @@ impl WeakForm {
         let sensors = Sensors { variance, gains: self.gains };
         let fitting = self.fitting(problem, &sensors)?;
         let near = fitting.saturating_sub(1).max(self.finest)..(fitting + 2).min(OCTAVES);
-        let WeakForm { octaves, regression, columns, .. } = self;
+        let WeakForm { octaves, regression, .. } = self;
         for octave in &mut octaves[near.clone()] {
-            if octave.solve(problem, &sensors, regression, columns) {
+            if octave.solve(problem, &sensors, regression) {
                 break;
             }
         }

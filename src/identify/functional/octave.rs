@@ -1,6 +1,6 @@
 //! One length of variation: rows from samples averaged so far that there are two in a time constant of the variation.
 
-use super::regression::{Errors, Estimate, Regression};
+use super::regression::{Estimate, Regression};
 use crate::identify::blocks::{Blocks, FEWEST};
 use crate::identify::moments::Weight;
 use crate::identify::problem::Problem;
@@ -174,27 +174,12 @@ impl Octave {
     }
 
     /// Solves the rows unless that has been done since the last block; returns whether it did.
-    pub(super) fn solve(
-        &mut self,
-        problem: &Problem,
-        sensors: &Sensors,
-        regression: &mut Regression,
-        columns: &mut [f64],
-    ) -> bool {
+    pub(super) fn solve(&mut self, problem: &Problem, sensors: &Sensors, regression: &mut Regression) -> bool {
         if self.solved || !self.is_ready() {
             return false;
         }
-        let noise = self.noise(problem, sensors);
-        columns.fill(0.0);
-        for (column, term) in columns.iter_mut().zip(&problem.free_terms) {
-            *column = match term {
-                Term::Inertia => noise[1],
-                term if *term == Term::power(0, 1) => noise[0],
-                _ => 0.0,
-            };
-        }
-        let errors = Errors { noise: columns, variance: self.spread / self.rows };
-        regression.solve(self.blocks.full(), &errors, problem.free_inertia(), &mut self.estimate);
+        let (noise, variance) = (self.noise(problem, sensors), self.spread / self.rows);
+        regression.solve(problem, self.blocks.full(), noise, variance, &mut self.estimate);
         self.solved = true;
         true
     }

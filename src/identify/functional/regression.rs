@@ -9,6 +9,8 @@
 use crate::estimation::{System, dot};
 use crate::identify::blocks::FEWEST;
 use crate::identify::moments::Moments;
+use crate::identify::problem::Problem;
+use crate::law::Term;
 use serde::{Deserialize, Serialize};
 
 /// How many parts of the record are tried: all blocks, and fewer, longer ones, down to the fewest that tell a variance.
@@ -49,25 +51,11 @@ impl Estimate {
     }
 }
 
-/// What is known of the errors in the columns of a row.
-pub(super) struct Errors<'a> {
-    /// What sensors add to each column's square.
-    pub(super) noise: &'a [f64],
-    /// Mean square of the right side about its mean.
-    pub(super) variance: f64,
-}
-
-impl Errors<'_> {
-    /// Whether noise is too much of any column.
-    fn drown(&self, total: &Moments) -> bool {
-        let mut columns = self.noise.iter().enumerate();
-        columns.any(|(column, noise)| total.count * noise > NOISE * total.entry(column, column))
-    }
-}
-
 /// Room for a regression of rows [free terms…, right side].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Regression {
+    /// What sensors add to each column's square.
+    noise: Vec<f64>,
     total: Moments,
     part: Moments,
     system: System,
@@ -86,6 +74,7 @@ impl Regression {
     pub(super) fn new(n: usize) -> Regression {
         let width = n + 1;
         Regression {
+            noise: vec![0.0; width],
             total: Moments::none(width),
             part: Moments::none(width),
             system: System::new(width),
@@ -98,30 +87,54 @@ impl Regression {
         }
     }
 
-    /// Solves the rows of `blocks`; `inertia` is the place of a free one. The error is taken to be in the right side or
-    /// in the inertia term, whichever is the larger: errors of gain, lag and law go with the signals, and least squares
-    /// is biased by those of its regressors.
-    pub(super) fn solve(&mut self, blocks: &[Moments], errors: &Errors, inertia: Option<usize>, best: &mut Estimate) {
+    /// Solves the rows of `blocks`, to whose integrals of q̇ and q̈ the sensors add these variances, and whose right
+    /// side has the given one. The error is taken to be in the right side or in the inertia term, whichever is the
+    /// larger: errors of gain, lag and law go with the signals, and least squares is biased by those of its regressors.
+    pub(super) fn solve(
+        &mut self,
+        problem: &Problem,
+        blocks: &[Moments],
+        sensors: [f64; 2],
+        variance: f64,
+        best: &mut Estimate,
+    ) {
         let n = self.square.len();
         best.clear();
         self.total.sum(blocks);
-        if blocks.len() < FEWEST.max(n + 1) || errors.drown(&self.total) {
+        self.set_noise(problem, sensors);
+        if blocks.len() < FEWEST.max(n + 1) || self.is_drowned() {
             return;
         }
-        self.total.take_out(errors.noise);
-        for target in [Some(n), inertia].into_iter().flatten() {
+        self.total.take_out(&self.noise);
+        for target in [Some(n), problem.free_inertia()].into_iter().flatten() {
             let square = self.total.entry(target, target);
-            let total = if target == n { self.total.count * errors.variance } else { square };
+            let total = if target == n { self.total.count * variance } else { square };
             let error = self.fit(target).map(|left| (left / total).sqrt());
             if let Some(error) = error.filter(|error| *error < best.error) {
                 best.error = error;
-                self.scatter(blocks, errors.noise, target, &mut best.std);
+                self.scatter(blocks, target, &mut best.std);
                 let right = self.law[n];
                 for (value, own) in best.coefficients.iter_mut().zip(&self.law) {
                     *value = -own / right;
                 }
             }
         }
+    }
+
+    fn set_noise(&mut self, problem: &Problem, [of_velocity, of_acceleration]: [f64; 2]) {
+        for (noise, term) in self.noise.iter_mut().zip(&problem.free_terms) {
+            *noise = match term {
+                Term::Inertia => of_acceleration,
+                term if *term == Term::power(0, 1) => of_velocity,
+                _ => 0.0,
+            };
+        }
+    }
+
+    /// Whether noise is too much of any column.
+    fn is_drowned(&self) -> bool {
+        let mut columns = self.noise.iter().enumerate();
+        columns.any(|(column, noise)| self.total.count * noise > NOISE * self.total.entry(column, column))
     }
 
     /// Fits the column `target` by all others; returns the residual's square, none where it cannot be computed.
@@ -149,11 +162,11 @@ impl Regression {
     }
 
     /// Std of the coefficients, the largest over the partitions.
-    fn scatter(&mut self, blocks: &[Moments], noise: &[f64], target: usize, std: &mut [f64]) {
+    fn scatter(&mut self, blocks: &[Moments], target: usize, std: &mut [f64]) {
         let (n, width) = (self.square.len(), self.law.len());
         std.fill(0.0);
         for parts in PARTITIONS.map(|parts| parts.min(blocks.len())).into_iter().filter(|parts| *parts > n) {
-            self.scatter_between(blocks, noise, parts);
+            self.scatter_between(blocks, parts);
             let correction = parts as f64 / (parts - n) as f64;
             for (std, square) in std.iter_mut().zip(&self.square) {
                 *std = std.max((correction * square).sqrt());
@@ -167,13 +180,13 @@ impl Regression {
     }
 
     /// Writes into `square` the sum of squares of what each of `parts` parts of the record moves the coefficients by.
-    fn scatter_between(&mut self, blocks: &[Moments], noise: &[f64], parts: usize) {
+    fn scatter_between(&mut self, blocks: &[Moments], parts: usize) {
         let width = self.law.len();
         let from = |part: usize| part * blocks.len() / parts;
         self.square.fill(0.0);
         for part in 0..parts {
             self.part.sum(&blocks[from(part)..from(part + 1)]);
-            self.part.take_out(noise);
+            self.part.take_out(&self.noise);
             for (column, score) in self.score.iter_mut().enumerate() {
                 *score = self.part.row_times(column, &self.law) * self.scale[column];
             }
