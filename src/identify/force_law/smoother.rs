@@ -79,7 +79,7 @@ impl Smoother {
     /// Takes a sample.
     pub fn add(&mut self, t: f64, readings: [f64; 2], force: f64) {
         match self.count {
-            0 => self.begin(readings),
+            0 => self.present.mean = [readings[0], readings[1], 0.0],
             1 => self.begin_moving(t - self.last.t, readings),
             _ => self.go_on(t - self.last.t, readings),
         }
@@ -97,15 +97,6 @@ impl Smoother {
         let number = self.count.checked_sub(1 + lag as u64)?;
         let length = self.past.len();
         (number > 0 && lag < length).then(|| self.past[(number % length as u64) as usize].instant)
-    }
-
-    fn begin(&mut self, readings: [f64; 2]) {
-        for (channel, reading) in readings.into_iter().enumerate() {
-            if let Some(noise) = self.noise[channel] {
-                self.present.mean[channel] = reading;
-                self.present.covariance[channel][channel] = noise;
-            }
-        }
     }
 
     /// The second sample tells where the motion goes.
