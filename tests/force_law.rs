@@ -1,6 +1,9 @@
 //! Laws whose output is F: at the limit, honest, and their switches seen.
 
-use switchid::identify::{Identification, Recording, Settings, identify_recording, settings_for};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+use switchid::identify::{Identification, Identifier, Recording, Sample, Settings, identify_recording, settings_for};
 use switchid::law::{Given, Model, State, Term};
 use switchid::limits::{Bound, Imposed, Law, force_bound, force_detection, level};
 use switchid::simulate::{Excitation, ExcitationKind, Reading, Scenario, SensorNoise, Stage, record};
@@ -128,5 +131,26 @@ fn a_switch_is_seen_near_the_limit_and_no_other_one() {
         ratios.sort_by(f64::total_cmp);
         eprintln!("{changed:?}: delay/limit median {:.2} worst {:.2}", ratios[6], ratios[11]);
         assert!(ratios[6] < 2.0, "{changed:?}: {ratios:?}");
+    }
+}
+
+#[test]
+fn a_machine_that_begins_to_move_has_not_switched() {
+    let more = ["q^3", "qd^3"].map(|name| (Term::parse(name).unwrap(), Given::Maybe));
+    let larger = Model::of("damper", terms().into_iter().map(|term| (term, Given::Fit)).chain(more));
+    for (model, seed) in [model(), larger].iter().flat_map(|model| (0..10).map(move |seed| (model, seed))) {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        let mut white = |std: f64| std * generator.sample::<f64, _>(StandardNormal);
+        let mut identifier = Identifier::new(model, Settings { sample_time: 2e-3, ..Settings::default() }).unwrap();
+        for k in 0..3000 {
+            let t = 2e-3 * f64::from(k);
+            // at rest for a second; the velocity is read without noise, so that nothing is told of its terms till then
+            let (q, qd) = if t < 1.0 { (0.0, 0.0) } else { (0.3 * (t - 1.0), 0.3) };
+            let friction = if t < 1.0 { 0.0 } else { LAW[3] };
+            let force = LAW[0] * qd + LAW[1] * q + LAW[2] + friction + white(NOISE);
+            let _ = identifier.step(Sample { t, q: q + white(1e-4), qd, excitation: force });
+        }
+        let output = identifier.output();
+        assert_eq!(output.switch_count, 0, "{}, seed {seed}: {}", model.terms.len(), output.switch_time);
     }
 }

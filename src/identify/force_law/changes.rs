@@ -1,10 +1,10 @@
 //! Hypotheses "the coefficients changed at sample k", and the log Bayes factor of each against "they did not".
 //!
 //! The moments before k tell θ, those since k tell θ + δ. With θ marginalised the record since k has information V =
-//! Λ₁ − Λ₁(Λ₀ + Λ₁)⁻¹Λ₁ on δ and score h = g − Λ₁(Λ₀ + Λ₁)⁻¹g, g = b₁ − Λ₁θ₀. Under δ ~ N(0, T) and an unknown variance
-//! of which the record before k has ν degrees of freedom (the normal inverse-gamma pair; Bernardo and Smith, *Bayesian
-//! Theory*, 1994, 5.2) the factor is −½ ln det(1 + VT/σ²) + ½(ν + n₁) ln((νσ² + Q)/(νσ² + Q − hᵀ(V + σ²T⁻¹)⁻¹h)), Q
-//! what the law leaves since k. T is a switch of all coefficients, or of one alone, even chances each. Summed over the
+//! Λ₁ − Λ₁(Λ₀ + Λ₁)⁻¹Λ₁ on δ and score h = b₁ − Λ₁θ, θ the law of both records. Under δ ~ N(0, T) and an unknown
+//! variance of which the record before k has ν degrees of freedom (the normal inverse-gamma pair; Bernardo and Smith,
+//! *Bayesian Theory*, 1994, 5.2) the factor is −½ ln det(1 + VT/σ²) + ½(ν + n₁) ln(S/(S − hᵀ(V + σ²T⁻¹)⁻¹h)), S what
+//! that law leaves of both. T is a switch of all coefficients, or of one alone, even chances each. Summed over the
 //! instants that each hypothesis stands for this is the Shiryaev–Roberts statistic: mean time between false alarms at
 //! least its threshold, in samples (Pollak, *Annals of Statistics* 13, 1985).
 
@@ -23,6 +23,9 @@ const LOOKS: usize = 4;
 /// Share of the posterior by which an instant is too late to be the switch: one chance in a thousand that it came
 /// later.
 const TOO_LATE: f64 = 0.999;
+
+/// What a change has of its own beside the law's uncertainty, relative to all that it has; less is rounding.
+const OWN: f64 = 1e-9;
 
 /// One hypothesis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,17 +54,17 @@ pub struct Changes {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Work {
     since: Moments,
-    /// θ₀, and −1 of the force.
+    /// A record's law, and −1 of the force.
     law: Vec<f64>,
     /// Λ₁ through the elimination of Λ₀ + Λ₁: n rows of as many lanes as n needs.
     crossed: Vec<Lane>,
-    /// Λ₀ + Λ₁ and g.
+    /// A record's normal equations: at the end those of both.
     system: System,
     /// V + σ²T⁻¹ and h.
     change: System,
 }
 
-/// What noise of unknown variance leaves: νσ² + Q, and half its degrees of freedom.
+/// What noise of unknown variance leaves: S, and half its degrees of freedom.
 #[derive(Clone, Copy, Debug)]
 struct Rest {
     squares: f64,
@@ -220,27 +223,29 @@ impl Work {
         if freedom < n as f64 {
             return f64::NEG_INFINITY;
         }
-        before.load(n, &mut self.system);
-        self.system.eliminate(ROUNDING);
-        self.system.solve(&mut self.law);
-        let variance = floor(before.quadratic(&self.law), before.entry(n, n)) / freedom;
+        self.solve(before);
+        let least = floor(before.quadratic(&self.law), before.entry(n, n));
         self.since.copy_from(total);
         self.since.merge(before, -1.0);
-        let loss = self.since.quadratic(&self.law).max(0.0);
-        self.marginalise(total);
-        let squares = freedom * variance + (loss - self.system.squares()).max(0.0);
+        self.solve(total);
+        self.marginalise();
+        let squares = total.quadratic(&self.law).max(least);
         let rest = Rest { squares, power: 0.5 * (freedom + self.since.count) / inflation };
-        self.mixture(before, rest, variance * inflation)
+        self.mixture(before, rest, least / freedom * inflation)
     }
 
-    /// Takes the law that both records share out of what those since tell: V and h, up to its sign.
-    fn marginalise(&mut self, total: &Moments) {
+    /// The law of a record.
+    fn solve(&mut self, record: &Moments) {
+        record.load(self.law.len() - 1, &mut self.system);
+        self.system.eliminate(ROUNDING);
+        self.system.solve(&mut self.law);
+    }
+
+    /// Takes the law that both records share out of what those since tell: V and h, up to its sign. It needs no law of
+    /// the record before, which may be anything where a term did nothing: differences of what that gives are rounding.
+    fn marginalise(&mut self) {
         let Work { since, law, crossed, system, change } = self;
         let n = law.len() - 1;
-        let score = |row: usize| since.row_times(row, law);
-        total.load(n, system);
-        system.set_right((0..n).map(score));
-        system.eliminate(ROUNDING);
         for (row, columns) in crossed.chunks_exact_mut(n.div_ceil(WIDTH)).enumerate() {
             let columns = columns.as_flattened_mut()[..n].iter_mut().enumerate();
             columns.for_each(|(column, entry)| *entry = since.entry(row, column));
@@ -251,29 +256,32 @@ impl Work {
                 change.row(row)[column] = since.entry(row, column) - system.product(crossed, [row, column]);
             }
         }
-        change.set_right((0..n).map(|row| score(row) - system.products(crossed, row)[1]));
+        change.set_right((0..n).map(|row| since.row_times(row, law)));
     }
 
     /// Even chances of a switch of all coefficients, and of one alone, any; `variance` is σ² with all that inflates it.
+    /// Of a coefficient whose term had no force so far the law knows nothing: it is not seen to change.
     fn mixture(&mut self, before: &Moments, rest: Rest, variance: f64) -> f64 {
-        let n = self.law.len() - 1;
-        // T ÷ σ² of each coefficient: of one without a force of its own so far nothing is known
-        let width = |row: usize| {
-            let share = before.entry(n, n) / (before.entry(row, row) * variance);
-            if share.is_finite() { SWITCH_SIZE * SWITCH_SIZE * share } else { 0.0 }
-        };
-        let (mut singles, mut sought, mut widths) = (f64::NEG_INFINITY, 0, 0.0);
-        for row in (0..n).filter(|row| width(*row) > 0.0) {
-            let (entries, width) = (self.change.row(row), width(row));
-            let (own, h) = (entries[row].max(0.0), entries[n]);
-            let single = rest.evidence(h * h / (own + width.recip())) - 0.5 * (own * width).ln_1p();
+        let Work { since, law, change, .. } = self;
+        let n = law.len() - 1;
+        let (mut singles, mut widths) = (f64::NEG_INFINITY, 0.0);
+        for row in 0..n {
+            // T ÷ σ²
+            let width = SWITCH_SIZE * SWITCH_SIZE * before.entry(n, n) / (before.entry(row, row) * variance);
+            let entries = change.row(row);
+            let (own, h) = (entries[row], entries[n]);
+            if !(width.is_normal() && own > OWN * since.entry(row, row)) {
+                change.isolate(row);
+                singles = log_sum(singles, 0.0);
+                continue;
+            }
             entries[row] += width.recip();
-            (singles, sought, widths) = (log_sum(singles, single), sought + 1, widths + width.ln());
+            let single = rest.evidence(h * h / (own + width.recip())) - 0.5 * (own * width).ln_1p();
+            (singles, widths) = (log_sum(singles, single), widths + width.ln());
         }
-        (0..n).filter(|row| width(*row) == 0.0).for_each(|row| self.change.isolate(row));
-        self.change.eliminate(0.0);
-        let all = rest.evidence(self.change.squares()) - 0.5 * (self.change.log_determinant() + widths);
-        log_sum(all, singles - f64::from(sought).ln()) - std::f64::consts::LN_2
+        change.eliminate(0.0);
+        let all = rest.evidence(change.squares()) - 0.5 * (change.log_determinant() + widths);
+        log_sum(all, singles - (n as f64).ln()) - std::f64::consts::LN_2
     }
 }
 
