@@ -50,6 +50,11 @@ impl Segment {
         self.fit.explains && self.fit.overdispersion == 1.0 && !self.constancy.broken
     }
 
+    /// Whether its law has left what a shorter part of the record said, by more than that left open.
+    pub fn has_left_itself(&self) -> bool {
+        self.constancy.broken
+    }
+
     /// Whether both fits found one law in the same record.
     pub fn agrees_with(&self, other: &Segment) -> bool {
         self.start == other.start && is_one_law(self.own(), other.own())

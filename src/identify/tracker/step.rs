@@ -234,6 +234,7 @@ impl Tracker {
             *change += segment.coefficients[index] - monitor.law.all[problem.free[index]];
         }
         match proven
+            && !segment.has_left_itself()
             && segment.has_terms_of(&monitor.law.terms, monitor.law.effect())
             && monitor.law.noise.is_near(&segment.noise)
         {
