@@ -119,6 +119,28 @@ fn a_few_bad_readings_of_the_velocity_are_no_switch() {
     }
 }
 
+/// Its first reading, just too near to be one of a burst alone, would speak for a switch with 18 nats.
+#[test]
+fn a_burst_has_begun_before_it_is_sure() {
+    for seed in 0..6 {
+        let (scenario, mut samples) = steady(seed);
+        for (sample, off) in samples[FIRST..].iter_mut().zip([6.3, -11.0, -12.0, 14.0]) {
+            sample.qd += NOISE * off;
+        }
+        let seen = watch(&scenario, Builtin::DuffingSine, &samples);
+        assert!(seen.switches == 0 && seen.valid_at_the_end, "seed {seed}: {seen:?}");
+    }
+}
+
+/// A law of a young record moves by many of its std, and what it knew is no reason for a switch since.
+#[test]
+fn a_law_that_leaves_itself_has_not_switched() {
+    let scenario = plant(Builtin::VanDerPolSine, 9868, 20.0, 27.0);
+    let mut identifier = Identifier::new(&Model::cubic_library(), Settings::default()).unwrap();
+    samples(&scenario).into_iter().for_each(|sample| identifier.step(sample).unwrap());
+    assert_eq!((identifier.output().switch_count, identifier.output().valid), (1, true));
+}
+
 #[test]
 fn a_bad_reading_is_said_to_be_one_and_to_be_over() {
     let (scenario, mut samples) = steady(50);

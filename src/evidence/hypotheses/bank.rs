@@ -257,7 +257,7 @@ impl Bank {
         [either(all, one), none]
     }
 
-    /// Log-evidence of a switch of all coefficients, of which the data say `since`; leaves the eliminated system behind.
+    /// Log-evidence of a switch of all coefficients, of which the data say `since`; leaves the eliminated system.
     fn all_switched(&mut self) -> f64 {
         self.system.load(&self.since.matrix, None);
         for (row, spread) in self.spread.iter().enumerate() {

@@ -158,6 +158,8 @@ pub struct Hypothesis {
     bursts: [Burst; 2],
     /// Which readings are a sensor's fault: one bit a sample held, by channel.
     faulty: [u64; 2],
+    /// Which are one if the next is.
+    doubtful: [u64; 2],
     /// The state at every sample held.
     path: Vec<State>,
     /// Samples since it began.
@@ -174,6 +176,7 @@ impl Hypothesis {
             log: 0.0,
             bursts: [Burst::default(); 2],
             faulty: [0; 2],
+            doubtful: [0; 2],
             path: vec![State::default(); room],
             age: 0,
         }
@@ -214,7 +217,7 @@ impl Hypothesis {
 
     /// The samples held have been let through.
     pub fn forget_held(&mut self) {
-        self.faulty = [0; 2];
+        (self.faulty, self.doubtful) = ([0; 2], [0; 2]);
     }
 
     /// Goes over an interval and takes the readings at its end, number `place` of those held.
@@ -223,13 +226,24 @@ impl Hypothesis {
         for channel in Channel::ALL {
             if let Some(value) = values[channel as usize] {
                 let counts = self.read(channel, &value, law);
-                self.faulty[channel as usize] |= u64::from(!counts) << place;
+                self.mark(channel, counts, value.start, place);
             }
         }
         self.path[place] = self.state();
         self.age += 1;
         if !self.state().is_finite() || self.log.is_nan() {
             self.log = f64::NEG_INFINITY;
+        }
+    }
+
+    /// Marks a reading, and where it is one of a burst those before that were too.
+    fn mark(&mut self, channel: Channel, counts: bool, start: f64, place: usize) {
+        let (index, burst) = (channel as usize, self.bursts[channel as usize]);
+        self.faulty[index] |= u64::from(!counts) << place;
+        self.doubtful[index] |= u64::from(burst.may_have_begun(start)) << place;
+        let before = (0..place).rev().take_while(|place| self.doubtful[index] >> place & 1 == 1);
+        if burst.is_on() {
+            self.faulty[index] |= before.fold(0, |bits, place| bits | 1 << place);
         }
     }
 

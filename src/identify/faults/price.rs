@@ -73,6 +73,12 @@ impl Burst {
         if self.age <= 1.0 { self.probability } else { 0.0 }
     }
 
+    /// Whether the last reading was faulty too, should the next one be: a burst begins seldom, so that one which is on
+    /// had begun with the first reading that is rather a wide draw.
+    pub fn may_have_begun(&self, start: f64) -> bool {
+        self.probability * (1.0 - (self.age + 2.0).recip()) > (1.0 - self.probability) * start
+    }
+
     /// Whether the last reading was more likely faulty than not.
     pub fn is_on(&self) -> bool {
         self.probability > 0.5
@@ -105,6 +111,16 @@ mod tests {
         }
         assert_eq!(states[..4], [false, true, true, true]);
         assert!(!states[9], "{states:?}");
+    }
+
+    /// Three stds and a half alone are none of a burst; before forty they were its first reading.
+    #[test]
+    fn a_reading_rather_wide_is_of_the_burst_that_follows() {
+        for (residual, of_burst) in [(3.5, true), (1.0, false)] {
+            let mut burst = Burst::default();
+            burst.take(working(residual, 1.0), residual, 1.0, 1e-9);
+            assert!(!burst.is_on() && burst.may_have_begun(1e-9) == of_burst, "{residual}");
+        }
     }
 
     #[test]

@@ -18,6 +18,10 @@ pub const ROOM: usize = 64;
 /// Mean time between two events of a kind, s: what nothing is known of happens as often as a false alarm is allowed.
 const SELDOM: f64 = 1e6;
 
+/// A reading is held from so many stds on: two of them in a row would make an alarm of a false-alarm interval of 1e6 s,
+/// 16 nats, and by chance one comes in 16 000 readings.
+const HELD: f64 = 4.0;
+
 /// A channel is in no burst any more below this probability of one.
 const OVER: f64 = 0.05;
 
@@ -271,7 +275,7 @@ impl Quarantine {
         Channel::ALL.into_iter().all(|channel| match arrival.values[channel as usize] {
             Some(Value { value, repeats, .. }) => {
                 let (residual, variance) = expected.residual(channel, value, law.noise.sensor[channel as usize]);
-                repeats.is_none() && residual * residual <= OUTLYING * OUTLYING * variance
+                repeats.is_none() && residual * residual <= HELD * HELD * variance
             }
             None => true,
         })
