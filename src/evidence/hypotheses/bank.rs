@@ -154,9 +154,12 @@ impl Bank {
             let waiting = self.hypotheses[..self.count].iter().map(Hypothesis::wait).enumerate();
             match waiting.max_by(|a, b| a.1.total_cmp(&b.1)) {
                 Some((index, wait)) if wait > 0.0 => self.look_at(index),
-                _ => return,
+                _ => break,
             }
         }
+        // what is made anew at every look takes no room in a saved state
+        self.since.clear();
+        self.told.clear();
     }
 
     fn look_at(&mut self, index: usize) {

@@ -205,6 +205,14 @@ impl Hypothesis {
         }
     }
 
+    /// Forgets all of it: what says nothing any more takes no room in a saved state.
+    pub fn clear(&mut self) {
+        (self.mean, self.covariance, self.log, self.age) = ([0.0; 4], [[0.0; 4]; 4], 0.0, 0);
+        self.bursts = [Burst::default(); 2];
+        self.path.fill(State::default());
+        self.forget_held();
+    }
+
     /// These channels are in a burst.
     pub fn begin_bursts(&mut self, bursts: [Burst; 2]) {
         self.bursts = bursts;

@@ -151,7 +151,7 @@ impl Quarantine {
     /// The next reading for the record.
     pub fn next(&mut self) -> Option<Reading> {
         let left = self.waiting.checked_sub(1)?;
-        let reading = self.through[self.first];
+        let reading = std::mem::take(&mut self.through[self.first]);
         (self.first, self.waiting) = ((self.first + 1) % self.through.len(), left);
         Some(reading)
     }
@@ -266,6 +266,7 @@ impl Quarantine {
             let over = Channel::ALL.into_iter().all(|channel| named.burst(channel) < OVER);
             if over && (named.kind == Kind::Readings || named.kind.is_kick()) {
                 self.stance = Stance::Calm;
+                self.weighing.clear();
             }
         }
     }
@@ -344,6 +345,7 @@ impl Quarantine {
             any = [any[0] || faulty[0], any[1] || faulty[1]];
             self.let_through(reading);
         }
+        self.held[..self.count].fill(Reading::default());
         self.count = 0;
         self.weighing.forget_held();
         self.stance = Stance::Named(place);

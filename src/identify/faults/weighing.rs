@@ -53,6 +53,11 @@ impl Weighing {
         self.hypotheses[0].begin_bursts(bursts);
     }
 
+    /// There is nothing to weigh any more.
+    pub fn clear(&mut self) {
+        self.hypotheses.iter_mut().for_each(Hypothesis::clear);
+    }
+
     /// Takes a sample.
     pub fn take(&mut self, law: &Expected, dt: f64, drive: &Drive, values: [Option<Value>; 2], place: usize) {
         self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.take(law, dt, drive, values, place));
