@@ -6,7 +6,6 @@
 
 use super::regime::{Event, PostAlarm, Recognition, Validated};
 use super::state::{Fitting, Setup, Tracker};
-use crate::identify::change::false_alarm_level;
 use crate::identify::library::{ROOM, SavedLaw, SavedLaws, SavedLawsError, Verdict, Weighed};
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
@@ -80,7 +79,7 @@ impl Tracker {
         let (place, own) = best?;
         let rival = next.map(|(rival, other)| (rival, own.known - other.known));
         let verdict = Verdict { place, against_any: own.known - own.any, rival };
-        Some(verdict).filter(|verdict| verdict.stands_out(AT_ALARM * false_alarm_level(setup.settings)))
+        Some(verdict).filter(|verdict| verdict.stands_out(AT_ALARM * self.false_alarm_level(setup.settings)))
     }
 
     /// Carries the trial of the known laws on; returns how many samples it ran, of [`TRIAL_BUDGET`] at most.
@@ -100,7 +99,7 @@ impl Tracker {
 
     /// What the trials say is followed.
     fn heed(&mut self, setup: Setup, verdict: Option<Verdict>) {
-        let level = ON_TRIAL * false_alarm_level(setup.settings);
+        let level = ON_TRIAL * self.false_alarm_level(setup.settings);
         let found = verdict.filter(|verdict| verdict.stands_out(level));
         match (self.regime.recognition().map(|recognition| recognition.place), found) {
             (Some(place), Some(found)) if place == found.place => self.enter(Event::RecognitionWeighed(None)),
@@ -137,7 +136,7 @@ impl Tracker {
         self.monitor.law.running = false;
         self.belief.spread.copy_from_slice(&law.spread);
         self.monitor.bank.set_spread(&self.belief.spread);
-        let recognition = Recognition { place, doubt: Some(verdict.doubt()), samples: law.samples };
+        let recognition = Recognition { place, doubt: Some(verdict.doubt()) };
         let (library, spread) = (&self.library, &self.belief.spread);
         self.published.set(problem, |free, _| {
             let value = law.coefficients[free];
@@ -204,8 +203,9 @@ impl Tracker {
 
     /// The number of the known law that the segment's is, or a new one.
     pub(super) fn number_law(&mut self, settings: &Settings) -> u32 {
+        let level = ON_TRIAL * self.false_alarm_level(settings);
         let known = &mut self.library.known;
-        let found = known.same_as(&self.segment.estimate(), ON_TRIAL * false_alarm_level(settings));
+        let found = known.same_as(&self.segment.estimate(), level);
         found.unwrap_or_else(|| known.new_number())
     }
 

@@ -50,8 +50,6 @@ pub(super) struct Recognition {
     pub(super) place: usize,
     /// The laws that it may be instead; none once its trial over the new record has confirmed it.
     pub(super) doubt: Option<Mixture>,
-    /// Samples that it is known from.
-    pub(super) samples: u64,
 }
 
 /// The time after an alarm in which the bank of hypotheses goes on.
@@ -268,7 +266,7 @@ mod tests {
     const SWITCH: Event = Event::SwitchFound(Some(PostAlarm { until: 50, left: Some(3) }));
 
     fn recognition() -> Recognition {
-        Recognition { place: 1, doubt: Some(Mixture::default()), samples: 700 }
+        Recognition { place: 1, doubt: Some(Mixture::default()) }
     }
 
     fn drifting(known: bool, since: Option<f64>) -> Regime {

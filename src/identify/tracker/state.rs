@@ -5,7 +5,7 @@ use super::regime::{Event, Regime};
 use super::sighting::Library;
 use crate::estimation::{DifferenceNoise, KnownEffect};
 use crate::evidence::{Bank, INERTIA_SPREAD, SWITCH_SIZE};
-use crate::identify::change::{LawInUse, Prediction};
+use crate::identify::change::{LONGEST_ERROR, LawInUse, Prediction, false_alarm_level};
 use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
 use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition};
 use crate::identify::functional::WeakForm;
@@ -14,12 +14,10 @@ use crate::identify::segment::{MotionScales, Prior, Segment, WeakStart};
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// Hypotheses of a switch that are kept: each costs its share of every step.
 const HYPOTHESES: usize = 20;
-
-/// A segment with fewer samples than this is refined at the faster pace: its law is not yet linear within its std.
-pub(super) const YOUNG: u64 = 5000;
 
 /// Samples after which an unvalidated law is contested by the latest record alone, and the unit of how long that may
 /// take.
@@ -250,14 +248,26 @@ impl Tracker {
         self.segment.length(self.window.ready())
     }
 
-    /// Samples that the law in use was known from before this record.
-    pub(super) fn known_samples(&self) -> u64 {
-        self.regime.recognition().map_or(0, |recognition| recognition.samples)
+    /// Evidence that chance reaches once in the false-alarm interval, nats, were every sample a trial of its own.
+    pub(super) fn false_alarm_level(&self, settings: &Settings) -> f64 {
+        false_alarm_level(settings, self.window.pace())
     }
 
-    /// Whether the law in use explains its record down to the sensors' noise, and the record is long enough to tell.
+    /// Time in which the motion goes there and back, a natural period, or in which an error acts one way at most where
+    /// the law has no stiffness; as a part of its record. From 1 on it has not shown what the law lacks, or would be
+    /// with other coefficients. A law that came back has shown that before.
+    pub(super) fn youth(&self) -> f64 {
+        if self.regime.recognition().is_some() {
+            return 0.0;
+        }
+        let longest = LONGEST_ERROR * self.window.pace();
+        let first = self.window.sample(self.segment.start.max(self.window.oldest())).t;
+        longest.min(TAU * self.segment.scales.natural_time()) / (self.now() - first)
+    }
+
+    /// Whether the law explains its record down to the sensors' noise, and the record is long enough to tell.
     pub(super) fn explains(&self) -> bool {
-        !self.segment.fit.process_matters && self.record_length() + self.known_samples() >= YOUNG
+        !self.segment.fit.process_matters && self.youth() < 1.0
     }
 
     /// Whether the segment's law does not explain its record, where one before it did.

@@ -1,13 +1,12 @@
 //! What a sample does: the law in use is followed, the segment refined, coefficients that move are tracked.
 
 use super::recognition::TRIAL_BUDGET;
-use super::state::{Setup, Tracker, YOUNG};
+use super::state::{Setup, Tracker};
 use crate::evidence::Law;
-use crate::identify::change::{LONGEST_ERROR, SUSPENSE};
+use crate::identify::change::SUSPENSE;
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::validation::TRUSTED;
-use std::f64::consts::TAU;
 
 /// A hypothesis starts every so many samples.
 const SPAWN_EVERY: u64 = 2;
@@ -21,6 +20,9 @@ const LOOKS: usize = 3;
 /// Samples of refinement in a step, while tracking and while the fit has yet to converge: what a law that does not
 /// explain its record still gains by more runs is no better law.
 const BUDGET: [usize; 2] = [6, TRIAL_BUDGET];
+
+/// A segment with fewer samples than this is refined at the faster pace: its law is not yet linear within its std.
+const YOUNG: u64 = 5000;
 
 /// Once in so many samples it is asked which lengths of variation are too short for the motion.
 const REST_EVERY: u64 = 256;
@@ -155,17 +157,9 @@ impl Tracker {
         self.heed_run(setup);
     }
 
-    /// Whether the motion of the record is a natural period long, or longer than an error acts one way where the law
-    /// has no stiffness: before that an effect is not told from what the law would be with other coefficients.
-    fn has_gone_there_and_back(&self) -> bool {
-        let longest = LONGEST_ERROR * self.window.pace();
-        let first = self.window.sample(self.segment.start.max(self.window.oldest())).t;
-        self.now() - first > longest.min(TAU * self.segment.scales.natural_time())
-    }
-
     /// What the run that has just closed says is made known, and taken into use where it is worth it.
     fn heed_run(&mut self, setup: Setup) {
-        self.published.missing = self.segment.missing.filter(|_| self.has_gone_there_and_back());
+        self.published.missing = self.segment.missing.filter(|_| self.youth() < 1.0);
         let contradicted = self.monitor.law.running && self.segment.contradicts(&self.monitor.law.all);
         let since = self.history.contradicted_since.unwrap_or(self.segment.closed_at());
         self.history.contradicted_since = contradicted.then_some(since);

@@ -15,9 +15,9 @@ const PLAUSIBLE: f64 = 2.0;
 impl Tracker {
     /// Alarm, suspicion, or neither.
     pub(super) fn judge(&mut self, setup: Setup, suspect: &Suspect) {
-        let decision = self.decision(suspect);
+        let decision = self.decision();
+        let threshold = decision.threshold(setup.settings, self.window.pace());
         let monitor = &mut self.monitor;
-        let threshold = decision.threshold(setup.settings);
         let end = self.window.end();
         let unusual = suspect.evidence > decision.unusual(threshold);
         monitor.unusual_since = unusual.then(|| monitor.unusual_since.unwrap_or(end));
@@ -70,16 +70,16 @@ impl Tracker {
     }
 
     /// What the law in use has to its credit.
-    fn decision(&self, suspect: &Suspect) -> Decision {
+    fn decision(&self) -> Decision {
         // what the segment leaves tells more than the law in use did when it began; not where one like it explained its
         // record: a switch may be in this one already
         let lately = if self.history.explained { 1.0 } else { self.segment.fit.overdispersion };
         let overdispersion = self.monitor.law.overdispersion.max(lately);
         Decision {
-            samples: self.segment.length(suspect.start) + self.known_samples(),
             overdispersion,
             proven: self.regime.is_valid() || self.monitor.law.proven,
             explains: self.explains(),
+            youth: self.youth(),
         }
     }
 

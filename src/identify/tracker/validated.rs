@@ -1,7 +1,7 @@
 //! What a segment makes known, once its law is worth showing.
 
 use super::regime::{Event, Validated};
-use super::state::{Setup, Tracker, YOUNG};
+use super::state::{Setup, Tracker};
 use crate::identify::problem::Problem;
 
 impl Tracker {
@@ -70,7 +70,7 @@ impl Tracker {
         let length = self.record_length();
         let first = self.regime.identified_time().is_none();
         // a law that explained its record and does not any more says nothing against it: the record has changed
-        if length >= YOUNG && (self.segment.fit.explains || first) {
+        if self.youth() < 1.0 && (self.segment.fit.explains || first) {
             self.history.explained = self.segment.fit.explains;
         }
         if first {
