@@ -36,7 +36,7 @@ impl Decision {
     pub fn caution(&self) -> f64 {
         // before the motion has gone there and back, what speaks for a switch may be what the law lacks, or what its
         // linearisation leaves
-        let caution = self.overdispersion * (1.0 + self.youth);
+        let caution = self.overdispersion * (1.0 + self.youth * self.youth);
         if self.proven { caution } else { UNPROVEN * caution }
     }
 

@@ -5,7 +5,7 @@ use super::regime::{Event, Regime};
 use super::sighting::Library;
 use crate::estimation::{DifferenceNoise, KnownEffect};
 use crate::evidence::{Bank, INERTIA_SPREAD, SWITCH_SIZE};
-use crate::identify::change::{LONGEST_ERROR, LawInUse, Prediction, false_alarm_level};
+use crate::identify::change::{LawInUse, Prediction, false_alarm_level};
 use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
 use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition};
 use crate::identify::functional::WeakForm;
@@ -18,6 +18,10 @@ use std::f64::consts::TAU;
 
 /// Hypotheses of a switch that are kept: each costs its share of every step.
 const HYPOTHESES: usize = 20;
+
+/// A segment with fewer samples than this is young, and refined at the faster pace: its law is not linear within its
+/// std yet.
+pub(super) const YOUNG: u64 = 5000;
 
 /// Samples after which an unvalidated law is contested by the latest record alone, and the unit of how long that may
 /// take.
@@ -253,21 +257,22 @@ impl Tracker {
         false_alarm_level(settings, self.window.pace())
     }
 
-    /// Time in which the motion goes there and back, a natural period, or in which an error acts one way at most where
-    /// the law has no stiffness; as a part of its record. From 1 on it has not shown what the law lacks, or would be
-    /// with other coefficients. A law that came back has shown that before.
-    pub(super) fn youth(&self) -> f64 {
-        if self.regime.recognition().is_some() {
-            return 0.0;
-        }
-        let longest = LONGEST_ERROR * self.window.pace();
+    /// Time in which the motion goes there and back, a natural period, as a part of the record; so many samples where
+    /// the law has hardly a stiffness. From 1 on it has not shown what the law lacks, or would be with others of its
+    /// coefficients.
+    pub(super) fn there_and_back(&self, longest: f64) -> f64 {
         let first = self.window.sample(self.segment.start.max(self.window.oldest())).t;
-        longest.min(TAU * self.segment.scales.natural_time()) / (self.now() - first)
+        (longest * self.window.pace()).min(TAU * self.segment.scales.natural_time()) / (self.now() - first)
     }
 
-    /// Whether the law explains its record down to the sensors' noise, and the record is long enough to tell.
+    /// The same of the record that the law in use is known from; 0 of a law that came back.
+    pub(super) fn youth(&self) -> f64 {
+        if self.regime.recognition().is_some() { 0.0 } else { self.there_and_back(YOUNG as f64) }
+    }
+
+    /// Whether the law explains its record down to the sensors' noise, and what it explains has repeated itself.
     pub(super) fn explains(&self) -> bool {
-        !self.segment.fit.process_matters && self.youth() < 1.0
+        !self.segment.fit.process_matters && self.youth() < 0.5
     }
 
     /// Whether the segment's law does not explain its record, where one before it did.

@@ -1,9 +1,9 @@
 //! What a sample does: the law in use is followed, the segment refined, coefficients that move are tracked.
 
 use super::recognition::TRIAL_BUDGET;
-use super::state::{Setup, Tracker};
+use super::state::{Setup, Tracker, YOUNG};
 use crate::evidence::Law;
-use crate::identify::change::SUSPENSE;
+use crate::identify::change::{LONGEST_ERROR, SUSPENSE};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::validation::TRUSTED;
@@ -20,9 +20,6 @@ const LOOKS: usize = 3;
 /// Samples of refinement in a step, while tracking and while the fit has yet to converge: what a law that does not
 /// explain its record still gains by more runs is no better law.
 const BUDGET: [usize; 2] = [6, TRIAL_BUDGET];
-
-/// A segment with fewer samples than this is refined at the faster pace: its law is not yet linear within its std.
-const YOUNG: u64 = 5000;
 
 /// Once in so many samples it is asked which lengths of variation are too short for the motion.
 const REST_EVERY: u64 = 256;
@@ -159,7 +156,7 @@ impl Tracker {
 
     /// What the run that has just closed says is made known, and taken into use where it is worth it.
     fn heed_run(&mut self, setup: Setup) {
-        self.published.missing = self.segment.missing.filter(|_| self.youth() < 1.0);
+        self.published.missing = self.segment.missing.filter(|_| self.there_and_back(LONGEST_ERROR) < 1.0);
         let contradicted = self.monitor.law.running && self.segment.contradicts(&self.monitor.law.all);
         let since = self.history.contradicted_since.unwrap_or(self.segment.closed_at());
         self.history.contradicted_since = contradicted.then_some(since);
