@@ -270,9 +270,9 @@ impl Tracker {
         if self.regime.recognition().is_some() { 0.0 } else { self.there_and_back(YOUNG as f64) }
     }
 
-    /// Whether the law explains its record down to the sensors' noise, and what it explains has repeated itself.
+    /// Whether the law explains its record down to the sensors' noise, and that is long enough to tell.
     pub(super) fn explains(&self) -> bool {
-        !self.segment.fit.process_matters && self.youth() < 0.5
+        !self.segment.fit.process_matters && self.youth() < 1.0
     }
 
     /// Whether the segment's law does not explain its record, where one before it did.
