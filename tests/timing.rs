@@ -116,6 +116,17 @@ fn a_wrong_hold_at_coarse_steps_hides_no_switch() {
     }
 }
 
+/// A law of 20 s is seven periods long, whether these are 20 000 samples or 400.
+#[test]
+fn a_law_known_from_few_samples_of_many_periods_is_left_as_soon_as_any() {
+    for (library, seed, every) in [(true, 9902, 20), (false, 9902, 50), (true, 9902, 50)] {
+        let coarse = |samples: &[Sample]| samples.iter().step_by(every).copied().collect();
+        let identifier = with_a_switch(Builtin::DuffingSine, library, seed, coarse);
+        let output = identifier.output();
+        assert!(output.switch_count == 1 && output.detection_time.unwrap() < 22.0, "{every} ms: {output:?}");
+    }
+}
+
 #[test]
 fn a_motion_that_comes_late_under_one_sine_is_no_switch_and_hides_none() {
     let late = |samples: &[Sample]| {
