@@ -2,6 +2,7 @@
 
 use switchid::identify::{Identifier, Sample, SensorState, Settings};
 use switchid::law::{Given, Hold, Model};
+use switchid::limits::SETTLED_ERROR;
 use switchid::simulate::{Builtin, Scenario, record};
 
 /// Std of the sensors' noise.
@@ -85,6 +86,36 @@ fn a_law_has_honest_stds_before_a_lag_is_told_and_stays_valid_when_it_is() {
             worst = off.map(|(known, truth)| (known.value - truth).abs() / known.std.unwrap()).fold(worst, f64::max);
         }
         assert!(worst < BEYOND && valid > 500, "{seed}: {worst} std, valid in {valid}");
+    }
+}
+
+/// What chance leaves of a law just found, and a hold said wrongly, lasts for tens of samples: no time where these are
+/// frequent, a second where they are rare.
+#[test]
+fn a_law_of_few_samples_is_not_valid_before_it_is_right() {
+    let builtin = Builtin::DuffingSine;
+    for (library, seed, every) in
+        [(false, 9920, 2), (false, 9924, 5), (false, 9928, 10), (true, 9925, 10), (true, 9912, 20)]
+    {
+        let given = Model::of("plant", builtin.terms().into_iter().map(|term| (term, Given::Fit)));
+        let model = if library { Model::cubic_library() } else { given };
+        let scenario = scenario(builtin, seed, 1e-3);
+        let truth = |term| {
+            scenario.terms.iter().position(|own| *own == term).map_or(0.0, |i| scenario.stages[0].coefficients[i])
+        };
+        let mut identifier = Identifier::new(&model, Settings::default()).unwrap();
+        let mut valid = 0;
+        for sample in samples(&scenario).iter().step_by(every) {
+            identifier.step(*sample).unwrap();
+            if identifier.output().valid {
+                let known = identifier.coefficients().iter();
+                let wrong: f64 = known.map(|known| (known.value - truth(known.term)).powi(2)).sum();
+                let squares: f64 = scenario.stages[0].coefficients.iter().map(|value| value * value).sum();
+                assert!(wrong < SETTLED_ERROR * squares, "{seed}: e {} at {}", wrong / squares, sample.t);
+                valid += 1;
+            }
+        }
+        assert!(valid > 12_000 / every, "{seed}: valid for {valid} samples");
     }
 }
 

@@ -121,7 +121,7 @@ pub struct Output {
     pub switch_time_std: Option<f64>,
     /// Time of the alarm that ended the last stage, s; `None` in the first one.
     pub detection_time: Option<f64>,
-    /// First time at which the present law was validated (stated covariance puts e below 0.05²), s.
+    /// First time at which the present law was valid (its stated covariance puts e below 0.05², by three stds), s.
     pub identified_time: Option<f64>,
     /// Number of the law in use among those that were validated, 1 for the first of all; `None` while there is none.
     pub law_number: Option<u32>,

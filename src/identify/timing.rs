@@ -64,7 +64,7 @@ impl Timing {
     /// What else F does by such a record: a hold or a late channel where one stands out from the others, else a lag of
     /// its own.
     fn likeliest(&self, found: &Lag) -> Rival {
-        let [mut apart @ .., own] = self.rivals(found);
+        let [mut apart @ .., own] = self.rivals(found, TWENTY_TO_ONE);
         apart.sort_unstable_by(|a, b| b.odds.total_cmp(&a.odds));
         let stands_out = apart[0].odds > own.odds && apart[0].odds - apart[1].odds > TWENTY_TO_ONE;
         if stands_out { apart[0] } else { own }
@@ -72,36 +72,46 @@ impl Timing {
 
     /// Log-odds by a record that F acts at another time than is assumed, nats.
     pub fn odds(&self, found: &Lag) -> f64 {
-        self.rivals(found).iter().map(|rival| rival.odds).fold(f64::NEG_INFINITY, log_sum)
+        self.rivals(found, TWENTY_TO_ONE).iter().map(|rival| rival.odds).fold(f64::NEG_INFINITY, log_sum)
     }
 
     /// Mean square of the lag beyond what is assumed that a record saying `found` leaves open, in squares of a sample.
     pub fn left_open(&self, found: &Lag) -> f64 {
+        self.open(found, TWENTY_TO_ONE)
+    }
+
+    /// The same were what is assumed no likelier than anything else: what the record alone tells.
+    pub fn left_open_by_record(&self, found: &Lag) -> f64 {
+        self.open(found, 0.0)
+    }
+
+    fn open(&self, found: &Lag, price: f64) -> f64 {
         if self.hold == Hold::BandLimited {
             return 0.0;
         }
         if self.std > 0.0 {
             return self.own(found, self.std).square();
         }
-        let rivals = self.rivals(found);
+        let rivals = self.rivals(found, price);
         let most = rivals.iter().map(|rival| rival.odds).fold(0.0, f64::max);
         let share = |odds: f64| (odds - most).exp();
         let all = share(0.0) + rivals.iter().map(|rival| share(rival.odds)).sum::<f64>();
         rivals.iter().map(|rival| share(rival.odds) * rival.square()).sum::<f64>() / all
     }
 
-    /// What else F may do by a record that says `found`. What is assumed is right at odds of twenty to one against a
+    /// What else F may do by a record that says `found`. What is assumed is right at odds of `price` nats against a
     /// hold or channels that come late, which are multiples of half a sample, and these at as much against a lag of any
     /// size; both are normal about it.
-    fn rivals(&self, found: &Lag) -> [Rival; RIVALS] {
+    fn rivals(&self, found: &Lag, price: f64) -> [Rival; RIVALS] {
         let found = &found.blurred(EXACT);
         let moves: [f64; RIVALS - 1] = std::array::from_fn(|place| EARLIEST + 0.5 * place as f64 - self.late());
         let apart = |moved: f64| if moved == 0.0 { f64::NEG_INFINITY } else { -0.5 * (moved / UNTOLD).powi(2) };
         let all = moves.into_iter().map(apart).fold(f64::NEG_INFINITY, log_sum);
         let own = self.own(found, UNTOLD);
+        let own = Rival { odds: own.odds - 2.0 * price, ..own };
         std::array::from_fn(|place| match moves.get(place) {
             Some(&moved) => {
-                let odds = apart(moved) - all + found.evidence_of(moved) - TWENTY_TO_ONE;
+                let odds = apart(moved) - all + found.evidence_of(moved) - price;
                 Rival { moved, std: 0.0, odds }
             }
             None => own,
@@ -113,7 +123,7 @@ impl Timing {
         let variance = (found.std.powi(-2) + prior.powi(-2)).recip();
         let moved = variance * found.std.powi(-2) * found.samples;
         let misfit = 0.5 * found.samples * found.samples / (found.std * found.std + prior * prior);
-        let odds = found.evidence - misfit + (variance.sqrt() / prior).ln() - 2.0 * TWENTY_TO_ONE;
+        let odds = found.evidence - misfit + (variance.sqrt() / prior).ln();
         Rival { moved, std: variance.sqrt(), odds }
     }
 
@@ -229,6 +239,9 @@ mod tests {
         assert!(near(held.left_open(&Lag::UNKNOWN), 0.0196), "{}", held.left_open(&Lag::UNKNOWN));
         assert!(near(held.left_open(&found(0.3)), 0.09), "{}", held.left_open(&found(0.3)));
         assert!(held.left_open(&found(0.0)) < 1e-6, "{}", held.left_open(&found(0.0)));
+        assert!(near(held.left_open_by_record(&Lag::UNKNOWN), 0.2169), "{}", held.left_open_by_record(&Lag::UNKNOWN));
+        let little = Lag::of(-0.13, 0.26);
+        assert!(held.left_open_by_record(&little) > 10.0 * held.left_open(&little), "the prior alone rules it out");
         let told = held.corrected(&found(-0.25), 1000).unwrap();
         assert!(near(told.left_open(&Lag::UNKNOWN), 0.02 * 0.02 + EXACT * EXACT));
     }

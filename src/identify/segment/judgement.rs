@@ -3,7 +3,7 @@
 use super::convergence::Record;
 use super::state::Segment;
 use crate::estimation::TWENTY_TO_ONE;
-use crate::identify::validation::{Evidence, Stability, VALIDATED, is_one_law};
+use crate::identify::validation::{Evidence, SURE, Stability, VALIDATED, is_one_law};
 
 /// Largest Gauss–Newton decrement, in units of the number of coefficients, of an estimate that has settled: a step of
 /// one std in each of them, which is what the record leaves open.
@@ -95,7 +95,7 @@ impl Segment {
             information: &self.run.filter_run.information,
             active: &self.active,
             solution: &self.solution,
-            allowed: VALIDATED * squares / self.fit.overdispersion,
+            allowed: SURE * squares / self.fit.overdispersion,
             trial: (!self.stands()).then_some(begun),
             growth: Stability::growth(self.fit.explains),
         };

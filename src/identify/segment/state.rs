@@ -308,6 +308,19 @@ impl Segment {
         active.map(|index| self.std(index).powi(2)).sum::<f64>() / squares
     }
 
+    /// Variance of the same kind that no std holds: what the record alone leaves open of when F acted, beyond what is
+    /// open where what is assumed is the likelier.
+    pub fn untold_error(&self, problem: &Problem) -> f64 {
+        let timing = &self.timing;
+        self.error_of_lag((problem.timing.left_open_by_record(&timing.lag) - timing.open).max(0.0))
+    }
+
+    /// What a lag of that square, in squares of a sample, makes of e.
+    pub fn error_of_lag(&self, square: f64) -> f64 {
+        let squares = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
+        square * squares(&self.timing.slope) / squares(self.own())
+    }
+
     /// The law as the library keeps it.
     pub fn estimate(&self) -> Estimate<'_> {
         Estimate {

@@ -84,7 +84,7 @@ impl Tracker {
             let drift = &self.augmented_drift;
             self.published.set(setup.problem, |free, _| Some(drift.coefficient(free)));
             let known = drift.stated_error() < TRUSTED;
-            self.enter(Event::DriftValidated(known, self.now()));
+            self.enter(Event::DriftValidated(known));
             match (self.is_resting(), self.augmented_drift.rests_since()) {
                 (true, None) => self.enter(Event::DriftRests(false)),
                 (false, Some(since)) => self.seek_rest(since),
@@ -169,6 +169,6 @@ impl Tracker {
         }
         let drift = &self.weak_row_drift;
         let known = physical && drift.predicts() && drift.whole_error() < TRUSTED;
-        self.enter(Event::DriftValidated(known, self.now()));
+        self.enter(Event::DriftValidated(known));
     }
 }

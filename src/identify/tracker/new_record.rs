@@ -7,6 +7,7 @@ use crate::evidence::SWITCH_SIZE;
 use crate::identify::problem::Problem;
 use crate::identify::segment::NOISE_MEMORY;
 use crate::identify::timing::Timing;
+use crate::identify::validation::SURE;
 
 /// The prior of a new law is this much wider than the switch that is looked for.
 pub(super) const PRIOR_WIDTH: f64 = 3.0;
@@ -65,6 +66,10 @@ impl Tracker {
 
     /// F acts so many samples later than was assumed: the laws move along, and the record is fitted anew.
     fn begin_under_another_timing(&mut self, problem: &Problem, later: f64) {
+        // what moves along is linear over a short way only
+        if self.segment.stated_error() + self.segment.error_of_lag(later * later) > SURE {
+            self.published.identified = None;
+        }
         self.segment.begin_later(problem, &self.window, later);
         self.monitor.law.begin_later(problem, &self.segment.timing.slope, later);
         self.monitor.bank.clear();

@@ -17,6 +17,8 @@ pub(super) struct Published {
     /// The effect that the law lacks most.
     pub(super) missing: Option<Missing>,
     pub(super) switches: Switches,
+    /// Since when the present law is valid, s.
+    pub(super) identified: Option<f64>,
 }
 
 /// The switches so far.
@@ -42,12 +44,19 @@ impl Published {
             noise_by_law: false,
             missing: None,
             switches: Switches::default(),
+            identified: None,
         }
     }
 
     /// Free coefficients are not known any more.
     pub(super) fn forget_stds(&mut self, problem: &Problem) {
         problem.free.iter().for_each(|index| self.coefficients[*index].std = None);
+    }
+
+    /// The variance that is stated for e of eq. (8), relative: Σ std² ÷ Σθ²; infinite where an std is not known.
+    pub(super) fn stated_error(&self) -> f64 {
+        let sum = |square: fn(&Coefficient) -> f64| self.coefficients.iter().map(square).sum::<f64>();
+        sum(|known| known.std.map_or(f64::INFINITY, |std| std * std)) / sum(|known| known.value * known.value)
     }
 
     /// Makes known what was given, and each free coefficient's value and std as `free` says of it and its present

@@ -4,7 +4,7 @@
 //! law is weighed by it at once. Where that does not decide, the laws go on trial over the record since the segment's
 //! start.
 
-use super::regime::{Event, PostAlarm, Recognition, Validated};
+use super::regime::{Event, PostAlarm, Recognition};
 use super::state::{Fitting, Setup, Tracker};
 use crate::identify::library::{ROOM, SavedLaw, SavedLaws, SavedLawsError, Verdict, Weighed};
 use crate::identify::problem::Problem;
@@ -29,7 +29,7 @@ impl Tracker {
     /// law that was in use until then: it carries the state over the switch, which the new record alone does not know.
     pub(super) fn post_alarm(&mut self, since: u64) -> Option<PostAlarm> {
         let end = self.window.ready();
-        let left = self.regime.law().map(|law| law.number);
+        let left = self.regime.law();
         let others = self.library.known.laws().iter().any(|law| Some(law.number) != left);
         if !others {
             self.monitor.bank.clear();
@@ -143,8 +143,8 @@ impl Tracker {
             let doubt = library.recognition_std(Some(recognition), free, value, spread[free]);
             Some((value, law.variance(free).sqrt().hypot(doubt)))
         });
-        let law = Validated { number: law.number, since: self.now() };
-        self.enter(Event::LawRecognised(law, recognition));
+        let number = law.number;
+        self.enter(Event::LawRecognised(number, recognition));
         self.run_recognised(problem);
     }
 
@@ -239,11 +239,11 @@ impl Tracker {
         let recognised = self.regime.recognition().is_some();
         let known_better = !recognised || self.segment.settled();
         let exact = self.segment.runs.closed > 0 && self.segment.stated_error() < VALIDATED;
-        if let Some(law) = self.regime.law().filter(|_| exact && known_better) {
+        if let Some(number) = self.regime.law().filter(|_| exact && known_better) {
             self.set_spread(problem);
             let samples = self.record_length();
             let Tracker { library, segment, belief, .. } = self;
-            library.known.keep(law.number, &segment.estimate(), samples, &belief.spread, recognised);
+            library.known.keep(number, &segment.estimate(), samples, &belief.spread, recognised);
         }
     }
 

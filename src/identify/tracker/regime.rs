@@ -1,7 +1,7 @@
 //! Where the identification stands: every regime, every transition between them, and the event that guards it.
 //!
 //! A regime holds what only it has. [`Regime::after`] is the only place where one follows another; what the caller sees
-//! (`status`, `valid`, `drifting`, `law.number`, `identified_time`) is derived from the regime by the methods below and
+//! (`status`, `drifting`, and beside what is published `valid`) is derived from the regime by the methods below and
 //! is read by nothing that estimates.
 
 use crate::identify::library::Mixture;
@@ -15,8 +15,8 @@ pub(super) enum Regime {
     Acquiring,
     /// A law is validated.
     Tracking {
-        /// The law.
-        law: Validated,
+        /// Its number among all that were validated.
+        law: u32,
         /// Which known law it is, where it was recognised as one and not identified from the record.
         recognition: Option<Recognition>,
         /// Whether evidence of a switch is growing.
@@ -32,15 +32,6 @@ pub(super) enum Regime {
         /// How, and how well.
         drift: Followed,
     },
-}
-
-/// A law that is validated.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Validated {
-    /// Its number among all that were validated.
-    pub(super) number: u32,
-    /// Since when it is, s.
-    pub(super) since: f64,
 }
 
 /// A known law in use.
@@ -70,8 +61,6 @@ pub(super) struct Followed {
     pub(super) resting: bool,
     /// Whether they are known well enough to be validated.
     pub(super) known: bool,
-    /// Since when a law of this segment, constant or not, is validated, s.
-    pub(super) since: Option<f64>,
 }
 
 /// What follows coefficients that move.
@@ -88,9 +77,9 @@ pub(super) enum Follower {
 pub(super) enum Event {
     /// The segment's law states e below the bound, stands its stability check, and has an inertia that a motion can
     /// have.
-    LawValidated(Validated),
+    LawValidated(u32),
     /// A known law stands out from every other one, on trial or by the hypotheses of a switch.
-    LawRecognised(Validated, Recognition),
+    LawRecognised(u32, Recognition),
     /// The trial of the recognised law says how likely others are; with none it singles that law out.
     RecognitionWeighed(Option<Mixture>),
     /// The record speaks against the recognised law; whether a law was in use before it.
@@ -113,12 +102,20 @@ pub(super) enum Event {
     StateLost,
     /// Coefficients that wander explain the record better than constant ones or one switch.
     DriftFound(Follower),
-    /// The coefficients that are followed are known well enough (true), or not any more (false), at this time, s.
-    DriftValidated(bool, f64),
+    /// The coefficients that are followed are known well enough (true), or not any more (false).
+    DriftValidated(bool),
     /// The coefficients that are followed have come to rest (true), or move again (false).
     DriftRests(bool),
     /// The filters that followed the drift have lost it.
     DriftLost,
+}
+
+impl Event {
+    /// Whether what was valid has been left.
+    pub(super) fn ends_law(&self) -> bool {
+        use Event::*;
+        matches!(self, RecognitionRefuted { .. } | SwitchFound(_) | LawRefuted | StateLost | DriftLost)
+    }
 }
 
 impl Regime {
@@ -128,11 +125,7 @@ impl Regime {
         use Event::*;
         use Regime::*;
         match (self, event) {
-            (Acquiring | ReIdentifying { .. }, LawValidated(law)) => Regime::in_use(law, None),
-            (Drifting { drift }, LawValidated(law)) => {
-                Regime::in_use(Validated { since: drift.since.unwrap_or(law.since), ..law }, None)
-            }
-
+            (Acquiring | ReIdentifying { .. } | Drifting { .. }, LawValidated(law)) => Regime::in_use(law, None),
             (Acquiring | ReIdentifying { .. } | Drifting { .. }, LawRecognised(law, recognition)) => {
                 Regime::in_use(law, Some(recognition))
             }
@@ -150,21 +143,15 @@ impl Regime {
             (Tracking { law, recognition, .. }, SuspicionCleared) => Tracking { law, recognition, suspected: false },
 
             (Drifting { drift }, SwitchFound(_) | LawRefuted | StateLost) => {
-                Drifting { drift: Followed { known: false, since: None, ..drift } }
+                Drifting { drift: Followed { known: false, ..drift } }
             }
             (_, SwitchFound(post_alarm)) => ReIdentifying { post_alarm },
             (ReIdentifying { .. }, PostAlarmEnded) => ReIdentifying { post_alarm: None },
             (_, LawRefuted) => ReIdentifying { post_alarm: None },
             (_, StateLost) => Acquiring,
 
-            (_, DriftFound(by)) => {
-                let (known, since) = (self.is_valid(), self.identified_time());
-                Drifting { drift: Followed { by, resting: false, known, since } }
-            }
-            (Drifting { drift }, DriftValidated(known, now)) => {
-                let since = drift.since.or(known.then_some(now));
-                Drifting { drift: Followed { known, since, ..drift } }
-            }
+            (_, DriftFound(by)) => Drifting { drift: Followed { by, resting: false, known: self.is_valid() } },
+            (Drifting { drift }, DriftValidated(known)) => Drifting { drift: Followed { known, ..drift } },
             (Drifting { drift }, DriftRests(resting)) => Drifting { drift: Followed { resting, ..drift } },
             (Drifting { .. }, DriftLost) => Acquiring,
             (regime, _) => regime,
@@ -172,7 +159,7 @@ impl Regime {
     }
 
     /// A law that has just been validated or recognised.
-    fn in_use(law: Validated, recognition: Option<Recognition>) -> Regime {
+    fn in_use(law: u32, recognition: Option<Recognition>) -> Regime {
         Regime::Tracking { law, recognition, suspected: false }
     }
 
@@ -210,17 +197,12 @@ impl Regime {
         self.followed().is_none_or(|drift| drift.resting)
     }
 
-    /// The constant law that is validated.
-    pub(super) fn law(&self) -> Option<Validated> {
+    /// The number of the constant law that is validated.
+    pub(super) fn law(&self) -> Option<u32> {
         match self {
             Regime::Tracking { law, .. } => Some(*law),
             Regime::Acquiring | Regime::ReIdentifying { .. } | Regime::Drifting { .. } => None,
         }
-    }
-
-    /// Since when a law of the present segment is validated, s.
-    pub(super) fn identified_time(&self) -> Option<f64> {
-        self.law().map(|law| law.since).or(self.followed().and_then(|drift| drift.since))
     }
 
     /// The known law in use, where one was recognised.
@@ -262,15 +244,15 @@ pub(super) fn letter(regime: Regime) -> char {
 mod tests {
     use super::*;
 
-    const LAW: Validated = Validated { number: 3, since: 2.0 };
+    const LAW: u32 = 3;
     const SWITCH: Event = Event::SwitchFound(Some(PostAlarm { until: 50, left: Some(3) }));
 
     fn recognition() -> Recognition {
         Recognition { place: 1, doubt: Some(Mixture::default()) }
     }
 
-    fn drifting(known: bool, since: Option<f64>) -> Regime {
-        Regime::Drifting { drift: Followed { by: Follower::WeakRows, resting: false, known, since } }
+    fn drifting(known: bool) -> Regime {
+        Regime::Drifting { drift: Followed { by: Follower::WeakRows, resting: false, known } }
     }
 
     fn regimes() -> [Regime; 7] {
@@ -281,7 +263,7 @@ mod tests {
             Regime::in_use(LAW, None).after(Event::SuspicionRaised),
             Regime::in_use(LAW, Some(recognition())).after(Event::SuspicionRaised),
             Regime::ReIdentifying { post_alarm: Some(PostAlarm { until: 50, left: Some(3) }) },
-            drifting(true, Some(2.0)),
+            drifting(true),
         ]
     }
 
@@ -300,8 +282,8 @@ mod tests {
             Event::LawRefuted,
             Event::StateLost,
             Event::DriftFound(Follower::AugmentedFilters),
-            Event::DriftValidated(true, 9.0),
-            Event::DriftValidated(false, 9.0),
+            Event::DriftValidated(true),
+            Event::DriftValidated(false),
             Event::DriftRests(true),
             Event::DriftLost,
         ]
@@ -335,8 +317,8 @@ mod tests {
     }
 
     #[test]
-    fn a_law_keeps_its_number_and_its_time_until_it_is_left() {
-        let later = Validated { number: 9, since: 7.0 };
+    fn a_law_keeps_its_number_until_it_is_left() {
+        let later = 9;
         let tracking = Regime::Acquiring.after(Event::LawValidated(LAW));
         let again = tracking
             .after(Event::SuspicionRaised)
@@ -360,13 +342,13 @@ mod tests {
     #[test]
     fn a_drift_is_tracked_as_long_as_it_is_known() {
         let drift = Regime::in_use(LAW, None).after(Event::DriftFound(Follower::WeakRows));
-        assert_eq!(drift, drifting(true, Some(2.0)));
-        let unknown = drift.after(Event::DriftValidated(false, 3.0));
+        assert_eq!(drift, drifting(true));
+        let unknown = drift.after(Event::DriftValidated(false));
         assert_eq!((unknown.status(), unknown.is_valid()), (Status::Acquiring, false));
-        assert_eq!(unknown.after(Event::DriftValidated(true, 4.0)).identified_time(), Some(2.0));
+        assert!(unknown.after(Event::DriftValidated(true)).is_valid());
         let rests = unknown.after(Event::DriftRests(true));
         assert!(rests.seeks_constant_law() && !unknown.seeks_constant_law());
-        assert_eq!(rests.after(Event::LawValidated(Validated { number: 4, since: 8.0 })).identified_time(), Some(2.0));
+        assert_eq!(rests.after(Event::LawValidated(4)).law(), Some(4));
     }
 
     #[test]

@@ -36,13 +36,13 @@ impl Tracker {
             switch_time: published.switches.time,
             switch_time_std: published.switches.time_std,
             detection_time: published.switches.detection_time,
-            identified_time: self.regime.identified_time(),
-            law_number: self.regime.law().map(|law| law.number),
+            identified_time: published.identified,
+            law_number: self.regime.law().filter(|_| published.identified.is_some()),
             recognised: self.regime.recognition().is_some(),
             sensors: self.sensors(),
             named_time: published.switches.named_time,
             status: self.status(),
-            valid: self.regime.is_valid(),
+            valid: self.regime.is_valid() && published.identified.is_some(),
             drifting: self.regime.is_drifting(),
             deviation: prediction.shown_deviation,
             threshold: prediction.shown_threshold,
@@ -58,7 +58,7 @@ impl Tracker {
     fn foretell(&mut self, problem: &Problem) {
         let coefficients = &mut self.published.coefficients;
         coefficients.iter_mut().for_each(|coefficient| coefficient.needed = coefficient.std.map(|_| 0.0));
-        if !self.regime.is_valid() {
+        if self.published.identified.is_none() {
             for (free, index) in problem.free.iter().enumerate() {
                 self.published.coefficients[*index].needed = self.needed(free, self.published.coefficients[*index].std);
             }

@@ -224,6 +224,16 @@ impl Tracker {
     /// Goes to the regime that follows.
     pub(super) fn enter(&mut self, event: Event) {
         self.regime = self.regime.after(event);
+        match event {
+            event if event.ends_law() => self.published.identified = None,
+            Event::LawRecognised(..) | Event::DriftValidated(true) => self.call_valid(),
+            _ => {}
+        }
+    }
+
+    /// The present law is valid from now on, where it has not been before.
+    pub(super) fn call_valid(&mut self) {
+        self.published.identified = self.published.identified.or(Some(self.now()));
     }
 
     /// Log-likelihood per measurement of the present segment; none before its first run.

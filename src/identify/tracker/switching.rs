@@ -149,7 +149,7 @@ impl Tracker {
 
     fn begin_trials_after_switch(&mut self, start: u64) {
         let sensor = self.monitor.law.noise.sensor.map(Some);
-        let left = self.regime.law().and_then(|law| self.library.known.position(law.number));
+        let left = self.regime.law().and_then(|number| self.library.known.position(number));
         let library = &mut self.library;
         library.trials.begin(&library.known, &self.window, start, sensor);
         library.trials.set_left(left);

@@ -1,8 +1,9 @@
 //! What a segment makes known, once its law is worth showing.
 
-use super::regime::{Event, Validated};
+use super::regime::Event;
 use super::state::{Setup, Tracker};
 use crate::identify::problem::Problem;
+use crate::identify::validation::SURE;
 
 impl Tracker {
     /// Makes the segment's law known; it is validated where it states that it is known well enough, and stands.
@@ -23,7 +24,17 @@ impl Tracker {
         self.publish_noise(problem);
         if validated {
             self.validate(setup);
+            if self.segment.settled() && self.is_sure(problem) {
+                self.call_valid();
+            }
         }
+    }
+
+    /// Whether e of what is published is below the bound beyond chance, whatever the record alone leaves open of when F
+    /// acted. What chance has left a longer record takes away, and is waited for; an error that lasts it does not.
+    fn is_sure(&self, problem: &Problem) -> bool {
+        let untold = self.segment.untold_error(problem);
+        self.segment.fit.overdispersion > 1.0 || self.published.stated_error() + untold < SURE
     }
 
     /// What the segment says of each coefficient.
@@ -58,17 +69,17 @@ impl Tracker {
             self.augmented_drift.end_trial(self.record_length());
         }
         let number = match self.regime.law() {
-            Some(law) => law.number,
+            Some(number) => number,
             None => self.number_law(setup.settings),
         };
         self.learn_from_validation();
-        self.enter(Event::LawValidated(Validated { number, since: self.now() }));
+        self.enter(Event::LawValidated(number));
     }
 
     /// How long a law takes to be validated, and whether it explains its record then.
     fn learn_from_validation(&mut self) {
         let length = self.record_length();
-        let first = self.regime.identified_time().is_none();
+        let first = !self.regime.is_valid();
         // a law that explained its record and does not any more says nothing against it: the record has changed
         if self.youth() < 1.0 && (self.segment.fit.explains || first) {
             self.history.explained = self.segment.fit.explains;

@@ -12,7 +12,7 @@ const GROWTH: f64 = 1.1;
 const LONGER_GROWTH: f64 = 1.25;
 
 /// A law that has stood for less than the longer growth must be this sure with all terms, as e of eq. (8).
-const SURE: f64 = 0.5 * TRUSTED;
+const WHOLE: f64 = 0.5 * TRUSTED;
 
 /// One with the terms of the law before must be known at least so well with all terms, as e of eq. (8).
 const OPEN: f64 = 1.0;
@@ -60,7 +60,7 @@ impl Stability {
     /// explains its record with the terms of the law before.
     pub fn stands(&self, evidence: &Evidence) -> bool {
         let grown = self.length as f64 / self.stood_from as f64;
-        let allowed = if grown < LONGER_GROWTH { SURE } else { TRUSTED };
+        let allowed = if grown < LONGER_GROWTH { WHOLE } else { TRUSTED };
         let sure = evidence.full_error < allowed;
         let long = grown >= LONG && self.length >= SAMPLES;
         let as_before = evidence.explains && evidence.as_before;
