@@ -194,17 +194,6 @@ impl Trials {
         self.verdict(count)
     }
 
-    /// Log-evidence, nats, that the law at `place` was never the record's, were it any other or one that differs from
-    /// it in one coefficient; nothing where it has not seen the record but for its last samples.
-    pub fn evidence_against(&self, place: usize, known: &mut KnownLaws, window: &Window) -> Option<f64> {
-        let trial = &self.trials[place];
-        let seen = self.running && !trial.out && trial.next + FEWEST >= window.ready();
-        seen.then(|| {
-            let weighed = known.weigh_left(place, &trial.pass.information);
-            weighed.any - weighed.known
-        })
-    }
-
     /// On the law that stands out.
     fn verdict(&self, count: usize) -> Option<Verdict> {
         let (place, _) = self.best(count, None)?;

@@ -60,11 +60,6 @@ impl Segment {
         self.start == other.start && is_one_law(self.own(), other.own())
     }
 
-    /// Whether the fit has come to rest, explains its record, and is another law than these coefficients make.
-    pub fn contradicts(&self, all: &[f64]) -> bool {
-        self.settled() && self.fit.explains && !is_one_law(self.own(), &all[..self.own().len()])
-    }
-
     /// Lets the law stand its stability check, once it has settled.
     pub(super) fn confirm(&mut self) {
         if self.settled() {

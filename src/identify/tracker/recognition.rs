@@ -192,15 +192,6 @@ impl Tracker {
         wrong.into_iter().for_each(|place| self.library.trials.rule_out(place));
     }
 
-    /// Whether the law in use was recognised and never was the record's: it has held for a shorter time than it has
-    /// been left by now, or against another law all the while there is no such evidence of a switch as an alarm asks.
-    /// `beyond` is by how much it passes the threshold.
-    pub(super) fn was_never_right(&mut self, instant: u64, now: u64, beyond: f64) -> bool {
-        let Some(Recognition { place, .. }) = self.regime.recognition() else { return false };
-        let against = self.library.trials.evidence_against(place, &mut self.library.known, &self.window);
-        self.segment.length(instant) < now - instant || against.is_some_and(|against| against > beyond)
-    }
-
     /// The number of the known law that the segment's is, or a new one.
     pub(super) fn number_law(&mut self, settings: &Settings) -> u32 {
         let level = ON_TRIAL * self.false_alarm_level(settings);

@@ -147,8 +147,6 @@ pub(super) struct History {
     pub(super) refuted_at: u64,
     /// Runs in a row after which the segment seemed to hold several laws.
     pub(super) mixed_runs: u32,
-    /// Since which sample the segment's record has been explained by another law than the one in use, run by run.
-    pub(super) contradicted_since: Option<u64>,
 }
 
 impl ChangeBelief {

@@ -157,9 +157,6 @@ impl Tracker {
     /// What the run that has just closed says is made known, and taken into use where it is worth it.
     fn heed_run(&mut self, setup: Setup) {
         self.published.missing = self.segment.missing.filter(|_| self.there_and_back(LONGEST_ERROR) < 1.0);
-        let contradicted = self.monitor.law.running && self.segment.contradicts(&self.monitor.law.all);
-        let since = self.history.contradicted_since.unwrap_or(self.segment.closed_at());
-        self.history.contradicted_since = contradicted.then_some(since);
         let mixed = self.is_mixed();
         let trusted = self.segment.settled() && self.segment.stated_error() < TRUSTED && !mixed;
         self.make_known(setup, trusted);

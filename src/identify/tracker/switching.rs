@@ -83,20 +83,6 @@ impl Tracker {
         }
     }
 
-    /// Whether another law, known by now, explains all of the record, and did so when the law in use had not been left
-    /// yet.
-    fn is_superseded(&self, instant: u64) -> bool {
-        self.segment.is_validated() && self.history.contradicted_since.is_some_and(|since| since < instant)
-    }
-
-    /// The law in use never was the record's: the one that is comes into use with its next run. What spoke against the
-    /// one before says nothing of a switch.
-    fn supersede(&mut self) {
-        self.monitor.stop();
-        self.monitor.bank.clear();
-        self.refute_law();
-    }
-
     /// Ends the segment; only data from after the switch enters the new law.
     fn switch(&mut self, problem: &Problem, suspect: &Suspect, threshold: f64) {
         let bank = &mut self.monitor.bank;
@@ -107,11 +93,8 @@ impl Tracker {
         let start = (self.monitor.bank.after(&suspect, threshold) + 1).min(last);
         let time = |number: u64| self.window.sample(number).t;
         let distance = self.monitor.bank.distance_of_switch(time(instant), self.now(), time);
-        if self.regime.is_unconfirmed() || self.was_never_right(instant, last, suspect.evidence - threshold) {
+        if self.regime.is_unconfirmed() {
             return self.take_back(problem);
-        }
-        if self.is_superseded(instant) {
-            return self.supersede();
         }
         self.intake.after_outage.end();
         self.keep_law(problem);
