@@ -173,6 +173,20 @@ fn a_stuck_sensor_is_no_switch_and_is_said_to_be_stuck() {
     assert!(seen.said(1).contains(&SensorState::Stuck) && seen.said(1).last() == Some(&SensorState::Ok), "{seen:?}");
 }
 
+/// Where the velocity turns the law expects it to stand: what stands still beside its noise is stuck.
+#[test]
+fn a_sensor_stuck_where_the_motion_turns_is_no_switch() {
+    for seed in 40..46 {
+        let (scenario, mut samples) = steady(seed);
+        let turn = (FIRST..FIRST + 1500).max_by(|a, b| samples[*a].qd.total_cmp(&samples[*b].qd)).unwrap();
+        let stuck = samples[turn].qd;
+        samples[turn..turn + 300].iter_mut().for_each(|sample| sample.qd = stuck);
+        let seen = watch(&scenario, Builtin::DuffingSine, &samples);
+        assert!(seen.switches == 0 && seen.valid_at_the_end, "{seed}: {seen:?}");
+        assert!(seen.said(1).contains(&SensorState::Stuck), "{seed}: {seen:?}");
+    }
+}
+
 #[test]
 fn samples_that_are_no_numbers_end_what_is_valid_until_they_are() {
     let builtin = Builtin::DuffingSine;

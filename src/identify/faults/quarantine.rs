@@ -205,13 +205,15 @@ impl Quarantine {
         self.sensors
     }
 
-    /// What q and q̇ have moved by at least since the sample before, by the law.
+    /// What the readings of q and q̇ differ by at least since the sample before, by the law: by how they have moved or by
+    /// their noise.
     fn course(&self, law: &Expected, filter: Filter, before: Sample, reading: Reading) -> [f64; 2] {
         let filter = if self.count == 0 { filter } else { self.weighing.hypothesis(0).filter() };
         let dt = reading.sample.t - before.t;
         let qdd = law.motion.acceleration(State { q: filter.mean[0], qd: filter.mean[1] }, before.excitation);
         let speed = filter.mean[1].abs() - OUTLYING * filter.covariance[1][1].sqrt();
-        [speed * dt, qdd.abs() * dt - OUTLYING * (law.noise.process * dt).sqrt()]
+        let moved = [speed * dt, qdd.abs() * dt - OUTLYING * (law.noise.process * dt).sqrt()];
+        [0, 1].map(|index| moved[index].max(law.noise.sensor[index].sqrt()))
     }
 
     fn arrival(
