@@ -205,8 +205,8 @@ impl Quarantine {
         self.sensors
     }
 
-    /// What the readings of q and q̇ differ by at least since the sample before, by the law: by how they have moved or by
-    /// their noise.
+    /// What the readings of q and q̇ differ by at least since the sample before, by the law: by how they have moved or
+    /// by their noise.
     fn course(&self, law: &Expected, filter: Filter, before: Sample, reading: Reading) -> [f64; 2] {
         let filter = if self.count == 0 { filter } else { self.weighing.hypothesis(0).filter() };
         let dt = reading.sample.t - before.t;

@@ -22,8 +22,8 @@ pub struct Repetition {
 
 impl Repetition {
     /// Takes a reading; returns −ln of how often the channel repeats a value, nats, where this one does and that is
-    /// rare. `course` is what the channel's readings differ by at least, as far as is known: one that moves and scatters
-    /// by less than its resolution repeats itself, and that says nothing.
+    /// rare. `course` is what the channel's readings differ by at least, as far as is known: one that moves and
+    /// scatters by less than its resolution repeats itself, and that says nothing.
     pub fn take(&mut self, value: f64, course: f64) -> Option<f64> {
         let step = self.last.replace(value).map(|last| (value - last).abs());
         let repeats = step == Some(0.0);
