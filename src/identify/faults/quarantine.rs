@@ -134,7 +134,8 @@ impl Quarantine {
             let repeats = reading.sample.q == before.q || reading.sample.qd == before.qd;
             let known = law.filter(|_| repeats);
             let course = known.map_or([f64::INFINITY; 2], |(law, filter)| self.course(&law, filter, before, reading));
-            self.arrival(reading, &before, measured, hold, course)
+            let scatter = known.map_or([0.0; 2], |(law, _)| law.noise.sensor.map(f64::sqrt));
+            self.arrival(reading, &before, measured, hold, course, scatter)
         });
         match (law, arrival) {
             (Some((law, filter)), Some(arrival)) if arrival.dt < GAP * pace => {
@@ -205,15 +206,13 @@ impl Quarantine {
         self.sensors
     }
 
-    /// What the readings of q and q̇ differ by at least since the sample before, by the law: by how they have moved or
-    /// by their noise.
+    /// What q and q̇ have moved by at least since the sample before, by the law.
     fn course(&self, law: &Expected, filter: Filter, before: Sample, reading: Reading) -> [f64; 2] {
         let filter = if self.count == 0 { filter } else { self.weighing.hypothesis(0).filter() };
         let dt = reading.sample.t - before.t;
         let qdd = law.motion.acceleration(State { q: filter.mean[0], qd: filter.mean[1] }, before.excitation);
         let speed = filter.mean[1].abs() - OUTLYING * filter.covariance[1][1].sqrt();
-        let moved = [speed * dt, qdd.abs() * dt - OUTLYING * (law.noise.process * dt).sqrt()];
-        [0, 1].map(|index| moved[index].max(law.noise.sensor[index].sqrt()))
+        [speed * dt, qdd.abs() * dt - OUTLYING * (law.noise.process * dt).sqrt()]
     }
 
     fn arrival(
@@ -223,6 +222,7 @@ impl Quarantine {
         measured: [bool; 2],
         hold: Hold,
         course: [f64; 2],
+        scatter: [f64; 2],
     ) -> Arrival {
         let sample = reading.sample;
         let drive = match hold {
@@ -236,7 +236,7 @@ impl Quarantine {
             let index = channel as usize;
             let value = [sample.q, sample.qd][index];
             let start = event.max(self.bursts[index] / self.samples);
-            let repeats = self.repetitions[index].take(value, course[index]);
+            let repeats = self.repetitions[index].take(value, course[index], scatter[index]);
             measured[index].then_some(Value { value, repeats, start })
         });
         Arrival { reading, dt, drive, values, runs }

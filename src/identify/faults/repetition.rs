@@ -1,6 +1,7 @@
 //! How often a channel repeats its last value exactly, and what one more repetition says of a stuck sensor.
 
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// A repetition rarer than this says something: of a channel that repeats itself more often a stuck sensor is told by
 /// what the law expects.
@@ -22,17 +23,24 @@ pub struct Repetition {
 
 impl Repetition {
     /// Takes a reading; returns −ln of how often the channel repeats a value, nats, where this one does and that is
-    /// rare. `course` is what the channel's readings differ by at least, as far as is known: one that moves and
-    /// scatters by less than its resolution repeats itself, and that says nothing.
-    pub fn take(&mut self, value: f64, course: f64) -> Option<f64> {
+    /// rare. `course` is what the channel has moved by at least since the last one, as far as is known, and `scatter`
+    /// the std of its noise: one that moves by less than its resolution may repeat itself, the likelier the less it
+    /// scatters.
+    pub fn take(&mut self, value: f64, course: f64, scatter: f64) -> Option<f64> {
         let step = self.last.replace(value).map(|last| (value - last).abs());
         let repeats = step == Some(0.0);
-        if repeats && self.resolution.is_none_or(|resolution| course < resolution) {
+        // two normal readings of one mean are rounded to the same value
+        let chance = match self.resolution {
+            Some(resolution) if course >= resolution => 0.0,
+            Some(resolution) => resolution / (2.0 * PI.sqrt() * scatter),
+            None => 1.0,
+        };
+        if repeats && chance >= RARE {
             return None;
         }
         let moved = step.filter(|step| *step > 0.0);
         self.resolution = self.resolution.into_iter().chain(moved).reduce(f64::min);
-        let rate = (self.repeated + 0.5) / (self.readings + 1.0);
+        let rate = ((self.repeated + 0.5) / (self.readings + 1.0)).max(chance);
         let rare = repeats && rate < RARE;
         self.run = if rare { self.run - rate.ln() } else { 0.0 };
         self.length = if rare { self.length + 1 } else { 0 };
@@ -62,22 +70,23 @@ mod tests {
     #[test]
     fn a_channel_that_always_varied_repeats_by_a_fault() {
         let mut channel = Repetition::default();
-        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index), 1.0), None));
-        assert!(channel.take(999.0, 1.0).unwrap() > 7.0);
-        assert_eq!(channel.take(5.0, 1.0), None);
+        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index), 1.0, 0.0), None));
+        assert!(channel.take(999.0, 1.0, 0.0).unwrap() > 7.0);
+        assert_eq!(channel.take(5.0, 1.0, 0.0), None);
     }
 
     #[test]
     fn a_coarse_sensor_repeats_all_the_time() {
         let mut channel = Repetition::default();
-        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index / 3), 1.0), None));
+        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index / 3), 1.0, 0.0), None));
     }
 
     #[test]
     fn a_rounded_channel_repeats_where_it_hardly_moves() {
         let mut channel = Repetition::default();
-        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index), 1.0), None));
-        (0..20).for_each(|_| assert_eq!(channel.take(999.0, 0.1), None));
-        assert!(channel.take(999.0, 1.0).unwrap() > 7.0);
+        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index), 1.0, 0.0), None));
+        (0..20).for_each(|_| assert_eq!(channel.take(999.0, 0.1, 1.0), None));
+        assert!(channel.take(999.0, 0.1, 1e4).unwrap() > 7.0, "beside such noise it never does");
+        assert!(channel.take(999.0, 1.0, 0.0).unwrap() > 7.0);
     }
 }

@@ -47,7 +47,7 @@ impl Tracker {
 
     /// An F that is stuck says nothing until it varies again.
     fn follow_excitation(&mut self, problem: &Problem, reading: &mut Reading) {
-        let varies = self.intake.force.take(reading.sample.excitation, f64::INFINITY).is_none();
+        let varies = self.intake.force.take(reading.sample.excitation, f64::INFINITY, 0.0).is_none();
         if self.intake.force_lost && problem.channels.excitation {
             reading.unseen += self.unknown_excitation();
             self.intake.force_lost = !varies;
