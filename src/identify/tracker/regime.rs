@@ -95,8 +95,7 @@ pub(super) enum Event {
     SwitchFound(Option<PostAlarm>),
     /// The hypotheses of the last switch have no more to say on known laws.
     PostAlarmEnded,
-    /// The law in use does not explain its record any more, and no switch does: several laws share it, or another one
-    /// explains it whole.
+    /// The law in use does not explain its record any more, and no switch does: several laws share it.
     LawRefuted,
     /// The state under the law in use has left the finite numbers.
     StateLost,
