@@ -210,16 +210,18 @@ impl Segment {
     }
 
     fn end_score_test(&mut self) {
-        let length = self.length(self.run.next);
+        let (length, settled) = (self.length(self.run.next), self.settled());
         let Segment { score_test, run, active, fit, .. } = self;
         score_test.own.solve(&run.filter_run.information, active);
-        score_test.likeliest = score_test.candidates.likeliest(&score_test.own, fit.overdispersion);
+        let likeliest = score_test.candidates.likeliest(&score_test.own, fit.overdispersion);
+        // a run that has not settled does not follow the motion yet
+        score_test.likeliest = likeliest.filter(|_| settled);
         if score_test.in_the_sensors.running {
             self.untried = score_test.likeliest.filter(|lacked| lacked.missing.is_named());
             score_test.candidates.moved(&score_test.own, self.untried.as_ref(), &mut self.untried_step);
             score_test.next_look = (LOOK_AGAIN * length as f64) as u64;
         }
-        if self.settled() && (self.score_test.in_the_sensors.running || self.fit.explains) {
+        if settled && (self.score_test.in_the_sensors.running || self.fit.explains) {
             self.tell_lag();
         }
     }
@@ -378,10 +380,7 @@ impl Segment {
         self.run.effect.begin(self.run.filter_run.filter.state());
         self.run.next = self.start + 1;
         let filter = self.run.filter_run.filter;
-        match self.settled() {
-            true => self.score_test.candidates.begin(filter.state(), self.run.largest),
-            false => self.score_test.candidates.end(),
-        }
+        self.score_test.candidates.begin(filter.state(), self.run.largest);
         let due = self.settled() && !self.fit.explains && length >= self.score_test.next_look;
         self.score_test.in_the_sensors.begin(filter, &self.noise, due);
         self.run.scales.clear();

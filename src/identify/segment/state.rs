@@ -148,7 +148,7 @@ pub(super) struct Checkpoint {
 /// The test for effects that the law lacks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct MissingEffects {
-    /// Beside runs of a fit that has settled: those before do not follow the motion yet.
+    /// Beside every run: the law in use takes it over.
     pub(super) candidates: ScoreTest,
     /// What the run says of the law's own terms.
     pub(super) own: OwnTerms,
