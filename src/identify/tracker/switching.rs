@@ -24,10 +24,10 @@ impl Tracker {
         let deviates = self.monitor.prediction.deviates(setup.settings, self.now());
         let alarms = suspect.evidence > threshold || deviates;
         self.intake.undecided &= alarms;
+        // in nats of a law that is known for sure, as those are of an effect or a lag
+        let excess = (suspect.evidence - threshold) / decision.caution();
         if alarms
-            && (self.is_fault(suspect, threshold)
-                || self.is_lag(setup.problem, suspect, threshold)
-                || self.is_effect(suspect, threshold))
+            && (self.is_fault(suspect, threshold) || self.is_lag(setup.problem, excess) || self.is_effect(excess))
         {
             return;
         }
@@ -43,10 +43,10 @@ impl Tracker {
     }
 
     /// Whether F acted at another time than is assumed, by all that the law in use has followed: that is told rather
-    /// than a switch where it stands out more.
-    fn is_lag(&mut self, problem: &Problem, suspect: &Suspect, threshold: f64) -> bool {
+    /// than a switch where it stands out more than that is above its threshold.
+    fn is_lag(&mut self, problem: &Problem, excess: f64) -> bool {
         let lag = self.monitor.law.tell_lag();
-        let stands_out = problem.timing.odds(&lag) > suspect.evidence - threshold;
+        let stands_out = problem.timing.odds(&lag) > excess;
         let is_lag = stands_out && self.corrected_timing(problem, &lag).is_some();
         if is_lag {
             let timing = &mut self.segment.timing;
@@ -58,9 +58,8 @@ impl Tracker {
 
     /// Whether an effect that the law in use lacks, by all that it has followed, stands out more than a switch: the law
     /// is tried with it first. An alarm that the user's own deviation threshold asks for does not wait.
-    fn is_effect(&mut self, suspect: &Suspect, threshold: f64) -> bool {
+    fn is_effect(&mut self, excess: f64) -> bool {
         let Some(lacked) = self.monitor.law.likeliest_effect() else { return false };
-        let excess = suspect.evidence - threshold;
         let stands_out = excess > 0.0 && lacked.missing.evidence > TWENTY_TO_ONE.max(excess);
         if stands_out && self.fitting == Fitting::Refining {
             self.segment.untried = Some(lacked);
