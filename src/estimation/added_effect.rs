@@ -59,7 +59,8 @@ impl AddedEffect {
         self.sums.score -= self.sums.information * step;
     }
 
-    /// Takes the sample that the run has just taken, under the law `motion` with the effect.
+    /// Takes the sample that the run has just taken, under the law `motion` with the effect; returns what its
+    /// coefficient makes of the innovations.
     pub fn step(
         &mut self,
         effect: Term,
@@ -67,20 +68,29 @@ impl AddedEffect {
         pass: &Pass,
         observation: &Observation,
         innovations: &[Option<Innovation>; 2],
-    ) {
+    ) -> [f64; 2] {
         let pushed = push(effect, motion, self.before, pass, observation);
-        self.sums.take(pass, pushed, &gains(innovations), innovations);
         self.before = pass.filter.state();
+        self.sums.take(pass, pushed, &gains(innovations), innovations, [0.0; 2])
+    }
+
+    /// Writes what the run says of it beside the law's own terms as the last unknown.
+    pub(super) fn border(&self, whole: &mut Information) {
+        let n = whole.n - 1;
+        for (row, cross) in self.sums.cross[..n].iter().enumerate() {
+            whole.matrix[row * whole.n + n] = *cross;
+        }
+        (whole.matrix[n * whole.n + n], whole.score[n]) = (self.sums.information, self.sums.score);
     }
 
     /// What the law's own terms are told with the coefficient, which is `value`, left open.
     pub fn leave_open(&self, value: f64, own: &mut Information) {
         let (information, score) = self.told(value);
-        let n = self.sums.cross.len();
+        let n = own.n;
         for row in 0..n {
             let share = self.sums.cross[row] / information;
             own.score[row] -= share * score;
-            for (entry, cross) in own.matrix[row * n + row..(row + 1) * n].iter_mut().zip(&self.sums.cross[row..]) {
+            for (entry, cross) in own.matrix[row * n + row..(row + 1) * n].iter_mut().zip(&self.sums.cross[row..n]) {
                 *entry -= share * cross;
             }
         }

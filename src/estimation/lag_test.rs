@@ -79,18 +79,31 @@ impl LagTest {
     }
 
     /// Takes the sample that the run has just taken, under the law `motion`; `shifts` is what F was a sample before and
-    /// will be a sample later, less what it is.
-    pub fn step(&mut self, motion: &Motion, pass: &Pass, shifts: [f64; 2], innovations: &[Option<Innovation>; 2]) {
+    /// will be a sample later, less what it is; `beside` is what the coefficient of the effect added to the law makes
+    /// of the innovations.
+    pub fn step(
+        &mut self,
+        motion: &Motion,
+        pass: &Pass,
+        shifts: [f64; 2],
+        innovations: &[Option<Innovation>; 2],
+        beside: [f64; 2],
+    ) {
         let inverse_mass = motion.mass(pass.filter.mean[0]).recip();
         let gains = gains(innovations);
         for (sums, shift) in self.lags.iter_mut().zip(shifts) {
-            sums.take(pass, shift * inverse_mass, &gains, innovations);
+            sums.take(pass, shift * inverse_mass, &gains, innovations, beside);
         }
     }
 
     /// The coefficients have become those plus `step`.
     pub fn shift(&mut self, step: &[f64]) {
         self.lags.iter_mut().for_each(|sums| sums.shift(step));
+    }
+
+    /// The coefficient of the effect added to the law has become that plus `step`.
+    pub fn shift_beside(&mut self, step: f64) {
+        self.lags.iter_mut().for_each(|sums| sums.shift_beside(step));
     }
 
     /// When F acted against when it is taken to have, by a run of that track which says `own` of the law's terms;

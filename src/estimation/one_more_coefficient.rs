@@ -1,5 +1,6 @@
 //! What a run of the filter says of one more coefficient than its law has, beside the law's own.
 
+use super::added_effect::AddedEffect;
 use super::filter::{Channel, Innovation};
 use super::information::{Information, Solution};
 use super::pass::Pass;
@@ -9,12 +10,12 @@ use serde::{Deserialize, Serialize};
 /// millionth.
 const OWN: f64 = 1e-6;
 
-/// What a run says of the law's own terms.
+/// What a run says of the law's own terms, and of an effect added to them, which comes last.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OwnTerms {
+    information: Information,
     solution: Solution,
     pub(super) active: Vec<bool>,
-    score: Vec<f64>,
 }
 
 /// What the innovations say of one more coefficient.
@@ -24,26 +25,37 @@ pub(super) struct Sums {
     pub(super) sensitivity: [f64; 2],
     pub(super) information: f64,
     pub(super) score: f64,
-    /// With each free term of the law.
+    /// With each free term of the law, and with the effect added to them.
     pub(super) cross: Vec<f64>,
 }
 
 impl OwnTerms {
     /// Of `n` free terms of which nothing is known.
     pub fn none(n: usize) -> OwnTerms {
-        OwnTerms { solution: Solution::none(n), active: vec![true; n], score: vec![0.0; n] }
+        let all = n + 1;
+        OwnTerms { information: Information::none(all), solution: Solution::none(all), active: vec![true; all] }
     }
 
-    /// As a run says it of those that are active.
-    pub fn solve(&mut self, own: &Information, active: &[bool]) {
-        self.active.copy_from_slice(active);
-        self.score.copy_from_slice(&own.score);
-        self.solution.solve(own, active);
+    /// As a run says it of those that are active, and of the effect beside them.
+    pub fn solve(&mut self, own: &Information, active: &[bool], effect: Option<&AddedEffect>) {
+        let (n, OwnTerms { information, solution, active: all }) = (own.n, self);
+        information.clear();
+        for row in 0..n {
+            information.matrix[row * (n + 1) + row..][..n - row]
+                .copy_from_slice(&own.matrix[row * n + row..][..n - row]);
+        }
+        information.score[..n].copy_from_slice(&own.score);
+        all[..n].copy_from_slice(active);
+        all[n] = effect.is_some();
+        if let Some(effect) = effect {
+            effect.border(information);
+        }
+        solution.solve(information, all);
     }
 
     /// Log-likelihood that the law's own terms gain at the maximum, nats.
     pub(super) fn gain(&self) -> f64 {
-        0.5 * self.determined().map(|row| self.solution.step[row] * self.score[row]).sum::<f64>()
+        0.5 * self.determined().map(|row| self.solution.step[row] * self.information.score[row]).sum::<f64>()
     }
 
     /// The terms that the law has and its record determines.
@@ -54,7 +66,7 @@ impl OwnTerms {
 
 impl Sums {
     pub(super) fn new(n: usize) -> Sums {
-        Sums { sensitivity: [0.0; 2], information: 0.0, score: 0.0, cross: vec![0.0; n] }
+        Sums { sensitivity: [0.0; 2], information: 0.0, score: 0.0, cross: vec![0.0; n + 1] }
     }
 
     pub(super) fn clear(&mut self) {
@@ -74,15 +86,22 @@ impl Sums {
         self.score -= moved;
     }
 
+    /// The coefficient of the effect added to the law has become that plus `step`.
+    pub(super) fn shift_beside(&mut self, step: f64) {
+        self.score -= self.cross[self.cross.len() - 1] * step;
+    }
+
     /// Goes with the run over an interval in which a coefficient of 1 accelerates by `push`, and takes the innovations
-    /// of the sample at its end.
+    /// of the sample at its end; `beside` is what the effect added to the law makes of them. Returns the same of this
+    /// coefficient.
     pub(super) fn take(
         &mut self,
         pass: &Pass,
         push: f64,
         gains: &[[f64; 2]; 2],
         innovations: &[Option<Innovation>; 2],
-    ) {
+        beside: [f64; 2],
+    ) -> [f64; 2] {
         let (rows, moved) = pass.carry(self.sensitivity, push, gains);
         self.sensitivity = moved;
         let [precision, residual] = [
@@ -93,7 +112,9 @@ impl Sums {
         self.information += q * rows[0] + qd * rows[1];
         self.score += q * residual[0] + qd * residual[1];
         let own = pass.expected(Channel::Q).iter().zip(pass.expected(Channel::Qd));
-        self.cross.iter_mut().zip(own).for_each(|(sum, own)| *sum += q * own.0 + qd * own.1);
+        let own = own.map(|(q, qd)| [*q, *qd]).chain([beside]);
+        self.cross.iter_mut().zip(own).for_each(|(sum, own)| *sum += q * own[0] + qd * own[1]);
+        rows
     }
 
     /// (coefficient, gain in log-likelihood, information of its own) beside the law's own terms.
@@ -102,7 +123,7 @@ impl Sums {
         for row in own.determined() {
             let shared = self.shared(row, own);
             information -= self.cross[row] * shared;
-            score -= shared * own.score[row];
+            score -= shared * own.information.score[row];
         }
         match information > OWN * self.information {
             true => (score / information, 0.5 * score * score / information, information),

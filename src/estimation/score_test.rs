@@ -113,13 +113,15 @@ impl ScoreTest {
         self.whole = false;
     }
 
-    /// Takes the sample that the run has just taken, under the law `motion`.
+    /// Takes the sample that the run has just taken, under the law `motion`; `beside` is what the coefficient of the
+    /// effect added to the law makes of the innovations.
     pub fn step(
         &mut self,
         motion: &Motion,
         pass: &Pass,
         observation: &Observation,
         innovations: &[Option<Innovation>; 2],
+        beside: [f64; 2],
     ) {
         if !self.whole {
             return;
@@ -133,7 +135,7 @@ impl ScoreTest {
             let first = if known { *force } else { term.force(before.q, before.qd, from) };
             *force = term.force(state.q, state.qd, to);
             let pushed = -(0.5 * (first + *force) + term.mass(state.q) * acceleration) * inverse_mass;
-            sums.take(pass, pushed, &gains, innovations);
+            sums.take(pass, pushed, &gains, innovations, beside);
         }
         (self.before, self.excitation) = (state, to);
     }
@@ -142,6 +144,11 @@ impl ScoreTest {
     pub fn shift(&mut self, step: &[f64], state: State) {
         (self.before, self.excitation) = (state, f64::NAN);
         self.candidates.iter_mut().for_each(|candidate| candidate.sums.shift(step));
+    }
+
+    /// The coefficient of the effect added to the law has become that plus `step`.
+    pub fn shift_beside(&mut self, step: f64) {
+        self.candidates.iter_mut().for_each(|candidate| candidate.sums.shift_beside(step));
     }
 
     /// The candidate with the most evidence beside the law's own terms, `overdispersion` being what the law's lasting
@@ -163,11 +170,14 @@ impl ScoreTest {
     }
 
     /// By how much the law's own coefficients, n, are others beside that effect.
-    pub fn moved(&self, own: &OwnTerms, lacked: Option<&Lacked>, step: &mut [f64]) {
+    pub fn moved(&self, own: &OwnTerms, lacked: &Lacked, step: &mut [f64]) {
+        let Lacked { missing, coefficient, .. } = lacked;
         step.fill(0.0);
-        let Some(Lacked { missing, coefficient, .. }) = lacked else { return };
         for candidate in self.candidates.iter().filter(|candidate| candidate.entry == missing.entry) {
-            own.determined().for_each(|row| step[row] = -coefficient * candidate.sums.shared(row, own));
+            for row in own.determined() {
+                // the effect added to the law comes after its own terms
+                step.get_mut(row).into_iter().for_each(|step| *step = -coefficient * candidate.sums.shared(row, own));
+            }
         }
     }
 }

@@ -100,8 +100,8 @@ impl LawInUse {
         let motion = problem.motion(&self.terms, &self.all);
         let noise = self.noise_now();
         let innovations = self.run.step(&motion, &problem.free_terms, &noise, observation);
-        self.lag.step(&motion, &self.run, shifts, &innovations);
-        self.effects.step(&motion, &self.run, observation, &innovations);
+        self.lag.step(&motion, &self.run, shifts, &innovations, [0.0; 2]);
+        self.effects.step(&motion, &self.run, observation, &innovations, [0.0; 2]);
         self.adaptive.add(&innovations, &observation.measured);
         self.follow_slopes(observation.dt, problem.free_inertia());
         let [q, qd] = innovations;
@@ -144,19 +144,19 @@ impl LawInUse {
     /// When F acted by all of its record up to now.
     pub fn tell_lag(&mut self) -> Lag {
         let LawInUse { run, lag, own, lag_slope, active, overdispersion, .. } = self;
-        own.solve(&run.information, active);
+        own.solve(&run.information, active, None);
         lag.told(own, &run.track, *overdispersion, lag_slope).lag
     }
 
     /// The effect that it lacks most by all of its record up to now.
     pub fn likeliest_effect(&mut self) -> Option<Lacked> {
-        self.own.solve(&self.run.information, &self.active);
+        self.own.solve(&self.run.information, &self.active, None);
         self.effects.likeliest(&self.own, self.overdispersion)
     }
 
     /// By how much the free coefficients, n, are others with that effect, the likeliest as last asked.
     pub fn moved(&self, lacked: &Lacked, step: &mut [f64]) {
-        self.effects.moved(&self.own, Some(lacked), step);
+        self.effects.moved(&self.own, lacked, step);
     }
 
     /// F acts so many samples later than was assumed, each of which makes that of the free coefficients.

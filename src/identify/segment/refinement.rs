@@ -10,7 +10,7 @@ use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
 use super::prior::{InertiaPrior, Prior};
 use super::state::{Checkpoint, InTheSensors, MissingEffects, NOISE_MEMORY, Runs, Segment};
-use crate::estimation::{Filter, Lag, LagTest, Missing, Noise, Observation, Pass, ScoreTest};
+use crate::estimation::{Filter, Lag, LagTest, Missing, Noise, Observation, Pass, ScoreTest, TWENTY_TO_ONE};
 use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
@@ -24,7 +24,7 @@ pub const GROWTH: f64 = 0.02;
 /// … and by this many samples.
 const FRESH: u64 = 8;
 
-/// A law that does not explain its record is tried with what it lacks, and with all error in the sensors, when the
+/// A law is tried with what it lacks, and one that does not explain its record with all error in the sensors, when the
 /// record has grown by this factor, twice in every doubling: most runs are spared the work.
 const LOOK_AGAIN: f64 = 1.4;
 
@@ -50,7 +50,7 @@ impl InTheSensors {
     fn take(&mut self, motion: &Motion, free: &[Term], observation: &Observation, shifts: [f64; 2]) {
         if self.running {
             let innovations = self.filter_run.step(motion, free, &self.noise, observation);
-            self.lag.step(motion, &self.filter_run, shifts, &innovations);
+            self.lag.step(motion, &self.filter_run, shifts, &innovations, [0.0; 2]);
         }
     }
 }
@@ -93,7 +93,8 @@ impl Segment {
         (self.missing, self.untried) = (None, None);
         (self.timing.lag, self.timing.open) = (Lag::UNKNOWN, 0.0);
         self.timing.slope.fill(0.0);
-        (self.score_test.likeliest, self.score_test.next_look) = (None, 0);
+        self.score_test.likeliest = None;
+        (self.score_test.next_try, self.score_test.next_look) = (0, 0);
         self.convergence.clear();
         self.run.largest = [0.0; 2];
         self.begin_run(window);
@@ -150,12 +151,13 @@ impl Segment {
         let Segment { run, score_test, convergence, terms, all, noise, .. } = self;
         let motion = problem.motion(terms, all);
         let innovations = run.filter_run.step(&motion, &problem.free_terms, noise, observation);
-        let shifts = window.shifts(number);
-        run.lag.step(&motion, &run.filter_run, shifts, &innovations);
-        if all[all.len() - 1] != 0.0 {
-            run.effect.step(terms[terms.len() - 1], &motion, &run.filter_run, observation, &innovations);
-        }
-        score_test.candidates.step(&motion, &run.filter_run, observation, &innovations);
+        let (shifts, effect) = (window.shifts(number), terms[terms.len() - 1]);
+        let beside = match all[all.len() - 1] {
+            0.0 => [0.0; 2],
+            _ => run.effect.step(effect, &motion, &run.filter_run, observation, &innovations),
+        };
+        run.lag.step(&motion, &run.filter_run, shifts, &innovations, beside);
+        score_test.candidates.step(&motion, &run.filter_run, observation, &innovations, beside);
         score_test.in_the_sensors.take(&motion, &problem.free_terms, observation, shifts);
         run.scales.add(&motion, &run.filter_run, observation);
         run.sandwich.step(&run.filter_run.information);
@@ -207,22 +209,36 @@ impl Segment {
         self.forecast_convergence();
         self.say_effect();
         self.fold(window);
+        self.drop_effect(problem);
     }
 
     fn end_score_test(&mut self) {
-        let (length, settled) = (self.length(self.run.next), self.settled());
-        let Segment { score_test, run, active, fit, .. } = self;
-        score_test.own.solve(&run.filter_run.information, active);
-        let likeliest = score_test.candidates.likeliest(&score_test.own, fit.overdispersion);
-        // a run that has not settled does not follow the motion yet
-        score_test.likeliest = likeliest.filter(|_| settled);
-        if score_test.in_the_sensors.running {
-            self.untried = score_test.likeliest.filter(|lacked| lacked.missing.is_named());
-            score_test.candidates.moved(&score_test.own, self.untried.as_ref(), &mut self.untried_step);
-            score_test.next_look = (LOOK_AGAIN * length as f64) as u64;
+        let settled = self.settled();
+        self.ask_for_effect(settled);
+        if self.score_test.in_the_sensors.running {
+            self.score_test.next_look = looks_again(self.length(self.run.next));
         }
         if settled && (self.score_test.in_the_sensors.running || self.fit.explains) {
             self.tell_lag();
+        }
+    }
+
+    /// Which effect the law lacks most, by the run that has ended; one that it names is to be tried, in the place of
+    /// that which the law may have.
+    fn ask_for_effect(&mut self, settled: bool) {
+        let (length, has_effect) = (self.length(self.run.next), self.effect() != 0.0);
+        let Segment { score_test, run, active, fit, untried, untried_step, .. } = self;
+        let MissingEffects { candidates, own, likeliest, next_try, .. } = score_test;
+        own.solve(&run.filter_run.information, active, has_effect.then_some(&run.effect));
+        let found = candidates.likeliest(own, fit.overdispersion);
+        *likeliest = found.filter(|_| settled);
+        // before its noise levels have settled a run does not follow the motion
+        let follows = settled || fit.gain < TWENTY_TO_ONE;
+        let named = found.filter(|lacked| follows && lacked.missing.is_named());
+        if let Some(lacked) = named.filter(|_| length >= *next_try) {
+            candidates.moved(own, &lacked, untried_step);
+            *next_try = looks_again(length);
+            *untried = Some(lacked);
         }
     }
 
@@ -242,7 +258,7 @@ impl Segment {
         if !(*running && filter_run.track.count == track.count) {
             return;
         }
-        own.solve(&filter_run.information, active);
+        own.solve(&filter_run.information, active, None);
         let told = lag.told(own, &filter_run.track, 1.0, slope);
         if told.with() > under.with() {
             timing.lag = Lag { evidence: told.with() - told.without.max(under.without), ..told.lag };
@@ -339,6 +355,8 @@ impl Segment {
             let (step, moved) = self.run.effect.step_from(self.all[place], &self.step);
             self.all[place] += step;
             self.run.checkpoint.effect.shift(&self.step, step);
+            self.run.lag.shift_beside(step);
+            self.score_test.candidates.shift_beside(step);
             let mean = &mut self.run.filter_run.filter.mean;
             mean.iter_mut().zip(moved).for_each(|(mean, moved)| *mean += moved);
         }
@@ -347,14 +365,34 @@ impl Segment {
     /// What the model lacks is what its law has beside its terms; else what would explain most of what the law does not
     /// explain.
     fn say_effect(&mut self) {
-        let (place, value) = (self.terms.len() - 1, self.effect());
-        self.missing = if value != 0.0 {
-            let variance = self.fit.overdispersion * self.run.effect.variance(&self.solution, &self.active);
-            Missing::of(self.terms[place], 0.5 * value * value / variance)
-        } else {
-            let likeliest = self.score_test.likeliest.map(|lacked| lacked.missing);
-            likeliest.filter(|missing| missing.is_named() && !self.fit.explains)
+        let found = match self.effect_gain() {
+            Some(gain) => Missing::of(self.terms[self.terms.len() - 1], gain),
+            None => self.score_test.likeliest.map(|lacked| lacked.missing).filter(|_| !self.fit.explains),
         };
+        self.missing = found.filter(Missing::is_named);
+    }
+
+    /// Log-likelihood that the effect beside the law's own terms gains, nats; none where it has none.
+    pub fn effect_gain(&self) -> Option<f64> {
+        let variance = self.fit.overdispersion * self.run.effect.variance(&self.solution, &self.active);
+        (self.effect() != 0.0).then_some(0.5 * self.effect() * self.effect() / variance)
+    }
+
+    /// An effect that the record does not speak for any more is none.
+    fn drop_effect(&mut self, problem: &Problem) {
+        if !(self.settled() && self.effect_gain().is_some_and(|gain| gain < TWENTY_TO_ONE)) {
+            return;
+        }
+        self.run.effect.likeness(&self.solution, &self.active, &mut self.step);
+        let effect = self.effect();
+        for (value, step) in self.coefficients.iter_mut().zip(&mut self.step) {
+            *step *= effect;
+            *value += *step;
+        }
+        problem.scatter(&self.coefficients, &mut self.all);
+        self.add_effect(None);
+        self.move_to_new_coefficients();
+        self.runs.calm = 0;
     }
 
     /// When the record outgrows the window, its first half becomes prior knowledge.
@@ -387,4 +425,9 @@ impl Segment {
         self.convergence.begin(self.start, length);
         self.run.sandwich.begin(length);
     }
+}
+
+/// Length of the record from which on a law is tried again.
+fn looks_again(length: u64) -> u64 {
+    (LOOK_AGAIN * length as f64) as u64
 }

@@ -44,7 +44,7 @@ pub struct Segment {
     pub runs: Runs,
     /// The effect that the law lacks most, as of the last run that looked for one.
     pub missing: Option<Missing>,
-    /// It, where the law does not explain its record and has not been tried with it.
+    /// One that a run named, and with which the law has not been tried.
     pub untried: Option<Lacked>,
     /// By how much the free coefficients are others with it.
     pub untried_step: Vec<f64>,
@@ -150,11 +150,13 @@ pub(super) struct Checkpoint {
 pub(super) struct MissingEffects {
     /// Beside every run: the law in use takes it over.
     pub(super) candidates: ScoreTest,
-    /// What the run says of the law's own terms.
+    /// What the run says of the law's own terms and of its effect.
     pub(super) own: OwnTerms,
     /// The effect that explained most in the last run, named or not.
     pub(super) likeliest: Option<Lacked>,
-    /// Length of the record from which on a law that does not explain it is tried otherwise.
+    /// Length of the record from which on the law is tried with an effect …
+    pub(super) next_try: u64,
+    /// … and, where it does not explain the record, with all error in the sensors.
     pub(super) next_look: u64,
     /// Beside a run that looks, where the law's error is taken for process noise: with all error in the sensors the
     /// record tells when F acted.
@@ -228,6 +230,7 @@ impl Segment {
                 candidates: ScoreTest::new(&problem.terms, n),
                 own: OwnTerms::none(n),
                 likeliest: None,
+                next_try: 0,
                 next_look: 0,
                 in_the_sensors: InTheSensors {
                     filter_run: Pass::new(n),

@@ -160,11 +160,13 @@ impl Tracker {
         tried.is_some_and(|tried| own.is_none_or(|own| own.term != tried.term))
     }
 
-    /// Whether that effect gains what it must, and explains most of what the law without it does not.
+    /// Whether that effect gains what it must over the segment and over none, and explains most of what the segment
+    /// does not.
     fn explains_by_effect(&self) -> bool {
         let [with, without] = [&self.alternative, &self.segment];
         let gain = 2.0 * with.length(self.window.ready()) as f64 * (with.fit.likelihood - without.fit.likelihood);
-        gain > EFFECT && (with.fit.explains || with.noise.process < MOST * without.noise.process)
+        let alone = with.effect_gain().unwrap_or(0.0);
+        gain.min(alone) > EFFECT && (with.fit.explains || with.noise.process < MOST * without.noise.process)
     }
 
     /// What later records know of the effect that the model lacks is what this one tells.
