@@ -5,7 +5,7 @@
 
 use super::filter::Innovation;
 use super::information::{Information, Solution};
-use super::one_more_coefficient::Sums;
+use super::one_more_coefficient::{OwnTerms, Sums};
 use super::pass::{Observation, Pass, gains};
 use crate::law::{Motion, State, Term};
 use serde::{Deserialize, Serialize};
@@ -74,13 +74,9 @@ impl AddedEffect {
         self.sums.take(pass, pushed, &gains(innovations), innovations, [0.0; 2])
     }
 
-    /// Writes what the run says of it beside the law's own terms as the last unknown.
-    pub(super) fn border(&self, whole: &mut Information) {
-        let n = whole.n - 1;
-        for (row, cross) in self.sums.cross[..n].iter().enumerate() {
-            whole.matrix[row * whole.n + n] = *cross;
-        }
-        (whole.matrix[n * whole.n + n], whole.score[n]) = (self.sums.information, self.sums.score);
+    /// The law's own terms as the run says it of them, `own`, and of the effect.
+    pub fn solve(&self, terms: &mut OwnTerms, own: &Information, active: &[bool]) {
+        terms.solve_beside(own, active, Some(&self.sums));
     }
 
     /// What the law's own terms are told with the coefficient, which is `value`, left open.

@@ -1,6 +1,5 @@
 //! What a run of the filter says of one more coefficient than its law has, beside the law's own.
 
-use super::added_effect::AddedEffect;
 use super::filter::{Channel, Innovation};
 use super::information::{Information, Solution};
 use super::pass::Pass;
@@ -36,19 +35,26 @@ impl OwnTerms {
         OwnTerms { information: Information::none(all), solution: Solution::none(all), active: vec![true; all] }
     }
 
-    /// As a run says it of those that are active, and of the effect beside them.
-    pub fn solve(&mut self, own: &Information, active: &[bool], effect: Option<&AddedEffect>) {
+    /// As a run says it of those that are active.
+    pub fn solve(&mut self, own: &Information, active: &[bool]) {
+        self.solve_beside(own, active, None);
+    }
+
+    /// The same beside the effect added to them, of which the run says that.
+    pub(super) fn solve_beside(&mut self, own: &Information, active: &[bool], effect: Option<&Sums>) {
         let (n, OwnTerms { information, solution, active: all }) = (own.n, self);
         information.clear();
         for row in 0..n {
-            information.matrix[row * (n + 1) + row..][..n - row]
-                .copy_from_slice(&own.matrix[row * n + row..][..n - row]);
+            let from = &own.matrix[row * n + row..(row + 1) * n];
+            information.matrix[row * (n + 1) + row..][..n - row].copy_from_slice(from);
         }
         information.score[..n].copy_from_slice(&own.score);
         all[..n].copy_from_slice(active);
         all[n] = effect.is_some();
-        if let Some(effect) = effect {
-            effect.border(information);
+        if let Some(Sums { information: own, score, cross, .. }) = effect {
+            let column = cross.iter().take(n).chain([own]);
+            column.enumerate().for_each(|(row, entry)| information.matrix[row * (n + 1) + n] = *entry);
+            information.score[n] = *score;
         }
         solution.solve(information, all);
     }

@@ -144,13 +144,13 @@ impl LawInUse {
     /// When F acted by all of its record up to now.
     pub fn tell_lag(&mut self) -> Lag {
         let LawInUse { run, lag, own, lag_slope, active, overdispersion, .. } = self;
-        own.solve(&run.information, active, None);
+        own.solve(&run.information, active);
         lag.told(own, &run.track, *overdispersion, lag_slope).lag
     }
 
     /// The effect that it lacks most by all of its record up to now.
     pub fn likeliest_effect(&mut self) -> Option<Lacked> {
-        self.own.solve(&self.run.information, &self.active, None);
+        self.own.solve(&self.run.information, &self.active);
         self.effects.likeliest(&self.own, self.overdispersion)
     }
 

@@ -229,13 +229,13 @@ impl Segment {
         let (length, has_effect) = (self.length(self.run.next), self.effect() != 0.0);
         let Segment { score_test, run, active, fit, untried, untried_step, .. } = self;
         let MissingEffects { candidates, own, likeliest, next_try, .. } = score_test;
-        own.solve(&run.filter_run.information, active, has_effect.then_some(&run.effect));
-        let found = candidates.likeliest(own, fit.overdispersion);
-        *likeliest = found.filter(|_| settled);
-        // before its noise levels have settled a run does not follow the motion
-        let follows = settled || fit.gain < TWENTY_TO_ONE;
-        let named = found.filter(|lacked| follows && lacked.missing.is_named());
-        if let Some(lacked) = named.filter(|_| length >= *next_try) {
+        match has_effect {
+            true => run.effect.solve(own, &run.filter_run.information, active),
+            false => own.solve(&run.filter_run.information, active),
+        }
+        // a run that has not settled does not follow the motion yet
+        *likeliest = candidates.likeliest(own, fit.overdispersion).filter(|_| settled);
+        if let Some(lacked) = likeliest.filter(|lacked| lacked.missing.is_named() && length >= *next_try) {
             candidates.moved(own, &lacked, untried_step);
             *next_try = looks_again(length);
             *untried = Some(lacked);
@@ -258,7 +258,7 @@ impl Segment {
         if !(*running && filter_run.track.count == track.count) {
             return;
         }
-        own.solve(&filter_run.information, active, None);
+        own.solve(&filter_run.information, active);
         let told = lag.told(own, &filter_run.track, 1.0, slope);
         if told.with() > under.with() {
             timing.lag = Lag { evidence: told.with() - told.without.max(under.without), ..told.lag };
