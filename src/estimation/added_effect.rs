@@ -198,6 +198,35 @@ mod tests {
         assert!(likeness.iter().zip(&shared).all(|(a, b)| (a - b).abs() < 1e-9), "{likeness:?} against {shared:?}");
     }
 
+    /// Forty readings of 0.5 w about a law of x, y and z, z the effect with 0.2 too much: what is asked for w is the gain
+    /// with z left open, and z itself gains nothing more.
+    #[test]
+    fn another_effect_is_asked_for_with_this_one_left_open() {
+        let (mut own, mut effect) = (Information::none(2), AddedEffect::new(2));
+        let (mut other, mut same, mut whole) = (Sums::new(2), Sums::new(2), Information::none(4));
+        for k in 0..40 {
+            let phase = 0.37 * f64::from(k);
+            let z = 0.6 * phase.sin() + (2.0 * phase).cos();
+            let row = [phase.sin(), phase.cos(), z, 0.8 * z + (3.0 * phase).sin()];
+            let residual = 0.5 * row[3] - 0.2 * z;
+            own.add(&row[..2], residual, 0.01);
+            whole.add(&row, residual, 0.01);
+            for (sums, feature) in [(&mut effect.sums, z), (&mut same, z), (&mut other, row[3])] {
+                sums.information += feature * feature / 0.01;
+                sums.score += feature * residual / 0.01;
+                sums.cross.iter_mut().zip(&row[..3]).for_each(|(sum, own)| *sum += own * feature / 0.01);
+            }
+        }
+        let mut terms = OwnTerms::none(2);
+        effect.solve(&mut terms, &own, &[true; 2]);
+        let mut all = Solution::none(4);
+        all.solve(&whole, &[true; 4]);
+        let (coefficient, gain, information) = other.gain(&terms);
+        assert!((coefficient - all.step[3]).abs() < 1e-9, "{coefficient} against {}", all.step[3]);
+        assert!((information * all.covariance[15] - 1.0).abs() < 1e-9 && gain > 100.0, "{information}, {gain}");
+        assert_eq!(same.gain(&terms), (0.0, 0.0, 0.0));
+    }
+
     #[test]
     fn what_was_known_before_counts() {
         let (mut own, mut effect) = readings();
