@@ -198,8 +198,8 @@ mod tests {
         assert!(likeness.iter().zip(&shared).all(|(a, b)| (a - b).abs() < 1e-9), "{likeness:?} against {shared:?}");
     }
 
-    /// Forty readings of 0.5 w about a law of x, y and z, z the effect with 0.2 too much: what is asked for w is the gain
-    /// with z left open, and z itself gains nothing more.
+    /// Forty readings of 0.5 w about a law of x, y and z, z the effect with 0.2 too much: what is asked for w is the
+    /// gain with z left open, and z itself gains nothing more.
     #[test]
     fn another_effect_is_asked_for_with_this_one_left_open() {
         let (mut own, mut effect) = (Information::none(2), AddedEffect::new(2));
