@@ -3,6 +3,7 @@
 use super::new_record::PRIOR_WIDTH;
 use super::state::{FRESH_START, Fitting, NOTHING_KNOWN, Setup, Tracker};
 use crate::estimation::{KnownEffect, Noise, TWENTY_TO_ONE};
+use crate::identify::change::LONGEST_ERROR;
 use crate::identify::problem::Problem;
 use crate::identify::segment::{Guess, IN_THE_SENSORS, Prior, Segment};
 use crate::law::Compiled;
@@ -126,9 +127,12 @@ impl Tracker {
         self.begin_another_fit(problem, self.segment.known_effect(), noise);
     }
 
-    /// The effect that the law lacks most is tried beside it.
+    /// The effect that the law lacks most is tried beside it; a law that explains its record lacks none before the
+    /// motion has gone there and back.
     pub(super) fn try_effect(&mut self, problem: &Problem) {
-        let Some(lacked) = self.segment.untried.take().filter(|_| self.fitting == Fitting::Refining) else { return };
+        let shown = !self.segment.fit.explains || self.there_and_back(LONGEST_ERROR) < 1.0;
+        let due = shown && self.fitting == Fitting::Refining;
+        let Some(lacked) = self.segment.untried.take().filter(|_| due) else { return };
         let Tracker { segment, alternative, belief, .. } = self;
         alternative.terms.copy_from_slice(&segment.terms);
         alternative.terms[problem.terms.len()] = lacked.term;
