@@ -127,11 +127,11 @@ impl Tracker {
         self.begin_another_fit(problem, self.segment.known_effect(), noise);
     }
 
-    /// The effect that the law lacks most is tried beside it; a law that explains its record lacks none before the
-    /// motion has gone there and back.
+    /// The effect that the law lacks most is tried beside it; a law that explains its record, and against which nothing
+    /// speaks, lacks none before the motion has gone there and back.
     pub(super) fn try_effect(&mut self, problem: &Problem) {
-        let shown = !self.segment.fit.explains || self.there_and_back(LONGEST_ERROR) < 1.0;
-        let due = shown && self.fitting == Fitting::Refining;
+        let doubted = !self.segment.fit.explains || self.monitor.unusual_since.is_some();
+        let due = (doubted || self.there_and_back(LONGEST_ERROR) < 1.0) && self.fitting == Fitting::Refining;
         let Some(lacked) = self.segment.untried.take().filter(|_| due) else { return };
         let Tracker { segment, alternative, belief, .. } = self;
         alternative.terms.copy_from_slice(&segment.terms);
