@@ -35,6 +35,12 @@ impl OwnTerms {
         OwnTerms { information: Information::none(all), solution: Solution::none(all), active: vec![true; all] }
     }
 
+    /// Forgets what a run said: what is made anew at every question takes no room in a saved state.
+    pub fn clear(&mut self) {
+        self.information.clear();
+        self.solution.solve(&self.information, &self.active);
+    }
+
     /// As a run says it of those that are active.
     pub fn solve(&mut self, own: &Information, active: &[bool]) {
         self.solve_beside(own, active, None);

@@ -145,18 +145,20 @@ impl LawInUse {
     pub fn tell_lag(&mut self) -> Lag {
         let LawInUse { run, lag, own, lag_slope, active, overdispersion, .. } = self;
         own.solve(&run.information, active);
-        lag.told(own, &run.track, *overdispersion, lag_slope).lag
+        let told = lag.told(own, &run.track, *overdispersion, lag_slope);
+        own.clear();
+        told.lag
     }
 
-    /// The effect that it lacks most by all of its record up to now.
-    pub fn likeliest_effect(&mut self) -> Option<Lacked> {
+    /// The effect that it lacks most by all of its record up to now, of more evidence than that; `step` becomes by how
+    /// much the free coefficients, n, are others with it.
+    pub fn likeliest_effect(&mut self, evidence: f64, step: &mut [f64]) -> Option<Lacked> {
         self.own.solve(&self.run.information, &self.active);
-        self.effects.likeliest(&self.own, self.overdispersion)
-    }
-
-    /// By how much the free coefficients, n, are others with that effect, the likeliest as last asked.
-    pub fn moved(&self, lacked: &Lacked, step: &mut [f64]) {
-        self.effects.moved(&self.own, lacked, step);
+        let likeliest = self.effects.likeliest(&self.own, self.overdispersion);
+        let lacked = likeliest.filter(|lacked| lacked.missing.evidence > evidence);
+        lacked.iter().for_each(|lacked| self.effects.moved(&self.own, lacked, step));
+        self.own.clear();
+        lacked
     }
 
     /// F acts so many samples later than was assumed, each of which makes that of the free coefficients.

@@ -221,6 +221,7 @@ impl Segment {
         if settled && (self.score_test.in_the_sensors.running || self.fit.explains) {
             self.tell_lag();
         }
+        self.score_test.own.clear();
     }
 
     /// Which effect the law lacks most, by the run that has ended; one that it names is to be tried, in the place of

@@ -58,13 +58,15 @@ impl Tracker {
     /// Whether an effect that the law in use lacks, by all that it has followed, stands out more than a switch: the law
     /// is tried with it first. An alarm that the user's own deviation threshold asks for does not wait.
     fn is_effect(&mut self, excess: f64) -> bool {
-        let Some(lacked) = self.monitor.law.likeliest_effect() else { return false };
-        let stands_out = excess > 0.0 && lacked.missing.evidence > TWENTY_TO_ONE.max(excess);
-        if stands_out && self.fitting == Fitting::Refining {
-            self.segment.untried = Some(lacked);
-            self.monitor.law.moved(&lacked, &mut self.segment.untried_step);
+        if excess <= 0.0 {
+            return false;
         }
-        stands_out
+        let Tracker { monitor, segment, .. } = self;
+        let lacked = monitor.law.likeliest_effect(TWENTY_TO_ONE.max(excess), &mut segment.untried_step);
+        if lacked.is_some() && self.fitting == Fitting::Refining {
+            segment.untried = lacked;
+        }
+        lacked.is_some()
     }
 
     /// What the law in use has to its credit.
