@@ -6,7 +6,7 @@ use super::sample::Sample;
 use super::window::Window;
 use crate::law::Hold;
 use crate::weak::{Section, differentiate, integrate};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use std::ops::RangeInclusive;
 
 /// Samples in the longest variation of weak rows, where the window has room for it: half a period of a motion of 4096
@@ -39,6 +39,26 @@ impl From<PackedSection> for SectionBuffer {
         let mut buffer = SectionBuffer::new(samples.len());
         samples.iter().enumerate().for_each(|(slot, sample)| buffer.put(slot, sample));
         buffer
+    }
+}
+
+/// Writes the room alone of a buffer that is loaded anew before every use; for `#[serde(serialize_with)]`.
+///
+/// # Errors
+/// What the serializer says.
+pub fn serialize_room<S: Serializer>(buffer: &SectionBuffer, serializer: S) -> Result<S::Ok, S::Error> {
+    buffer.t.len().serialize(serializer)
+}
+
+/// Room as [`serialize_room`] wrote it.
+///
+/// # Errors
+/// More of it than a section needs, and what the deserializer says.
+pub fn deserialize_room<'de, D: Deserializer<'de>>(deserializer: D) -> Result<SectionBuffer, D::Error> {
+    let length = usize::deserialize(deserializer)?;
+    match length <= LONGEST_VARIATION + 1 {
+        true => Ok(SectionBuffer::new(length)),
+        false => Err(D::Error::custom("a section is longer than the longest variation")),
     }
 }
 

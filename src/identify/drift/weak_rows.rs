@@ -13,7 +13,7 @@ use super::oscillation::Oscillation;
 use super::variation_length::VariationLength;
 use crate::estimation::OVERLAP;
 use crate::identify::problem::Problem;
-use crate::identify::section::{LONGEST_VARIATION, SectionBuffer};
+use crate::identify::section::{LONGEST_VARIATION, SectionBuffer, deserialize_room, serialize_room};
 use crate::identify::window::Window;
 use crate::weak::{Row, Variation};
 use serde::{Deserialize, Serialize};
@@ -49,6 +49,7 @@ const PATIENCE: u64 = 8;
 pub struct WeakRowDrift {
     lengths: Vec<VariationLength>,
     oscillation: Oscillation,
+    #[serde(serialize_with = "serialize_room", deserialize_with = "deserialize_room")]
     section: SectionBuffer,
     row: Row,
     chosen: usize,

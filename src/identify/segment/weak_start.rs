@@ -2,7 +2,7 @@
 
 use crate::estimation::{RowsOfLength, VARIATION};
 use crate::identify::problem::Problem;
-use crate::identify::section::{LONGEST_VARIATION, SectionBuffer};
+use crate::identify::section::{LONGEST_VARIATION, SectionBuffer, deserialize_room, serialize_room};
 use crate::identify::window::Window;
 use crate::weak::{Fit, Row};
 use serde::{Deserialize, Serialize};
@@ -23,6 +23,7 @@ const LONG: usize = 512;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct WeakStart {
     scales: Vec<Scale>,
+    #[serde(serialize_with = "serialize_room", deserialize_with = "deserialize_room")]
     section: SectionBuffer,
     row: Row,
     equation: Vec<f64>,
