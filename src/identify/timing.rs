@@ -75,24 +75,16 @@ impl Timing {
         self.rivals(found, TWENTY_TO_ONE).iter().map(|rival| rival.odds).fold(f64::NEG_INFINITY, log_sum)
     }
 
-    /// Mean square of the lag beyond what is assumed that a record saying `found` leaves open, in squares of a sample.
+    /// Mean square of the lag beyond what is assumed that a record saying `found` leaves open, in squares of a sample:
+    /// what is assumed must be likelier to be left, but is no likelier than anything else where a std is told.
     pub fn left_open(&self, found: &Lag) -> f64 {
-        self.open(found, TWENTY_TO_ONE)
-    }
-
-    /// The same were what is assumed no likelier than anything else: what the record alone tells.
-    pub fn left_open_by_record(&self, found: &Lag) -> f64 {
-        self.open(found, 0.0)
-    }
-
-    fn open(&self, found: &Lag, price: f64) -> f64 {
         if self.hold == Hold::BandLimited {
             return 0.0;
         }
         if self.std > 0.0 {
             return self.own(found, self.std).square();
         }
-        let rivals = self.rivals(found, price);
+        let rivals = self.rivals(found, 0.0);
         let most = rivals.iter().map(|rival| rival.odds).fold(0.0, f64::max);
         let share = |odds: f64| (odds - most).exp();
         let all = share(0.0) + rivals.iter().map(|rival| share(rival.odds)).sum::<f64>();
@@ -236,12 +228,9 @@ mod tests {
     fn what_is_left_open_is_the_prior_before_a_record_and_the_lag_itself_after_it() {
         let held = Timing::new(Hold::Zero);
         let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.01;
-        assert!(near(held.left_open(&Lag::UNKNOWN), 0.0196), "{}", held.left_open(&Lag::UNKNOWN));
+        assert!(near(held.left_open(&Lag::UNKNOWN), 0.2169), "{}", held.left_open(&Lag::UNKNOWN));
         assert!(near(held.left_open(&found(0.3)), 0.09), "{}", held.left_open(&found(0.3)));
-        assert!(held.left_open(&found(0.0)) < 1e-6, "{}", held.left_open(&found(0.0)));
-        assert!(near(held.left_open_by_record(&Lag::UNKNOWN), 0.2169), "{}", held.left_open_by_record(&Lag::UNKNOWN));
-        let little = Lag::of(-0.13, 0.26);
-        assert!(held.left_open_by_record(&little) > 10.0 * held.left_open(&little), "the prior alone rules it out");
+        assert!(near(held.left_open(&found(0.0)), 0.043 * 0.0223_f64.powi(2)), "{}", held.left_open(&found(0.0)));
         let told = held.corrected(&found(-0.25), 1000).unwrap();
         assert!(near(told.left_open(&Lag::UNKNOWN), 0.02 * 0.02 + EXACT * EXACT));
     }

@@ -15,7 +15,7 @@ use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
-use crate::law::{Motion, Term};
+use crate::law::{Model, Motion, Term};
 
 /// A run that has caught up is closed only when the record has grown by this fraction since the last one: what it adds
 /// to the information is then about as small …
@@ -91,8 +91,7 @@ impl Segment {
         }
         self.fit.gain = f64::INFINITY;
         (self.missing, self.untried) = (None, None);
-        (self.timing.lag, self.timing.open) = (Lag::UNKNOWN, 0.0);
-        self.timing.slope.fill(0.0);
+        self.timing.clear();
         self.score_test.likeliest = None;
         (self.score_test.next_try, self.score_test.next_look) = (0, 0);
         self.convergence.clear();
@@ -248,23 +247,28 @@ impl Segment {
         self.score_test.likeliest.map_or(0.0, |lacked| lacked.missing.evidence)
     }
 
-    /// When F acted, by the run that explains the record better with a lag, against the better one without.
+    /// When F acted, by the run that explains the record better with a lag, against the better one without; and by the
+    /// same run were the law to have every term that it may have.
     fn tell_lag(&mut self) {
         let Segment { score_test, timing, fit, run, active, .. } = self;
         let MissingEffects { own, in_the_sensors, .. } = score_test;
         let track = &run.filter_run.track;
         let under = run.lag.told(own, track, fit.overdispersion, &mut timing.slope);
         timing.lag = under.lag;
+        let mut better = (&run.lag, &run.filter_run, fit.overdispersion);
         let InTheSensors { lag, filter_run, slope, running, .. } = in_the_sensors;
-        if !(*running && filter_run.track.count == track.count) {
-            return;
+        if *running && filter_run.track.count == track.count {
+            own.solve(&filter_run.information, active);
+            let told = lag.told(own, &filter_run.track, 1.0, slope);
+            if told.with() > under.with() {
+                timing.lag = Lag { evidence: told.with() - told.without.max(under.without), ..told.lag };
+                timing.slope.copy_from_slice(slope);
+                better = (lag, filter_run, 1.0);
+            }
         }
-        own.solve(&filter_run.information, active);
-        let told = lag.told(own, &filter_run.track, 1.0, slope);
-        if told.with() > under.with() {
-            timing.lag = Lag { evidence: told.with() - told.without.max(under.without), ..told.lag };
-            timing.slope.copy_from_slice(slope);
-        }
+        let (lag, filter_run, overdispersion) = better;
+        own.solve(&filter_run.information, &[true; Model::MAX_TERMS][..active.len()]);
+        timing.whole = lag.told(own, &filter_run.track, overdispersion, &mut timing.whole_slope).lag;
     }
 
     /// What run and prior say together about the coefficients.
@@ -327,7 +331,9 @@ impl Segment {
             *value += samples * slope;
         }
         problem.scatter(&self.coefficients, &mut self.all);
-        self.timing.lag = Lag::of(self.timing.lag.samples - samples, self.timing.lag.std);
+        for lag in [&mut self.timing.lag, &mut self.timing.whole] {
+            *lag = Lag::of(lag.samples - samples, lag.std);
+        }
         self.timing.open = problem.timing.left_open(&self.timing.lag);
         self.constancy.clear();
         self.begin_run(window);

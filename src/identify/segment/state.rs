@@ -73,6 +73,9 @@ pub struct OpenTiming {
     pub(super) open: f64,
     /// What a sample of it makes of the free coefficients.
     pub slope: Vec<f64>,
+    /// Both with every term that the law may have: one that it lacks, or has wrongly, may hide a lag.
+    pub(super) whole: Lag,
+    pub(super) whole_slope: Vec<f64>,
 }
 
 /// How well a law explains its record.
@@ -174,6 +177,21 @@ pub(super) struct InTheSensors {
     pub(super) running: bool,
 }
 
+impl OpenTiming {
+    /// Of `n` free terms of which no record has told anything.
+    pub(super) fn unknown(n: usize) -> OpenTiming {
+        let (lag, slope) = (Lag::UNKNOWN, vec![0.0; n]);
+        OpenTiming { lag, open: 0.0, whole_slope: slope.clone(), slope, whole: lag }
+    }
+
+    /// Nothing has been told.
+    pub(super) fn clear(&mut self) {
+        (self.lag, self.open, self.whole) = (Lag::UNKNOWN, 0.0, Lag::UNKNOWN);
+        self.slope.fill(0.0);
+        self.whole_slope.fill(0.0);
+    }
+}
+
 impl Fit {
     /// Of a law that no run has told anything of.
     fn unknown() -> Fit {
@@ -207,7 +225,7 @@ impl Segment {
             missing: None,
             untried: None,
             untried_step: vec![0.0; n],
-            timing: OpenTiming { lag: Lag::UNKNOWN, open: 0.0, slope: vec![0.0; n] },
+            timing: OpenTiming::unknown(n),
             known: Known {
                 information: Information::none(n),
                 inertia: None,
@@ -311,17 +329,21 @@ impl Segment {
         active.map(|index| self.std(index).powi(2)).sum::<f64>() / squares
     }
 
-    /// Variance of the same kind that no std holds: what the record alone leaves open of when F acted, beyond what is
-    /// open where what is assumed is the likelier.
+    /// Variance of the same kind that no std holds: what the record leaves open of when F acted were the law to have
+    /// every term that it may have, beyond what it leaves open with the law's own.
     pub fn untold_error(&self, problem: &Problem) -> f64 {
-        let timing = &self.timing;
-        self.error_of_lag((problem.timing.left_open_by_record(&timing.lag) - timing.open).max(0.0))
+        let OpenTiming { open, whole, whole_slope, .. } = &self.timing;
+        self.error_of(whole_slope, (problem.timing.left_open(whole) - open).max(0.0))
     }
 
     /// What a lag of that square, in squares of a sample, makes of e.
     pub fn error_of_lag(&self, square: f64) -> f64 {
+        self.error_of(&self.timing.slope, square)
+    }
+
+    fn error_of(&self, slope: &[f64], square: f64) -> f64 {
         let squares = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>();
-        square * squares(&self.timing.slope) / squares(self.own())
+        square * squares(slope) / squares(self.own())
     }
 
     /// The law as the library keeps it.

@@ -3,7 +3,7 @@
 use super::regime::Event;
 use super::state::{Setup, Tracker};
 use crate::identify::problem::Problem;
-use crate::identify::validation::SURE;
+use crate::identify::validation::{SURE, VALIDATED};
 
 impl Tracker {
     /// Makes the segment's law known; it is validated where it states that it is known well enough, and stands.
@@ -30,11 +30,11 @@ impl Tracker {
         }
     }
 
-    /// Whether e of what is published is below the bound beyond chance, whatever the record alone leaves open of when F
-    /// acted. What chance has left a longer record takes away, and is waited for; an error that lasts it does not.
+    /// Whether e of what is published is below the bound beyond chance, whatever terms may hide of when F acted. What
+    /// chance has left a longer record takes away, and is waited for; an error that lasts it does not.
     fn is_sure(&self, problem: &Problem) -> bool {
-        let untold = self.segment.untold_error(problem);
-        self.segment.fit.overdispersion > 1.0 || self.published.stated_error() + untold < SURE
+        let bound = if self.segment.fit.overdispersion > 1.0 { VALIDATED } else { SURE };
+        self.published.stated_error() + self.segment.untold_error(problem) < bound
     }
 
     /// What the segment says of each coefficient.
