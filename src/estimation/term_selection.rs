@@ -9,6 +9,7 @@
 //! it drops.
 
 use super::information::{Information, Solution};
+use super::odds::TWENTY_TO_ONE;
 use serde::{Deserialize, Serialize};
 
 /// Prior log-odds of a term that the law before had, in twice nats: a switch that changes the structure is one in e¹⁰
@@ -155,11 +156,13 @@ impl TermSelection {
         }
     }
 
-    /// Eliminates once more for each term that has gone, with that one kept; leaves the likeliest structure.
+    /// Eliminates once more for each term that has gone, with that one kept; leaves the likeliest structure, that of the
+    /// first elimination where none is likelier at odds of twenty to one.
     fn keep_in_turn(&mut self, record: &Record, active: &mut [bool], solution: &mut Solution) {
         self.greedy.copy_from_slice(active);
         self.best.copy_from_slice(active);
-        let mut most = self.worth(record, active);
+        // where two terms have done the same so far, rounding would choose between them anew at every run
+        let mut most = self.worth(record, active) + 2.0 * TWENTY_TO_ONE;
         for kept in 0..active.len() {
             if self.greedy[kept] {
                 continue;
