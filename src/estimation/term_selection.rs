@@ -9,7 +9,6 @@
 //! it drops.
 
 use super::information::{Information, Solution};
-use super::odds::TWENTY_TO_ONE;
 use serde::{Deserialize, Serialize};
 
 /// Prior log-odds of a term that the law before had, in twice nats: a switch that changes the structure is one in e¹⁰
@@ -19,6 +18,10 @@ const PRIOR_LOG_ODDS: f64 = 20.0;
 /// Smallest share of its own that a term must have beside the others, for the information to be trusted with all of
 /// them: a thousand times what rounding leaves of a pivot.
 const CLEAR: f64 = 1e-9;
+
+/// Structures that differ by less than this in twice nats are as likely: where two terms have done the same so far,
+/// rounding would choose between them anew at every run.
+const ALIKE: f64 = 1.0;
 
 /// The terms of the law as it was, once there was one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -156,13 +159,12 @@ impl TermSelection {
         }
     }
 
-    /// Eliminates once more for each term that has gone, with that one kept; leaves the likeliest structure, that of the
-    /// first elimination where none is likelier at odds of twenty to one.
+    /// Eliminates once more for each term that has gone, with that one kept; leaves the likeliest structure, that of
+    /// the first elimination where others are as likely.
     fn keep_in_turn(&mut self, record: &Record, active: &mut [bool], solution: &mut Solution) {
         self.greedy.copy_from_slice(active);
         self.best.copy_from_slice(active);
-        // where two terms have done the same so far, rounding would choose between them anew at every run
-        let mut most = self.worth(record, active) + 2.0 * TWENTY_TO_ONE;
+        let mut most = self.worth(record, active) + ALIKE;
         for kept in 0..active.len() {
             if self.greedy[kept] {
                 continue;
