@@ -38,9 +38,9 @@ pub const INSTANTS: usize = 5;
 /// Filters.
 const RIVALS: usize = SWITCHED + INSTANTS;
 
-/// A switch comes somewhere within an interval: over it the coefficients are others than before and after, by these
-/// parts of a switch's std, that add up to the whole. At steps of 50 ms one at the interval's beginning lost 25 nats to
-/// a drift (docs/decisions/drift.md).
+/// A switch comes somewhere within an interval: over it the coefficients are others than before, and than after, by
+/// these parts of a switch's std, ½ and √¾, whose squares make up the whole. At steps of 50 ms one at the interval's
+/// beginning lost 25 nats to a drift (docs/decisions/drift.md).
 const WITHIN: [f64; 2] = [0.5, 0.866];
 
 /// Samples that every filter takes in a step, until all are taken: 11 filters of 4 samples bound the step's work.

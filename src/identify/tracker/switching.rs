@@ -58,11 +58,9 @@ impl Tracker {
     /// Whether an effect that the law in use lacks, by all that it has followed, stands out more than a switch: the law
     /// is tried with it first. An alarm that the user's own deviation threshold asks for does not wait.
     fn is_effect(&mut self, excess: f64) -> bool {
-        if excess <= 0.0 {
-            return false;
-        }
         let Tracker { monitor, segment, .. } = self;
-        let lacked = monitor.law.likeliest_effect(TWENTY_TO_ONE.max(excess), &mut segment.untried_step);
+        let asked = (excess > 0.0).then(|| TWENTY_TO_ONE.max(excess));
+        let lacked = asked.and_then(|least| monitor.law.likeliest_effect(least, &mut segment.untried_step));
         if lacked.is_some() && self.fitting == Fitting::Refining {
             segment.untried = lacked;
         }
