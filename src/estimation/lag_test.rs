@@ -44,15 +44,34 @@ impl Lag {
 }
 
 /// What a run says of when F acted, and how well it explains its record with its coefficients at the maximum.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Told {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ToldLag {
     /// The lag, against none in the same run.
     pub lag: Lag,
+    /// What one of a sample makes of the free coefficients, n.
+    pub slope: Vec<f64>,
     /// Log-likelihood without a lag, nats.
     pub without: f64,
 }
 
-impl Told {
+impl ToldLag {
+    /// Nothing, of `n` free terms.
+    pub fn none(n: usize) -> ToldLag {
+        ToldLag { lag: Lag::UNKNOWN, slope: vec![0.0; n], without: 0.0 }
+    }
+
+    /// Forgets what was told.
+    pub fn clear(&mut self) {
+        (self.lag, self.without) = (Lag::UNKNOWN, 0.0);
+        self.slope.fill(0.0);
+    }
+
+    /// Takes over what another run says.
+    pub fn copy_from(&mut self, other: &ToldLag) {
+        (self.lag, self.without) = (other.lag, other.without);
+        self.slope.copy_from_slice(&other.slope);
+    }
+
     /// Log-likelihood with the lag, nats.
     pub fn with(&self) -> f64 {
         self.without + self.lag.evidence
@@ -106,14 +125,13 @@ impl LagTest {
         self.lags.iter_mut().for_each(|sums| sums.shift_beside(step));
     }
 
-    /// When F acted against when it is taken to have, by a run of that track which says `own` of the law's terms;
-    /// `slope` becomes what a lag of one sample makes of the free coefficients, n.
-    pub fn told(&self, own: &OwnTerms, track: &Track, overdispersion: f64, slope: &mut [f64]) -> Told {
+    /// Tells when F acted against when it is taken to have, by a run of that track which says `own` of the law's terms.
+    pub fn tell(&self, own: &OwnTerms, track: &Track, overdispersion: f64, told: &mut ToldLag) {
         let track = track.no_quieter();
         let solved = self.lags.each_ref().map(|sums| sums.gain(own));
         let (place, sign) = if solved[0].1 >= solved[1].1 { (0, 1.0) } else { (1, -1.0) };
         let (samples, gain, information) = solved[place];
-        for (row, slope) in slope.iter_mut().enumerate() {
+        for (row, slope) in told.slope.iter_mut().enumerate() {
             *slope = if own.active[row] { -sign * self.lags[place].shared(row, own) } else { 0.0 };
         }
         // what the coefficients' step and the lag take off the squares, from which the noise is known
@@ -125,7 +143,7 @@ impl LagTest {
         let variance = overdispersion * left(step + gain) * squares / (track.total() * information);
         let evidence = (gained(step + gain) - gained(step)) / overdispersion;
         let lag = Lag { samples: sign * samples, std: variance.sqrt(), evidence };
-        let lag = if information > 0.0 { lag } else { Lag::UNKNOWN };
-        Told { lag, without: track.log_likelihood() + gained(step) }
+        told.lag = if information > 0.0 { lag } else { Lag::UNKNOWN };
+        told.without = track.log_likelihood() + gained(step);
     }
 }

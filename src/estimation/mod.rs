@@ -47,7 +47,7 @@ pub use filter::{Channel, Filter, Innovation, Noise, times, white_acceleration};
 pub use information::{Information, Solution};
 pub use initial_state::{LOST, initial_state};
 pub use innovation_gate::{InnovationGate, OUTLYING};
-pub use lag_test::{Lag, LagTest};
+pub use lag_test::{Lag, LagTest, ToldLag};
 pub use odds::{SAMPLES_OF_A_VARIANCE, TWENTY_TO_ONE, log_sum};
 pub use one_more_coefficient::OwnTerms;
 pub use pass::{IntervalMap, Observation, Pass, gains};

@@ -1,6 +1,5 @@
 //! Samples laid out for weak rows; of a stretch of the window, with estimates in place of what is not measured.
 
-use super::packed;
 use super::problem::Problem;
 use super::sample::Sample;
 use super::window::Window;
@@ -15,31 +14,11 @@ pub const LONGEST_VARIATION: usize = 2048;
 
 /// Room for one section.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(from = "PackedSection", into = "PackedSection")]
 pub struct SectionBuffer {
     pub t: Vec<f64>,
     pub q: Vec<f64>,
     pub qd: Vec<f64>,
     excitation: Vec<f64>,
-}
-
-/// A section in a saved state.
-#[derive(Serialize, Deserialize)]
-struct PackedSection(#[serde(with = "packed")] Vec<Sample>);
-
-impl From<SectionBuffer> for PackedSection {
-    fn from(SectionBuffer { t, q, qd, excitation }: SectionBuffer) -> PackedSection {
-        let sample = |slot: usize| Sample { t: t[slot], q: q[slot], qd: qd[slot], excitation: excitation[slot] };
-        PackedSection((0..t.len()).map(sample).collect())
-    }
-}
-
-impl From<PackedSection> for SectionBuffer {
-    fn from(PackedSection(samples): PackedSection) -> SectionBuffer {
-        let mut buffer = SectionBuffer::new(samples.len());
-        samples.iter().enumerate().for_each(|(slot, sample)| buffer.put(slot, sample));
-        buffer
-    }
 }
 
 /// Writes the room alone of a buffer that is loaded anew before every use; for `#[serde(serialize_with)]`.

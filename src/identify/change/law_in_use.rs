@@ -2,7 +2,7 @@
 //! law.
 
 use super::adaptive_noise::AdaptiveNoise;
-use crate::estimation::{Innovation, Lacked, Lag, LagTest, Noise, Observation, OwnTerms, Pass, ScoreTest};
+use crate::estimation::{Innovation, Lacked, LagTest, Noise, Observation, OwnTerms, Pass, ScoreTest, ToldLag};
 use crate::identify::library::{KnownLaw, Trials};
 use crate::identify::problem::Problem;
 use crate::identify::segment::{MotionScales, Segment};
@@ -32,8 +32,8 @@ pub struct LawInUse {
     effects: ScoreTest,
     /// What it says of the law's own terms, as last asked.
     own: OwnTerms,
-    /// What a sample of a lag of F makes of the free coefficients, as last told.
-    pub lag_slope: Vec<f64>,
+    /// When F acted by all of its record, as last told.
+    pub told: ToldLag,
     /// Its terms: the model's and, last, an effect that the model lacks.
     pub terms: Vec<Term>,
     /// All coefficients, that of the effect which the model lacks the last.
@@ -75,7 +75,7 @@ impl LawInUse {
             lag: LagTest::new(n),
             effects: ScoreTest::new(&problem.terms, n),
             own: OwnTerms::none(n),
-            lag_slope: vec![0.0; n],
+            told: ToldLag::none(n),
             terms: problem.terms_and_effect(),
             all: problem.known.clone(),
             active: vec![true; n],
@@ -141,13 +141,12 @@ impl LawInUse {
         self.all[self.all.len() - 1]
     }
 
-    /// When F acted by all of its record up to now.
-    pub fn tell_lag(&mut self) -> Lag {
-        let LawInUse { run, lag, own, lag_slope, active, overdispersion, .. } = self;
+    /// Tells when F acted, by all of its record up to now.
+    pub fn tell_lag(&mut self) {
+        let LawInUse { run, lag, own, told, active, overdispersion, .. } = self;
         own.solve(&run.information, active);
-        let told = lag.told(own, &run.track, *overdispersion, lag_slope);
+        lag.tell(own, &run.track, *overdispersion, told);
         own.clear();
-        told.lag
     }
 
     /// The effect that it lacks most by all of its record up to now, of more evidence than that; `step` becomes by how

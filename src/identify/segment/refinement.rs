@@ -201,7 +201,7 @@ impl Segment {
         self.take_step(problem);
         self.tell_error(problem, settings, &track, window);
         self.follow_noise(problem, settings, &track, window);
-        self.timing.open = problem.timing.left_open(&self.timing.lag);
+        self.timing.open = problem.timing.left_open(&self.timing.told.lag);
         self.runs.calm = if self.is_calm() { self.runs.calm + 1 } else { 0 };
         self.confirm();
         self.compare();
@@ -253,22 +253,22 @@ impl Segment {
         let Segment { score_test, timing, fit, run, active, .. } = self;
         let MissingEffects { own, in_the_sensors, .. } = score_test;
         let track = &run.filter_run.track;
-        let under = run.lag.told(own, track, fit.overdispersion, &mut timing.slope);
-        timing.lag = under.lag;
+        run.lag.tell(own, track, fit.overdispersion, &mut timing.told);
         let mut better = (&run.lag, &run.filter_run, fit.overdispersion);
-        let InTheSensors { lag, filter_run, slope, running, .. } = in_the_sensors;
+        let InTheSensors { lag, filter_run, told, running, .. } = in_the_sensors;
         if *running && filter_run.track.count == track.count {
             own.solve(&filter_run.information, active);
-            let told = lag.told(own, &filter_run.track, 1.0, slope);
-            if told.with() > under.with() {
-                timing.lag = Lag { evidence: told.with() - told.without.max(under.without), ..told.lag };
-                timing.slope.copy_from_slice(slope);
+            lag.tell(own, &filter_run.track, 1.0, told);
+            if told.with() > timing.told.with() {
+                let evidence = told.with() - told.without.max(timing.told.without);
+                timing.told.copy_from(told);
+                timing.told.lag.evidence = evidence;
                 better = (lag, filter_run, 1.0);
             }
         }
         let (lag, filter_run, overdispersion) = better;
         own.solve(&filter_run.information, &[true; Model::MAX_TERMS][..active.len()]);
-        timing.whole = lag.told(own, &filter_run.track, overdispersion, &mut timing.whole_slope).lag;
+        lag.tell(own, &filter_run.track, overdispersion, &mut timing.whole);
     }
 
     /// What run and prior say together about the coefficients.
@@ -327,14 +327,14 @@ impl Segment {
     /// F has acted so many samples later than was assumed: the law that would have been found, and the record once more
     /// under it.
     pub fn begin_later(&mut self, problem: &Problem, window: &Window, samples: f64) {
-        for (value, slope) in self.coefficients.iter_mut().zip(&self.timing.slope) {
+        for (value, slope) in self.coefficients.iter_mut().zip(&self.timing.told.slope) {
             *value += samples * slope;
         }
         problem.scatter(&self.coefficients, &mut self.all);
-        for lag in [&mut self.timing.lag, &mut self.timing.whole] {
+        for lag in [&mut self.timing.told.lag, &mut self.timing.whole.lag] {
             *lag = Lag::of(lag.samples - samples, lag.std);
         }
-        self.timing.open = problem.timing.left_open(&self.timing.lag);
+        self.timing.open = problem.timing.left_open(&self.timing.told.lag);
         self.constancy.clear();
         self.begin_run(window);
     }

@@ -4,8 +4,8 @@ use super::convergence::Convergence;
 use super::motion_scales::MotionScales;
 use super::prior::InertiaPrior;
 use crate::estimation::{
-    AddedEffect, Information, KnownEffect, Lacked, Lag, LagTest, Missing, Noise, OwnTerms, Pass, ScoreTest, Solution,
-    TermSelection,
+    AddedEffect, Information, KnownEffect, Lacked, LagTest, Missing, Noise, OwnTerms, Pass, ScoreTest, Solution,
+    TermSelection, ToldLag,
 };
 use crate::identify::library::Estimate;
 use crate::identify::problem::Problem;
@@ -68,14 +68,11 @@ pub struct Segment {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OpenTiming {
     /// The lag beyond the one assumed.
-    pub lag: Lag,
+    pub told: ToldLag,
     /// Mean square of it that this leaves open.
     pub(super) open: f64,
-    /// What a sample of it makes of the free coefficients.
-    pub slope: Vec<f64>,
-    /// Both with every term that the law may have: one that it lacks, or has wrongly, may hide a lag.
-    pub(super) whole: Lag,
-    pub(super) whole_slope: Vec<f64>,
+    /// The same lag with every term that the law may have: one that it lacks, or has wrongly, may hide it.
+    pub(super) whole: ToldLag,
 }
 
 /// How well a law explains its record.
@@ -172,7 +169,7 @@ pub(super) struct InTheSensors {
     pub(super) filter_run: Pass,
     pub(super) noise: Noise,
     pub(super) lag: LagTest,
-    pub(super) slope: Vec<f64>,
+    pub(super) told: ToldLag,
     /// Whether there is one.
     pub(super) running: bool,
 }
@@ -180,15 +177,14 @@ pub(super) struct InTheSensors {
 impl OpenTiming {
     /// Of `n` free terms of which no record has told anything.
     pub(super) fn unknown(n: usize) -> OpenTiming {
-        let (lag, slope) = (Lag::UNKNOWN, vec![0.0; n]);
-        OpenTiming { lag, open: 0.0, whole_slope: slope.clone(), slope, whole: lag }
+        OpenTiming { told: ToldLag::none(n), open: 0.0, whole: ToldLag::none(n) }
     }
 
     /// Nothing has been told.
     pub(super) fn clear(&mut self) {
-        (self.lag, self.open, self.whole) = (Lag::UNKNOWN, 0.0, Lag::UNKNOWN);
-        self.slope.fill(0.0);
-        self.whole_slope.fill(0.0);
+        self.open = 0.0;
+        self.told.clear();
+        self.whole.clear();
     }
 }
 
@@ -254,7 +250,7 @@ impl Segment {
                     filter_run: Pass::new(n),
                     noise: Noise { sensor: [1.0; 2], process: 1.0 },
                     lag: LagTest::new(n),
-                    slope: vec![0.0; n],
+                    told: ToldLag::none(n),
                     running: false,
                 },
             },
@@ -319,7 +315,7 @@ impl Segment {
     /// Std of the free coefficient, with what its record leaves open of when F acted; infinite where the data do not
     /// determine it.
     pub fn std(&self, free: usize) -> f64 {
-        self.solution.std(free, self.fit.overdispersion).hypot(self.timing.open.sqrt() * self.timing.slope[free])
+        self.solution.std(free, self.fit.overdispersion).hypot(self.timing.open.sqrt() * self.timing.told.slope[free])
     }
 
     /// The variance that the estimate states for e of eq. (8), relative: Σ std² ÷ Σθ².
@@ -332,13 +328,13 @@ impl Segment {
     /// Variance of the same kind that no std holds: what the record leaves open of when F acted were the law to have
     /// every term that it may have, beyond what it leaves open with the law's own.
     pub fn untold_error(&self, problem: &Problem) -> f64 {
-        let OpenTiming { open, whole, whole_slope, .. } = &self.timing;
-        self.error_of(whole_slope, (problem.timing.left_open(whole) - open).max(0.0))
+        let OpenTiming { open, whole, .. } = &self.timing;
+        self.error_of(&whole.slope, (problem.timing.left_open(&whole.lag) - open).max(0.0))
     }
 
     /// What a lag of that square, in squares of a sample, makes of e.
     pub fn error_of_lag(&self, square: f64) -> f64 {
-        self.error_of(&self.timing.slope, square)
+        self.error_of(&self.timing.told.slope, square)
     }
 
     fn error_of(&self, slope: &[f64], square: f64) -> f64 {

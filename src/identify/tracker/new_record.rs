@@ -51,7 +51,7 @@ impl Tracker {
 
     /// What is assumed of when F acted follows what the record of the present law tells.
     pub fn correct_timing(&mut self, problem: &mut Problem) {
-        let Some(corrected) = self.corrected_timing(problem, &self.segment.timing.lag) else { return };
+        let Some(corrected) = self.corrected_timing(problem, &self.segment.timing.told.lag) else { return };
         let before = std::mem::replace(&mut problem.timing, corrected);
         self.window.set_timing(corrected.hold, corrected.lag - before.lag);
         self.begin_under_another_timing(problem, corrected.late() - before.late());
@@ -71,7 +71,7 @@ impl Tracker {
             self.published.identified = None;
         }
         self.segment.begin_later(problem, &self.window, later);
-        self.monitor.law.begin_later(problem, &self.segment.timing.slope, later);
+        self.monitor.law.begin_later(problem, &self.segment.timing.told.slope, later);
         self.monitor.bank.clear();
         self.begin_weak_rows(self.window.end());
         match self.regime.law() {

@@ -48,9 +48,10 @@ impl Tracker {
             monitor.bank.step(&monitor.law.run.map, &innovations);
             monitor.law.next += 1;
         }
-        self.library.in_sight = self.in_sight(setup, post_alarm.left);
-        if self.library.in_sight.is_none() && self.window.ready() >= post_alarm.until {
-            self.end_post_alarm();
+        match self.in_sight(setup, post_alarm.left) {
+            Some(verdict) => self.recognise(setup.problem, verdict),
+            None if self.window.ready() >= post_alarm.until => self.end_post_alarm(),
+            None => {}
         }
     }
 
@@ -85,9 +86,6 @@ impl Tracker {
     /// Carries the trial of the known laws on; returns how many samples it ran, of [`TRIAL_BUDGET`] at most.
     pub(super) fn try_known(&mut self, setup: Setup) -> usize {
         self.weigh_after_alarm(setup);
-        if let Some(verdict) = self.library.in_sight.take() {
-            self.recognise(setup.problem, verdict);
-        }
         let place = self.regime.recognition().map(|recognition| recognition.place);
         let library = &mut self.library;
         let used = library.trials.advance(&library.known, setup.problem, &self.window, place, TRIAL_BUDGET);
@@ -105,7 +103,7 @@ impl Tracker {
             (Some(place), Some(found)) if place == found.place => self.enter(Event::RecognitionWeighed(None)),
             (Some(place), _) if self.is_contradicted(place, verdict.is_some()) => {
                 self.withdraw(setup.problem, self.segment.start);
-                self.library.in_sight = found;
+                found.into_iter().for_each(|found| self.recognise(setup.problem, found));
             }
             (Some(place), _) if verdict.is_some() => {
                 if let Some(verdict) = self.library.trials.on(place, &self.library.known) {

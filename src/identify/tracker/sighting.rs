@@ -1,7 +1,7 @@
-//! The library as the identifier uses it: known laws, their trials, and the one that stands out.
+//! The library as the identifier uses it: known laws and their trials.
 
 use super::regime::Recognition;
-use crate::identify::library::{KnownLaws, Trials, Verdict};
+use crate::identify::library::{KnownLaws, Trials};
 use crate::identify::problem::Problem;
 use serde::{Deserialize, Serialize};
 
@@ -10,8 +10,6 @@ use serde::{Deserialize, Serialize};
 pub(super) struct Library {
     pub(super) known: KnownLaws,
     pub(super) trials: Trials,
-    /// What says that a law is to be recognised in the next step.
-    pub(super) in_sight: Option<Verdict>,
     /// Start of a record on which the known laws are to be tried as soon as it has begun.
     pub(super) trial_due: Option<u64>,
 }
@@ -19,13 +17,13 @@ pub(super) struct Library {
 impl Library {
     /// No law is known; those that are learned before the first sample are tried at once.
     pub(super) fn new(problem: &Problem) -> Library {
-        Library { known: KnownLaws::new(problem.n()), trials: Trials::new(problem), in_sight: None, trial_due: Some(0) }
+        Library { known: KnownLaws::new(problem.n()), trials: Trials::new(problem), trial_due: Some(0) }
     }
 
     /// No known law is on trial any more.
     pub(super) fn end_trials(&mut self) {
         self.trials.end();
-        (self.in_sight, self.trial_due) = (None, None);
+        self.trial_due = None;
     }
 
     /// What a free coefficient's std owes to the doubt whether the law was recognised rightly; `spread` is how far a

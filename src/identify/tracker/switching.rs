@@ -44,13 +44,12 @@ impl Tracker {
     /// Whether F acted at another time than is assumed, by all that the law in use has followed: that is told rather
     /// than a switch where it stands out more than that is above its threshold.
     fn is_lag(&mut self, problem: &Problem, excess: f64) -> bool {
-        let lag = self.monitor.law.tell_lag();
-        let stands_out = problem.timing.odds(&lag) > excess;
-        let is_lag = stands_out && self.corrected_timing(problem, &lag).is_some();
+        self.monitor.law.tell_lag();
+        let told = &self.monitor.law.told;
+        let stands_out = problem.timing.odds(&told.lag) > excess;
+        let is_lag = stands_out && self.corrected_timing(problem, &told.lag).is_some();
         if is_lag {
-            let timing = &mut self.segment.timing;
-            timing.lag = lag;
-            timing.slope.copy_from_slice(&self.monitor.law.lag_slope);
+            self.segment.timing.told.copy_from(told);
         }
         is_lag
     }
