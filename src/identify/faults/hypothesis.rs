@@ -213,16 +213,6 @@ impl Hypothesis {
         self.forget_held();
     }
 
-    /// These channels are in a burst.
-    pub fn begin_bursts(&mut self, bursts: [Burst; 2]) {
-        self.bursts = bursts;
-    }
-
-    /// How likely each channel is in a burst.
-    pub fn bursts(&self) -> [Burst; 2] {
-        self.bursts
-    }
-
     /// The samples held have been let through.
     pub fn forget_held(&mut self) {
         (self.faulty, self.doubtful) = ([0; 2], [0; 2]);

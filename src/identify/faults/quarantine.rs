@@ -306,24 +306,8 @@ impl Quarantine {
         let full = self.count == ROOM;
         match self.weighing.verdict() {
             Verdict::Named(place) => self.name(place, law),
-            Verdict::Open if full => {
-                let best = self.weighing.best();
-                self.name(best, law);
-                self.decide_on(best, arrival, law);
-            }
+            Verdict::Open if full => self.name(self.weighing.best(), law),
             Verdict::Open => {}
-        }
-    }
-
-    /// What had no name for so long is decided: from here on the other hypotheses begin anew, with what speaks for
-    /// them.
-    fn decide_on(&mut self, best: usize, arrival: &Arrival, law: &Expected) {
-        let decided = self.weighing.hypothesis(best);
-        if self.stance == Stance::Named(best) && (decided.kind == Kind::Readings || decided.kind.is_kick()) {
-            let (filter, bursts) = (decided.filter(), decided.bursts());
-            self.weighing.begin(&filter, law, arrival.dt, (arrival.dt / SELDOM).min(OVER), [0.0; 2]);
-            self.weighing.begin_bursts(bursts);
-            self.stance = Stance::Named(0);
         }
     }
 

@@ -1,7 +1,6 @@
 //! All hypotheses on the same readings: whether the law or a sensor is the likelier, and by how much.
 
 use super::hypothesis::{Expected, Hypothesis, Kind, Value};
-use super::price::Burst;
 use crate::estimation::{Channel, Filter, TWENTY_TO_ONE, log_sum};
 use crate::law::Drive;
 use serde::{Deserialize, Serialize};
@@ -46,11 +45,6 @@ impl Weighing {
             let run: f64 = Channel::ALL.into_iter().filter(varies).map(|channel| runs[channel as usize]).sum();
             hypothesis.begin(filter, law, dt, log - run);
         }
-    }
-
-    /// The first hypothesis is named: these channels are in a burst already.
-    pub fn begin_bursts(&mut self, bursts: [Burst; 2]) {
-        self.hypotheses[0].begin_bursts(bursts);
     }
 
     /// There is nothing to weigh any more.

@@ -79,8 +79,8 @@ pub struct Trials {
     terms: Vec<Term>,
     all: Vec<f64>,
     start: u64,
-    /// The place of the law that was left at the start.
-    left: Option<usize>,
+    /// The place of the law that a switch at the start has left.
+    pub left: Option<usize>,
     running: bool,
     next_weighing: u64,
 }
@@ -126,11 +126,6 @@ impl Trials {
         let place = self.all.len() - 1;
         self.all[place] = effect.map_or(0.0, |effect| effect.coefficient);
         effect.into_iter().for_each(|effect| self.terms[place] = effect.term);
-    }
-
-    /// The record's start is that of a switch from the law at `place`.
-    pub fn set_left(&mut self, place: Option<usize>) {
-        self.left = place;
     }
 
     /// It and its coefficient.

@@ -3,7 +3,7 @@
 use super::convergence::Record;
 use super::state::Segment;
 use crate::estimation::TWENTY_TO_ONE;
-use crate::identify::validation::{Evidence, SURE, Stability, VALIDATED, is_one_law};
+use crate::identify::validation::{SURE, Stability, VALIDATED, is_one_law};
 
 /// Largest Gauss–Newton decrement, in units of the number of coefficients, of an estimate that has settled: a step of
 /// one std in each of them, which is what the record leaves open.
@@ -30,14 +30,9 @@ impl Segment {
         self.runs.astray >= LOST
     }
 
-    /// Whether the law would hold with other terms too: with all of them it is sure enough, it has stood long, or it
-    /// explains its record with the terms of the law before.
+    /// Whether the law has stood its stability check, and would hold with other terms too.
     pub fn stands(&self) -> bool {
-        self.stability.stands(&Evidence {
-            explains: self.fit.explains,
-            full_error: self.selection.full_error,
-            as_before: self.selection.is_as_before(&self.active),
-        })
+        self.stability.stands(self.selection.full_error)
     }
 
     /// Whether the law is known as well as one that is validated has to be.

@@ -8,11 +8,8 @@ use crate::identify::problem::Problem;
 use crate::identify::segment::{Guess, IN_THE_SENSORS, Prior, Segment};
 use crate::law::Compiled;
 
-/// Runs after which a fit that has not settled is given up: nine decades of process noise take six of them …
+/// Runs after which a fit that has not settled is given up: nine decades of process noise take six of them.
 const PATIENCE: u32 = 40;
-
-/// … and one that explains its record where the segment does not.
-const LONG_PATIENCE: u32 = 400;
 
 /// Samples from which on the kind of a record's error can be told.
 const ENOUGH: u64 = 500;
@@ -36,12 +33,8 @@ const EFFECT: f64 = 13.0;
 const MOST: f64 = 0.5;
 
 /// What the latest record must explain better than the whole one to replace it, nats per measurement: the noise may
-/// have changed …
+/// have changed.
 const CLEARLY: f64 = 0.1;
-
-/// … or, where it explains itself down to the sensors' noise and the whole one does not, in 1 ÷ √ of the number of
-/// measurements: the mean of the right law's likelihood scatters by 0.7 of that.
-const SURELY: f64 = 2.0;
 
 impl Tracker {
     /// A record that has grown long without a validated law may hold a switch that nobody saw: the weak rows begin
@@ -200,8 +193,7 @@ impl Tracker {
             }
             promising && !wins
         } else {
-            let closed = self.alternative.runs.closed;
-            closed <= PATIENCE || promising && closed < LONG_PATIENCE
+            self.alternative.runs.closed <= PATIENCE
         };
         self.fitting = if goes_on { Fitting::Contested } else { Fitting::Refining };
         self.alternative.begin_run(&self.window);
@@ -238,11 +230,9 @@ impl Tracker {
 
     /// What the other fit must explain better than the segment, nats per measurement.
     fn margin(&self) -> f64 {
-        let measurements = 2.0 * self.alternative.length(self.window.ready()) as f64;
         match self.alternative.start > self.segment.start {
-            true if self.explains_what_the_segment_does_not() => (SURELY / measurements.sqrt()).min(CLEARLY),
             true => CLEARLY,
-            false => TWENTY_TO_ONE / measurements,
+            false => TWENTY_TO_ONE / (2.0 * self.alternative.length(self.window.ready()) as f64),
         }
     }
 }

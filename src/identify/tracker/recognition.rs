@@ -185,8 +185,7 @@ impl Tracker {
         let start = self.segment.start;
         let wrong = self.regime.recognition().map(|recognition| recognition.place);
         self.withdraw(problem, start);
-        let sensor = self.monitor.law.noise.sensor.map(Some);
-        self.library.trials.begin(&self.library.known, &self.window, start, sensor);
+        self.begin_trials(start, self.monitor.law.noise.sensor.map(Some));
         wrong.into_iter().for_each(|place| self.library.trials.rule_out(place));
     }
 
@@ -236,16 +235,21 @@ impl Tracker {
         }
     }
 
-    /// Puts the known laws on trial over a record that no alarm began, as soon as it has two samples.
-    pub(super) fn begin_trial(&mut self, setup: Setup) {
+    /// Puts the known laws on trial over the record from sample `start`, under these variances of the sensors.
+    pub(super) fn begin_trials(&mut self, start: u64, sensor: [Option<f64>; 2]) {
+        self.library.trials.begin(&self.library.known, &self.window, start, sensor);
+    }
+
+    /// The same over a record that no alarm began, as soon as it has two samples.
+    pub(super) fn begin_first_trials(&mut self, setup: Setup) {
         let settings = setup.settings;
         let due = self.library.trial_due.filter(|start| self.window.end() >= start + 2);
         if let Some(start) = due {
             self.library.trial_due = None;
             let given = [settings.noise_q, settings.noise_qd].map(|std| (std > 0.0).then_some(std * std));
             self.segment.start = start;
-            self.library.trials.begin(&self.library.known, &self.window, start, given);
-            self.library.trials.set_left(None);
+            self.library.trials.left = None;
+            self.begin_trials(start, given);
         }
     }
 }

@@ -116,7 +116,7 @@ impl Tracker {
     }
 
     fn seek_constant_law(&mut self, setup: Setup) {
-        self.begin_trial(setup);
+        self.begin_first_trials(setup);
         let used = self.try_known(setup);
         if !self.regime.is_valid() || self.regime.is_drifting() {
             self.begin_afresh();

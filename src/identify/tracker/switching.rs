@@ -105,7 +105,8 @@ impl Tracker {
         }
         self.believe_change(problem, &suspect);
         self.begin_new_law(problem, start);
-        self.begin_trials_after_switch(start);
+        self.library.trials.left = self.regime.law().and_then(|number| self.library.known.position(number));
+        self.begin_trials(start, self.monitor.law.noise.sensor.map(Some));
         self.begin_weak_rows(start);
         self.weak_row_drift.restart(start);
         let post_alarm = self.post_alarm(instant);
@@ -125,14 +126,6 @@ impl Tracker {
             *centre = monitor.law.all[problem.free[index]];
             *change = if plausible { *centre + *change } else { *centre };
         }
-    }
-
-    fn begin_trials_after_switch(&mut self, start: u64) {
-        let sensor = self.monitor.law.noise.sensor.map(Some);
-        let left = self.regime.law().and_then(|number| self.library.known.position(number));
-        let library = &mut self.library;
-        library.trials.begin(&library.known, &self.window, start, sensor);
-        library.trials.set_left(left);
     }
 
     fn count_switch(&mut self, instant: u64, distance: Option<f64>) {

@@ -13,4 +13,4 @@ mod stability;
 pub use bounds::{SURE, TRUSTED, VALIDATED};
 pub use constancy::Constancy;
 pub use sandwich::SandwichFactor;
-pub use stability::{Evidence, Stability, is_one_law};
+pub use stability::{Stability, is_one_law};

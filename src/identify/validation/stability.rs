@@ -11,12 +11,6 @@ const GROWTH: f64 = 1.1;
 /// 11 of 62 switches of van der Pol records at σ = 0.1 came before any law.
 const LONGER_GROWTH: f64 = 1.25;
 
-/// A law that has stood for less than the longer growth must be this sure with all terms, as e of eq. (8).
-const WHOLE: f64 = 0.5 * TRUSTED;
-
-/// One with the terms of the law before must be known at least so well with all terms, as e of eq. (8).
-const OPEN: f64 = 1.0;
-
 /// A law that has stood while its record grew by this factor stands whatever other terms might have done …
 const LONG: f64 = 2.4;
 
@@ -34,17 +28,6 @@ pub struct Stability {
     stood_from: u64,
 }
 
-/// What else the check goes by.
-#[derive(Clone, Copy, Debug)]
-pub struct Evidence {
-    /// Whether the law explains its record down to the sensors' noise.
-    pub explains: bool,
-    /// e of eq. (8) that the law states with every term that it may have.
-    pub full_error: f64,
-    /// Whether it has the terms of the law before.
-    pub as_before: bool,
-}
-
 impl Stability {
     /// Of a law of `count` coefficients, nothing seen.
     pub fn new(count: usize) -> Stability {
@@ -56,15 +39,11 @@ impl Stability {
         (self.stood, self.length) = (false, 0);
     }
 
-    /// Whether the law would hold with other terms too: with all of them it is sure enough, it has stood long, or it
-    /// explains its record with the terms of the law before.
-    pub fn stands(&self, evidence: &Evidence) -> bool {
-        let grown = self.length as f64 / self.stood_from as f64;
-        let allowed = if grown < LONGER_GROWTH { WHOLE } else { TRUSTED };
-        let sure = evidence.full_error < allowed;
-        let long = grown >= LONG && self.length >= SAMPLES;
-        let as_before = evidence.explains && evidence.as_before;
-        self.stood && (sure || long || as_before && evidence.full_error < OPEN)
+    /// Whether the law would hold with other terms too: with every term that it may have it states an e of eq. (8) that
+    /// is good enough, or it has stood long.
+    pub fn stands(&self, full_error: f64) -> bool {
+        let long = self.length as f64 >= LONG * self.stood_from as f64 && self.length >= SAMPLES;
+        self.stood && (full_error < TRUSTED || long)
     }
 
     /// By which factor the record has to grow until the law is confirmed.
