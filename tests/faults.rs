@@ -119,6 +119,18 @@ fn a_few_bad_readings_of_the_velocity_are_no_switch() {
     }
 }
 
+/// Under a rough excitation readings that are each too near to be held speak for a switch of the inertia together.
+#[test]
+fn a_burst_in_which_no_reading_is_far_off_is_no_switch() {
+    for seed in 10..14 {
+        let scenario = plant(Builtin::DuffingWhite, seed, 1e3, 9.0);
+        let mut samples = samples(&scenario);
+        burst(&mut samples[FIRST..FIRST + 20], 3.4, &mut ChaCha8Rng::seed_from_u64(seed));
+        let seen = watch(&scenario, Builtin::DuffingWhite, &samples);
+        assert!(seen.switches == 0, "seed {seed}: {seen:?}");
+    }
+}
+
 /// Its first reading, just too near to be one of a burst alone, would speak for a switch with 18 nats.
 #[test]
 fn a_burst_has_begun_before_it_is_sure() {

@@ -142,7 +142,7 @@ fn transition([by_q, by_qd]: [f64; 2], dt: f64) -> Matrix<2> {
 const SHARED: f64 = 0.05;
 
 /// A sensor that has become louder has this many times the std: three times as much is what is told from a burst.
-const LOUDER: f64 = 3.0;
+pub const LOUDER: f64 = 3.0;
 
 /// A stuck sensor that varies is none, nats.
 const VARIES: f64 = -40.0;

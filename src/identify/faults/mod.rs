@@ -29,6 +29,6 @@ mod weighing;
 pub use after_outage::{AfterOutage, Returned};
 pub use clock::Clock;
 pub use excitation::ExcitationGate;
-pub use hypothesis::Expected;
+pub use hypothesis::{Expected, LOUDER};
 pub use quarantine::Quarantine;
 pub use repetition::Repetition;

@@ -2,7 +2,7 @@
 
 use super::hypothesis::{Expected, Kind, Value};
 use super::repetition::Repetition;
-use super::weighing::{Verdict, Weighing};
+use super::weighing::Weighing;
 use crate::estimation::{Channel, Filter, OUTLYING};
 use crate::identify::packed_readings;
 use crate::identify::reading::Reading;
@@ -304,11 +304,8 @@ impl Quarantine {
         self.weighing.take(law, arrival.dt, &arrival.drive, arrival.values, self.count);
         self.count += 1;
         let full = self.count == ROOM;
-        match self.weighing.verdict() {
-            Verdict::Named(place) => self.name(place, law),
-            Verdict::Open if full => self.name(self.weighing.best(), law),
-            Verdict::Open => {}
-        }
+        let named = self.weighing.named().or_else(|| full.then(|| self.weighing.best()));
+        named.into_iter().for_each(|place| self.name(place, law));
     }
 
     /// What was held enters the record as the named hypothesis has it.

@@ -5,15 +5,6 @@ use crate::estimation::{Channel, Filter, TWENTY_TO_ONE, log_sum};
 use crate::law::Drive;
 use serde::{Deserialize, Serialize};
 
-/// What the readings say.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// The hypothesis of this place is named.
-    Named(usize),
-    /// Not yet.
-    Open,
-}
-
 /// The hypotheses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Weighing {
@@ -71,20 +62,17 @@ impl Weighing {
         sum(true) - sum(false)
     }
 
-    /// What is named: the law against all faults, or one fault against the law and against the other faults.
-    pub fn verdict(&self) -> Verdict {
+    /// The place of what is named: the law against all faults, or one fault against the law and against the other faults.
+    pub fn named(&self) -> Option<usize> {
         let odds = self.law_against_fault();
         if odds.is_nan() || odds.abs() < TWENTY_TO_ONE {
-            return Verdict::Open;
+            return None;
         }
         let best = self.likeliest(odds > 0.0);
         let own = &self.hypotheses[best];
         let others = self.hypotheses.iter().filter(|other| !other.kind.is_law() && other.kind != own.kind);
         let rival = others.map(|other| other.log).fold(f64::NEG_INFINITY, log_sum);
-        match odds > 0.0 || own.log - rival > TWENTY_TO_ONE {
-            true => Verdict::Named(best),
-            false => Verdict::Open,
-        }
+        (odds > 0.0 || own.log - rival > TWENTY_TO_ONE).then_some(best)
     }
 
     /// Log-odds of the hypothesis of this place against all others.

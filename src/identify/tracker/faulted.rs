@@ -76,6 +76,11 @@ impl Tracker {
             self.lose_excitation();
             return true;
         }
+        // one that began when it is most likely, as rare as a switch
+        if self.monitor.law.adaptive.burst() > suspect.evidence {
+            self.restart_law(None);
+            return true;
+        }
         self.is_offset(suspect, threshold)
     }
 
