@@ -62,7 +62,7 @@ impl Weighing {
         sum(true) - sum(false)
     }
 
-    /// The place of what is named: the law against all faults, or one fault against the law and against the other faults.
+    /// The place of what is named: the law against all faults, or one fault against the law and all others.
     pub fn named(&self) -> Option<usize> {
         let odds = self.law_against_fault();
         if odds.is_nan() || odds.abs() < TWENTY_TO_ONE {
