@@ -73,6 +73,11 @@ impl AdaptiveNoise {
         self.burst[0] + self.burst[1]
     }
 
+    /// What it explained is no reason against a switch that comes later.
+    pub fn forget_burst(&mut self) {
+        self.burst = [0.0; 2];
+    }
+
     /// By how much the channel's variance is larger now.
     #[inline]
     pub fn factor(&self, channel: usize) -> f64 {

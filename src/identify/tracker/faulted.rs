@@ -78,6 +78,7 @@ impl Tracker {
         }
         // one that began when it is most likely, as rare as a switch
         if self.monitor.law.adaptive.burst() > suspect.evidence {
+            self.monitor.law.adaptive.forget_burst();
             self.restart_law(None);
             return true;
         }
