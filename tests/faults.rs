@@ -131,6 +131,18 @@ fn a_burst_in_which_no_reading_is_far_off_is_no_switch() {
     }
 }
 
+/// What a loud second explained is no reason against the switch that follows it.
+#[test]
+fn a_switch_after_a_loud_second_is_seen_soon() {
+    for seed in 10..14 {
+        let scenario = plant(Builtin::DuffingWhite, seed, FAULT + 0.5, 9.5);
+        let mut samples = samples(&scenario);
+        burst(&mut samples[FIRST..FIRST + 500], 5.0, &mut ChaCha8Rng::seed_from_u64(seed));
+        let seen = watch(&scenario, Builtin::DuffingWhite, &samples);
+        assert!(seen.switches == 1, "seed {seed}: {seen:?}");
+    }
+}
+
 /// Its first reading, just too near to be one of a burst alone, would speak for a switch with 18 nats.
 #[test]
 fn a_burst_has_begun_before_it_is_sure() {
