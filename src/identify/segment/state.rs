@@ -337,9 +337,10 @@ impl Segment {
         self.error_of(&whole.slope, (problem.timing.left_open(&whole.lag) - open).max(0.0))
     }
 
-    /// Whether an effect that the law lacks, or has wrongly, may make e larger than a valid law's may be.
+    /// Whether an effect that the law lacks, or has wrongly, may make e larger than a valid law's may be. Where the
+    /// error is none of the sensors', no candidate's evidence is in nats.
     pub fn is_doubted(&self) -> bool {
-        self.score_test.posterior.wrong > (-TWENTY_TO_ONE).exp()
+        self.fit.explains && self.score_test.posterior.wrong > (-TWENTY_TO_ONE).exp()
     }
 
     /// What a lag of that square, in squares of a sample, makes of e.
