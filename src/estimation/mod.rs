@@ -14,8 +14,7 @@
 //! - [`Pass`]: one run over a record: likelihood, score and Fisher information of the coefficients;
 //! - [`AugmentedFilter`]: the state together with coefficients that may wander;
 //! - [`ScoreTest`]: effects that the law does not have, tested in the stream, and [`LagTest`]: whether F acted
-//!   later, both beside its [`OwnTerms`]; [`AddedEffect`]: one of the effects, added; [`EffectPosterior`]: whether that
-//!   is the right one;
+//!   later, both beside its [`OwnTerms`]; [`AddedEffect`]: one of the effects, added;
 //! - [`TermSelection`]: which of the terms that it may have the law has;
 //! - [`Information`]: sums of what is known of the coefficients, and [`Solution`], what follows from them; [`System`]
 //!   solves them.
@@ -24,7 +23,6 @@ mod added_effect;
 mod augmented_filter;
 mod covariance;
 mod difference_noise;
-mod effect_posterior;
 mod filter;
 mod information;
 mod initial_state;
@@ -45,7 +43,6 @@ pub use added_effect::{AddedEffect, KnownEffect};
 pub use augmented_filter::{AugmentedFilter, Start, Unknowns};
 pub use covariance::Matrix;
 pub use difference_noise::DifferenceNoise;
-pub use effect_posterior::{EffectPosterior, LawWithEffect, WithAndWithout};
 pub use filter::{Channel, Filter, Innovation, Noise, times, white_acceleration};
 pub use information::{Information, Solution};
 pub use initial_state::{LOST, initial_state};

@@ -63,21 +63,21 @@ pub struct Lacked {
 /// The candidates beside a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScoreTest {
-    pub(super) candidates: Vec<Candidate>,
+    candidates: Vec<Candidate>,
     /// Whether they have gone with the run from its beginning: what speaks for another law of late is no effect.
-    pub(super) whole: bool,
+    whole: bool,
     before: State,
     /// The excitation for which the candidates' forces there are known.
     excitation: f64,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Candidate {
-    pub(super) entry: usize,
-    pub(super) term: Term,
+struct Candidate {
+    entry: usize,
+    term: Term,
     /// Its force at the last sample.
     force: f64,
-    pub(super) sums: Sums,
+    sums: Sums,
 }
 
 impl ScoreTest {
@@ -183,7 +183,7 @@ impl ScoreTest {
 }
 
 /// Whether both are the same effect, whatever their inner parameters.
-pub(super) fn is_same(one: Term, other: Term) -> bool {
+fn is_same(one: Term, other: Term) -> bool {
     match (one.effect(), other.effect()) {
         (Some(one), Some(other)) => one.id() == other.id(),
         _ => one == other,

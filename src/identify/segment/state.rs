@@ -4,8 +4,8 @@ use super::convergence::Convergence;
 use super::motion_scales::MotionScales;
 use super::prior::InertiaPrior;
 use crate::estimation::{
-    AddedEffect, EffectPosterior, Information, KnownEffect, Lacked, LagTest, Missing, Noise, OwnTerms, Pass, ScoreTest,
-    Solution, TWENTY_TO_ONE, TermSelection, ToldLag, WithAndWithout,
+    AddedEffect, Information, KnownEffect, Lacked, LagTest, Missing, Noise, OwnTerms, Pass, ScoreTest, Solution,
+    TermSelection, ToldLag,
 };
 use crate::identify::library::Estimate;
 use crate::identify::problem::Problem;
@@ -154,9 +154,6 @@ pub(super) struct MissingEffects {
     pub(super) own: OwnTerms,
     /// The effect that explained most in the last run, named or not.
     pub(super) likeliest: Option<Lacked>,
-    /// What the last run that had settled says of the law's effect, and where it is asked.
-    pub(super) posterior: EffectPosterior,
-    pub(super) laws: WithAndWithout,
     /// Length of the record from which on the law is tried with an effect …
     pub(super) next_try: u64,
     /// … and, where it does not explain the record, with all error in the sensors.
@@ -247,8 +244,6 @@ impl Segment {
                 candidates: ScoreTest::new(&problem.terms, n),
                 own: OwnTerms::none(n),
                 likeliest: None,
-                posterior: EffectPosterior::default(),
-                laws: WithAndWithout::none(n),
                 next_try: 0,
                 next_look: 0,
                 in_the_sensors: InTheSensors {
@@ -335,12 +330,6 @@ impl Segment {
     pub fn untold_error(&self, problem: &Problem) -> f64 {
         let OpenTiming { open, whole, .. } = &self.timing;
         self.error_of(&whole.slope, (problem.timing.left_open(&whole.lag) - open).max(0.0))
-    }
-
-    /// Whether an effect that the law lacks, or has wrongly, may make e larger than a valid law's may be. Where the
-    /// error is none of the sensors', no candidate's evidence is in nats.
-    pub fn is_doubted(&self) -> bool {
-        self.fit.explains && self.score_test.posterior.wrong > (-TWENTY_TO_ONE).exp()
     }
 
     /// What a lag of that square, in squares of a sample, makes of e.

@@ -20,7 +20,6 @@ impl Tracker {
         if output.drifting {
             return;
         }
-        output.valid &= !self.segment.is_doubted();
         let stated = problem.free.iter().filter(|index| shown[**index].std.is_some()).count();
         // a law whose innovations are white is on its way to state an std of its own
         let consistent = self.is_refining() && self.segment.fit.explains;

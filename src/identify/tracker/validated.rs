@@ -34,7 +34,7 @@ impl Tracker {
     /// chance has left a longer record takes away, and is waited for; an error that lasts it does not.
     fn is_sure(&self, problem: &Problem) -> bool {
         let bound = if self.segment.fit.overdispersion > 1.0 { VALIDATED } else { SURE };
-        !self.segment.is_doubted() && self.published.stated_error() + self.segment.untold_error(problem) < bound
+        self.published.stated_error() + self.segment.untold_error(problem) < bound
     }
 
     /// What the segment says of each coefficient.
