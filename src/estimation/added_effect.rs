@@ -24,7 +24,7 @@ pub struct KnownEffect {
 /// The effect beside a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AddedEffect {
-    sums: Sums,
+    pub(super) sums: Sums,
     before: State,
     /// Coefficient and 1 ÷ its variance before the record.
     known: [f64; 2],

@@ -14,7 +14,8 @@
 //! - [`Pass`]: one run over a record: likelihood, score and Fisher information of the coefficients;
 //! - [`AugmentedFilter`]: the state together with coefficients that may wander;
 //! - [`ScoreTest`]: effects that the law does not have, tested in the stream, and [`LagTest`]: whether F acted
-//!   later, both beside its [`OwnTerms`]; [`AddedEffect`]: one of the effects, added;
+//!   later, both beside its [`OwnTerms`]; [`AddedEffect`]: one of the effects, added; [`EffectPosterior`]: whether that
+//!   is the right one;
 //! - [`TermSelection`]: which of the terms that it may have the law has;
 //! - [`Information`]: sums of what is known of the coefficients, and [`Solution`], what follows from them; [`System`]
 //!   solves them.
@@ -23,6 +24,7 @@ mod added_effect;
 mod augmented_filter;
 mod covariance;
 mod difference_noise;
+mod effect_posterior;
 mod filter;
 mod information;
 mod initial_state;
@@ -43,6 +45,7 @@ pub use added_effect::{AddedEffect, KnownEffect};
 pub use augmented_filter::{AugmentedFilter, Start, Unknowns};
 pub use covariance::Matrix;
 pub use difference_noise::DifferenceNoise;
+pub use effect_posterior::{EffectPosterior, LawWithEffect, WithAndWithout};
 pub use filter::{Channel, Filter, Innovation, Noise, times, white_acceleration};
 pub use information::{Information, Solution};
 pub use initial_state::{LOST, initial_state};

@@ -72,7 +72,16 @@ impl OwnTerms {
 
     /// The terms that the law has and its record determines.
     pub(super) fn determined(&self) -> impl Iterator<Item = usize> {
-        (0..self.active.len()).filter(|index| self.active[*index] && self.solution.determined[*index])
+        (0..self.active.len()).filter(|row| self.is_told(*row))
+    }
+
+    fn is_told(&self, row: usize) -> bool {
+        self.active[row] && self.solution.determined[row]
+    }
+
+    /// By how much the coefficient is another one at the maximum.
+    pub(super) fn step(&self, row: usize) -> f64 {
+        if self.is_told(row) { self.solution.step[row] } else { 0.0 }
     }
 }
 
@@ -131,21 +140,32 @@ impl Sums {
 
     /// (coefficient, gain in log-likelihood, information of its own) beside the law's own terms.
     pub(super) fn gain(&self, own: &OwnTerms) -> (f64, f64, f64) {
-        let (mut information, mut score) = (self.information, self.score);
+        let told = self.estimate(own, 0.0);
+        told.map_or((0.0, 0.0, 0.0), |(value, information)| (value, 0.5 * value * value * information, information))
+    }
+
+    /// (coefficient, information of its own) beside the law's own terms, were the score so much larger; none where they
+    /// leave next to nothing of it.
+    pub(super) fn estimate(&self, own: &OwnTerms, larger: f64) -> Option<(f64, f64)> {
+        let (mut information, mut score) = (self.information, self.score + larger);
         for row in own.determined() {
             let shared = self.shared(row, own);
             information -= self.cross[row] * shared;
             score -= shared * own.information.score[row];
         }
-        match information > OWN * self.information {
-            true => (score / information, 0.5 * score * score / information, information),
-            false => (0.0, 0.0, 0.0),
-        }
+        (information > OWN * self.information).then_some((score / information, information))
     }
 
-    /// Row of M⁻¹c: how much of the coefficient is one of the law's own.
+    /// Row of M⁻¹c: how much of the coefficient is one of the law's own; nothing of one that is not told.
     pub(super) fn shared(&self, row: usize, own: &OwnTerms) -> f64 {
         let n = self.cross.len();
-        own.determined().map(|column| own.solution.covariance[row * n + column] * self.cross[column]).sum()
+        let product = |column: usize| own.solution.covariance[row * n + column] * self.cross[column];
+        if own.is_told(row) { own.determined().map(product).sum() } else { 0.0 }
+    }
+
+    /// The law's own terms are told `own` with this coefficient; they become what they are told were it not `value` but
+    /// 0.
+    pub(super) fn take_out(&self, value: f64, own: &mut Information) {
+        own.score.iter_mut().zip(&self.cross).for_each(|(score, cross)| *score += value * cross);
     }
 }

@@ -63,21 +63,21 @@ pub struct Lacked {
 /// The candidates beside a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ScoreTest {
-    candidates: Vec<Candidate>,
+    pub(super) candidates: Vec<Candidate>,
     /// Whether they have gone with the run from its beginning: what speaks for another law of late is no effect.
-    whole: bool,
+    pub(super) whole: bool,
     before: State,
     /// The excitation for which the candidates' forces there are known.
     excitation: f64,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Candidate {
-    entry: usize,
-    term: Term,
+pub(super) struct Candidate {
+    pub(super) entry: usize,
+    pub(super) term: Term,
     /// Its force at the last sample.
     force: f64,
-    sums: Sums,
+    pub(super) sums: Sums,
 }
 
 impl ScoreTest {
@@ -183,7 +183,7 @@ impl ScoreTest {
 }
 
 /// Whether both are the same effect, whatever their inner parameters.
-fn is_same(one: Term, other: Term) -> bool {
+pub(super) fn is_same(one: Term, other: Term) -> bool {
     match (one.effect(), other.effect()) {
         (Some(one), Some(other)) => one.id() == other.id(),
         _ => one == other,

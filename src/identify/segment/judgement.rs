@@ -1,6 +1,7 @@
 //! Whether a segment's law may be shown, validated, or replaced by another one.
 
 use super::convergence::Record;
+use super::noise_covariance::UNEXPLAINED;
 use super::state::Segment;
 use crate::estimation::TWENTY_TO_ONE;
 use crate::identify::validation::{SURE, Stability, VALIDATED, is_one_law};
@@ -43,6 +44,12 @@ impl Segment {
     /// Whether nothing speaks against the law: no error that lasts, no estimate that a longer record contradicted.
     pub fn is_beyond_doubt(&self) -> bool {
         self.fit.explains && self.fit.overdispersion == 1.0 && !self.constancy.broken
+    }
+
+    /// Probability that an effect that the law lacks, or has wrongly, makes e larger than a valid law's may be. Where
+    /// its error lasts no candidate's evidence is in nats, and it says nothing.
+    pub fn doubt(&self) -> f64 {
+        if self.fit.overdispersion < UNEXPLAINED { self.score_test.posterior.wrong } else { 0.0 }
     }
 
     /// Whether its law has left what a shorter part of the record said, by more than that left open.

@@ -20,7 +20,7 @@ const LIFETIME: f64 = 1e7;
 
 /// Overdispersion of a record that its law does not explain: twice what is no chance for one coefficient; chance does
 /// not bring it to any of a dozen.
-const UNEXPLAINED: f64 = 5.0;
+pub(super) const UNEXPLAINED: f64 = 5.0;
 
 /// Overdispersion that is no chance: with 16 blocks it is 1 ± 0.35 for one coefficient of the right law, so that this
 /// is four stds.

@@ -10,12 +10,15 @@ use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
 use super::prior::{InertiaPrior, Prior};
 use super::state::{Checkpoint, InTheSensors, MissingEffects, NOISE_MEMORY, Runs, Segment};
-use crate::estimation::{Filter, Lag, LagTest, Missing, Noise, Observation, Pass, ScoreTest, TWENTY_TO_ONE};
+use crate::estimation::{
+    EffectPosterior, Filter, Lag, LagTest, LawWithEffect, Missing, Noise, Observation, Pass, ScoreTest, TWENTY_TO_ONE,
+};
 use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
 use crate::law::{Model, Motion, Term};
+use crate::limits::SETTLED_ERROR;
 
 /// A run that has caught up is closed only when the record has grown by this fraction since the last one: what it adds
 /// to the information is then about as small …
@@ -92,7 +95,7 @@ impl Segment {
         self.fit.gain = f64::INFINITY;
         (self.missing, self.untried) = (None, None);
         self.timing.clear();
-        self.score_test.likeliest = None;
+        (self.score_test.likeliest, self.score_test.posterior) = (None, EffectPosterior::default());
         (self.score_test.next_try, self.score_test.next_look) = (0, 0);
         self.convergence.clear();
         self.run.largest = [0.0; 2];
@@ -213,6 +216,9 @@ impl Segment {
 
     fn end_score_test(&mut self) {
         let settled = self.settled();
+        if settled {
+            self.weigh_effects();
+        }
         self.ask_for_effect(settled);
         if self.score_test.in_the_sensors.running {
             self.score_test.next_look = looks_again(self.length(self.run.next));
@@ -227,19 +233,37 @@ impl Segment {
     /// that which the law may have.
     fn ask_for_effect(&mut self, settled: bool) {
         let (length, has_effect) = (self.length(self.run.next), self.effect() != 0.0);
-        let Segment { score_test, run, active, fit, untried, untried_step, .. } = self;
-        let MissingEffects { candidates, own, likeliest, next_try, .. } = score_test;
+        let Segment { score_test, run, active, fit, untried, untried_step, step, .. } = self;
+        let MissingEffects { candidates, own, likeliest, posterior, next_try, .. } = score_test;
         match has_effect {
             true => run.effect.solve(own, &run.filter_run.information, active),
             false => own.solve(&run.filter_run.information, active),
         }
         // a run that has not settled does not follow the motion yet
         *likeliest = candidates.likeliest(own, fit.overdispersion).filter(|_| settled);
-        if let Some(lacked) = likeliest.filter(|lacked| lacked.missing.is_named() && length >= *next_try) {
-            candidates.moved(own, &lacked, untried_step);
+        let asked = match has_effect {
+            true => posterior.likelier.filter(|likelier| settled && likelier.missing.evidence > TWENTY_TO_ONE),
+            false => likeliest.filter(|lacked| lacked.missing.is_named()),
+        };
+        if let Some(lacked) = asked.filter(|_| length >= *next_try) {
+            match has_effect {
+                true => untried_step.copy_from_slice(step),
+                false => candidates.moved(own, &lacked, untried_step),
+            }
             *next_try = looks_again(length);
             *untried = Some(lacked);
         }
+    }
+
+    /// Whether the law has the right effect; `step` becomes what a likelier one makes of the coefficients.
+    fn weigh_effects(&mut self) {
+        let squares = self.own().iter().map(|value| value * value).sum();
+        let (term, coefficient) = (self.terms[self.terms.len() - 1], self.effect());
+        let Segment { score_test, run, active, fit, known, step, .. } = self;
+        let effect = (coefficient != 0.0).then_some((&run.effect, term, coefficient));
+        let law = LawWithEffect { effect, active, overdispersion: fit.overdispersion, squares, bound: SETTLED_ERROR };
+        let MissingEffects { candidates, laws, posterior, .. } = score_test;
+        *posterior = candidates.weigh(&law, laws, [&run.filter_run.information, &known.information], step);
     }
 
     /// Log-likelihood that the likeliest of the effects that the law lacks gains, named or not, nats.

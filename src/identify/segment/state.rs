@@ -4,8 +4,8 @@ use super::convergence::Convergence;
 use super::motion_scales::MotionScales;
 use super::prior::InertiaPrior;
 use crate::estimation::{
-    AddedEffect, Information, KnownEffect, Lacked, LagTest, Missing, Noise, OwnTerms, Pass, ScoreTest, Solution,
-    TermSelection, ToldLag,
+    AddedEffect, EffectPosterior, Information, KnownEffect, Lacked, LagTest, Missing, Noise, OwnTerms, Pass, ScoreTest,
+    Solution, TermSelection, ToldLag, WithAndWithout,
 };
 use crate::identify::library::Estimate;
 use crate::identify::problem::Problem;
@@ -154,6 +154,9 @@ pub(super) struct MissingEffects {
     pub(super) own: OwnTerms,
     /// The effect that explained most in the last run, named or not.
     pub(super) likeliest: Option<Lacked>,
+    /// What the last run that had settled says of the law's effect, and where it is asked.
+    pub(super) posterior: EffectPosterior,
+    pub(super) laws: WithAndWithout,
     /// Length of the record from which on the law is tried with an effect …
     pub(super) next_try: u64,
     /// … and, where it does not explain the record, with all error in the sensors.
@@ -244,6 +247,8 @@ impl Segment {
                 candidates: ScoreTest::new(&problem.terms, n),
                 own: OwnTerms::none(n),
                 likeliest: None,
+                posterior: EffectPosterior::default(),
+                laws: WithAndWithout::none(n),
                 next_try: 0,
                 next_look: 0,
                 in_the_sensors: InTheSensors {

@@ -163,7 +163,8 @@ impl Tracker {
         let [with, without] = [&self.alternative, &self.segment];
         let gain = 2.0 * with.length(self.window.ready()) as f64 * (with.fit.likelihood - without.fit.likelihood);
         let alone = with.effect_gain().unwrap_or(0.0);
-        gain.min(alone) > EFFECT && (with.fit.explains || with.noise.process < MOST * without.noise.process)
+        let least = if without.effect() == 0.0 { EFFECT } else { TWENTY_TO_ONE };
+        gain > least && alone > EFFECT && (with.fit.explains || with.noise.process < MOST * without.noise.process)
     }
 
     /// What later records know of the effect that the model lacks is what this one tells.

@@ -76,7 +76,8 @@ impl Tracker {
             return;
         }
         let drift = &self.augmented_drift;
-        if drift.found_drift() && !self.regime.is_drifting() && drift.stated_error() < TRUSTED {
+        let explained = self.segment.effect() != 0.0 && self.segment.settled() && self.segment.is_beyond_doubt();
+        if drift.found_drift() && !self.regime.is_drifting() && drift.stated_error() < TRUSTED && !explained {
             self.augmented_drift.follow();
             self.begin_drift(Follower::AugmentedFilters);
         }

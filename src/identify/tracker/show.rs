@@ -5,7 +5,7 @@ use crate::identify::problem::Problem;
 use crate::identify::report::{ByQuantity, Coefficient, Output};
 use crate::identify::segment::GROWTH;
 use crate::identify::settings::Settings;
-use crate::identify::validation::TRUSTED;
+use crate::identify::validation::{DOUBTED, TRUSTED};
 
 impl Tracker {
     /// Writes every output. Of a record whose law cannot state an honest std, the coefficients of the weak form stand
@@ -20,6 +20,7 @@ impl Tracker {
         if output.drifting {
             return;
         }
+        output.valid &= self.segment.doubt() < DOUBTED;
         let stated = problem.free.iter().filter(|index| shown[**index].std.is_some()).count();
         // a law whose innovations are white is on its way to state an std of its own
         let consistent = self.is_refining() && self.segment.fit.explains;

@@ -10,7 +10,7 @@ mod constancy;
 mod sandwich;
 mod stability;
 
-pub use bounds::{SURE, TRUSTED, VALIDATED};
+pub use bounds::{DOUBTED, DOUBTFUL, SURE, TRUSTED, VALIDATED};
 pub use constancy::Constancy;
 pub use sandwich::SandwichFactor;
 pub use stability::{Stability, is_one_law};
