@@ -81,12 +81,6 @@ impl Parameter {
         Parameter { name, unit: Some("s"), min, description, field }
     }
 
-    /// The parameter of that name.
-    pub fn from_name(name: &str) -> Option<&'static Parameter> {
-        const ALL: &[Parameter] = &Parameter::ALL;
-        ALL.iter().find(|parameter| parameter.name == name)
-    }
-
     /// Its value in settings that nobody touched.
     pub fn default(&self) -> f64 {
         self.value(Settings::default())
