@@ -1,7 +1,6 @@
 //! Whether a segment's law may be shown, validated, or replaced by another one.
 
 use super::convergence::Record;
-use super::noise_covariance::UNEXPLAINED;
 use super::state::Segment;
 use crate::estimation::TWENTY_TO_ONE;
 use crate::identify::validation::{SURE, Stability, VALIDATED, is_one_law};
@@ -46,10 +45,9 @@ impl Segment {
         self.fit.explains && self.fit.overdispersion == 1.0 && !self.constancy.broken
     }
 
-    /// Probability that an effect that the law lacks, or has wrongly, makes e larger than a valid law's may be. Where
-    /// its error lasts no candidate's evidence is in nats, and it says nothing.
+    /// Probability that an effect that the law lacks, or has wrongly, makes e larger than a valid law's may be.
     pub fn doubt(&self) -> f64 {
-        if self.fit.overdispersion < UNEXPLAINED { self.score_test.posterior.wrong } else { 0.0 }
+        self.score_test.posterior.wrong
     }
 
     /// Whether its law has left what a shorter part of the record said, by more than that left open.

@@ -8,6 +8,7 @@
 
 use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
+use super::noise_covariance::UNEXPLAINED;
 use super::prior::{InertiaPrior, Prior};
 use super::state::{Checkpoint, InTheSensors, MissingEffects, NOISE_MEMORY, Runs, Segment};
 use crate::estimation::{
@@ -216,7 +217,8 @@ impl Segment {
 
     fn end_score_test(&mut self) {
         let settled = self.settled();
-        if settled {
+        // where the error lasts no candidate's evidence is in nats, and what was known before stands
+        if settled && self.fit.overdispersion < UNEXPLAINED {
             self.weigh_effects();
         }
         self.ask_for_effect(settled);
