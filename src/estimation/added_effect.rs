@@ -5,7 +5,7 @@
 
 use super::filter::Innovation;
 use super::information::{Information, Solution};
-use super::one_more_coefficient::{OwnTerms, Sums};
+use super::one_more_coefficient::Sums;
 use super::pass::{Observation, Pass, gains};
 use crate::law::{Motion, State, Term};
 use serde::{Deserialize, Serialize};
@@ -26,6 +26,8 @@ pub struct KnownEffect {
 pub struct AddedEffect {
     pub(super) sums: Sums,
     before: State,
+    /// What a coefficient of 1 has done to (q, q̇) over the last interval.
+    pub input: [f64; 2],
     /// Coefficient and 1 ÷ its variance before the record.
     known: [f64; 2],
 }
@@ -33,12 +35,23 @@ pub struct AddedEffect {
 impl AddedEffect {
     /// None beside `n` free terms.
     pub fn new(n: usize) -> AddedEffect {
-        AddedEffect { sums: Sums::new(n), before: State::default(), known: [0.0; 2] }
+        AddedEffect { sums: Sums::new(n), before: State::default(), input: [0.0; 2], known: [0.0; 2] }
     }
 
     /// This is known of its coefficient before the record.
     pub fn suppose(&mut self, known: &KnownEffect) {
         self.known = [known.coefficient, known.precision];
+    }
+
+    /// ∂(q, q̇)/∂ its coefficient of the filtered state.
+    pub fn sensitivity(&self) -> [f64; 2] {
+        self.sums.sensitivity
+    }
+
+    /// Gives what went with a run for another one's room; both know the same beforehand from now on.
+    pub fn hand_over(&mut self, live: &mut AddedEffect) {
+        live.known = self.known;
+        std::mem::swap(self, live);
     }
 
     /// Begins beside a run.
@@ -71,23 +84,36 @@ impl AddedEffect {
     ) -> [f64; 2] {
         let pushed = push(effect, motion, self.before, pass, observation);
         self.before = pass.filter.state();
+        self.input = pass.map.push.map(|push| push * pushed);
         self.sums.take(pass, pushed, &gains(innovations), innovations, [0.0; 2])
     }
 
-    /// The law's own terms as the run says it of them, `own`, and of the effect.
-    pub fn solve(&self, terms: &mut OwnTerms, own: &Information, active: &[bool]) {
-        terms.solve_beside(own, active, Some(&self.sums));
+    /// What the law's own terms are told with the coefficient, which is `value`, left open …
+    pub fn leave_open(&self, value: f64, own: &mut Information) {
+        self.add_share(-1.0, value, own);
     }
 
-    /// What the law's own terms are told with the coefficient, which is `value`, left open.
-    pub fn leave_open(&self, value: f64, own: &mut Information) {
+    /// … and beside it again, in that room for one more unknown, what is told of itself last.
+    pub fn widen(&self, value: f64, own: &Information, whole: &mut Information) {
+        own.widen(whole);
+        let (information, score) = self.told(value);
+        whole.tell_last(&self.sums.cross, information, score);
+    }
+
+    /// Takes back that it was left open.
+    pub fn hold(&self, value: f64, own: &mut Information) {
+        self.add_share(1.0, value, own);
+    }
+
+    /// Adds so many times ccᵀ ÷ i and cs ÷ i.
+    fn add_share(&self, times: f64, value: f64, own: &mut Information) {
         let (information, score) = self.told(value);
         let n = own.n;
         for row in 0..n {
-            let share = self.sums.cross[row] / information;
-            own.score[row] -= share * score;
+            let share = times * self.sums.cross[row] / information;
+            own.score[row] += share * score;
             for (entry, cross) in own.matrix[row * n + row..(row + 1) * n].iter_mut().zip(&self.sums.cross[row..n]) {
-                *entry -= share * cross;
+                *entry += share * cross;
             }
         }
     }
@@ -149,6 +175,7 @@ fn push(term: Term, motion: &Motion, before: State, pass: &Pass, observation: &O
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::estimation::OwnTerms;
 
     /// What forty readings of x + 0.3 y + 0.5 z say of the first two coefficients, and of the third beside them: x and
     /// y from 0, z from 0.2, each with the std 0.1.
@@ -218,7 +245,7 @@ mod tests {
             }
         }
         let mut terms = OwnTerms::none(2);
-        effect.solve(&mut terms, &own, &[true; 2]);
+        terms.solve(&own, &[true; 2], Some(&effect));
         let mut all = Solution::none(4);
         all.solve(&whole, &[true; 4]);
         let (coefficient, gain, information) = other.gain(&terms);

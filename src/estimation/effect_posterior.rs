@@ -77,18 +77,15 @@ impl WithAndWithout {
     }
 
     /// As a run and what was known before it say it of the law.
-    fn solve(&mut self, run: &Information, known: &Information, law: &LawWithEffect) {
+    fn solve(&mut self, told: &[&Information], law: &LawWithEffect) {
         let WithAndWithout { with, without, information } = self;
-        information.clone_from_slices(run);
-        information.merge(known);
-        match law.effect {
-            Some((effect, _, coefficient)) => {
-                effect.solve(with, information, law.active);
-                effect.sums.take_out(coefficient, information);
-            }
-            None => with.solve(information, law.active),
+        information.clear();
+        told.iter().for_each(|told| information.merge(told));
+        with.solve(information, law.active, law.effect.map(|(effect, ..)| effect));
+        if let Some((effect, _, coefficient)) = law.effect {
+            effect.sums.take_out(coefficient, information);
         }
-        without.solve(information, law.active);
+        without.solve(information, law.active, None);
     }
 
     /// By how much a coefficient is another one without the effect.
@@ -151,20 +148,20 @@ impl LawWithEffect<'_> {
 }
 
 impl ScoreTest {
-    /// What the run with these candidates, and what was `known` before it, say of the law's effect; `step` becomes by
-    /// how much the free coefficients, n, are others with the likelier one. Nothing where the candidates have not gone
-    /// with the whole run.
+    /// What the run with these candidates, and what was known before it, say of the law's effect, being `told` of its own
+    /// terms; `step` becomes by how much the free coefficients, n, are others with the likelier one. Nothing where the
+    /// candidates have not gone with the whole run.
     pub fn weigh(
         &self,
         law: &LawWithEffect,
         terms: &mut WithAndWithout,
-        [run, known]: [&Information; 2],
+        told: &[&Information],
         step: &mut [f64],
     ) -> EffectPosterior {
         if !self.whole {
             return EffectPosterior::default();
         }
-        terms.solve(run, known, law);
+        terms.solve(told, law);
         let price = -(self.candidates.len().max(1) as f64).ln();
         let mut laws = Laws { most: 0.0, all: 0.0, wrong: 0.0 };
         let none: f64 = (0..law.active.len()).map(|row| terms.moved(row).powi(2)).sum();
@@ -240,7 +237,7 @@ mod tests {
         let effect = (with != 0.0).then(|| (&effect, Term::parse("cubic_damping").unwrap(), with));
         let law = LawWithEffect { effect, active: &[true; 2], overdispersion: 1.0, squares: 1.09, bound: 0.0025 };
         let (mut laws, mut step) = (WithAndWithout::none(2), [0.0; 2]);
-        let posterior = candidates.weigh(&law, &mut laws, [&own, &Information::none(2)], &mut step);
+        let posterior = candidates.weigh(&law, &mut laws, &[&own], &mut step);
         (posterior, step)
     }
 

@@ -57,6 +57,24 @@ impl Information {
         fewer.score.copy_from_slice(&self.score[..n]);
     }
 
+    /// Copies these sums into that room for one more unknown, the last, of which they say nothing.
+    pub fn widen(&self, wider: &mut Information) {
+        let n = self.n;
+        wider.clear();
+        for row in 0..n {
+            wider.matrix[row * (n + 1) + row..][..n - row].copy_from_slice(&self.matrix[row * n + row..(row + 1) * n]);
+        }
+        wider.score[..n].copy_from_slice(&self.score);
+    }
+
+    /// That is said of the last unknown: with each of the others, of itself, and its score.
+    pub(super) fn tell_last(&mut self, cross: &[f64], information: f64, score: f64) {
+        let n = self.n;
+        let column = cross.iter().take(n - 1).chain([&information]);
+        column.enumerate().for_each(|(row, entry)| self.matrix[row * n + n - 1] = *entry);
+        self.score[n - 1] = score;
+    }
+
     /// Multiplies all sums.
     pub fn scale(&mut self, factor: f64) {
         self.matrix.iter_mut().chain(&mut self.score).for_each(|entry| *entry *= factor);

@@ -1,5 +1,6 @@
 //! What a run of the filter says of one more coefficient than its law has, beside the law's own.
 
+use super::added_effect::AddedEffect;
 use super::filter::{Channel, Innovation};
 use super::information::{Information, Solution};
 use super::pass::Pass;
@@ -41,26 +42,14 @@ impl OwnTerms {
         self.solution.solve(&self.information, &self.active);
     }
 
-    /// As a run says it of those that are active.
-    pub fn solve(&mut self, own: &Information, active: &[bool]) {
-        self.solve_beside(own, active, None);
-    }
-
-    /// The same beside the effect added to them, of which the run says that.
-    pub(super) fn solve_beside(&mut self, own: &Information, active: &[bool], effect: Option<&Sums>) {
-        let (n, OwnTerms { information, solution, active: all }) = (own.n, self);
-        information.clear();
-        for row in 0..n {
-            let from = &own.matrix[row * n + row..(row + 1) * n];
-            information.matrix[row * (n + 1) + row..][..n - row].copy_from_slice(from);
-        }
-        information.score[..n].copy_from_slice(&own.score);
-        all[..n].copy_from_slice(active);
-        all[n] = effect.is_some();
-        if let Some(Sums { information: own, score, cross, .. }) = effect {
-            let column = cross.iter().take(n).chain([own]);
-            column.enumerate().for_each(|(row, entry)| information.matrix[row * (n + 1) + n] = *entry);
-            information.score[n] = *score;
+    /// As a run says it of those that are active, beside the effect that the law may have.
+    pub fn solve(&mut self, own: &Information, active: &[bool], effect: Option<&AddedEffect>) {
+        let OwnTerms { information, solution, active: all } = self;
+        own.widen(information);
+        all[..own.n].copy_from_slice(active);
+        all[own.n] = effect.is_some();
+        if let Some(AddedEffect { sums, .. }) = effect {
+            information.tell_last(&sums.cross, sums.information, sums.score);
         }
         solution.solve(information, all);
     }

@@ -82,7 +82,7 @@ impl GaussianPrior {
 impl BayesFactor {
     /// Room for `n` coefficients.
     pub fn new(n: usize) -> BayesFactor {
-        BayesFactor { record: Information::none(n), system: System::new(n), single: SingleChange::new(n) }
+        BayesFactor { record: Information::none(n), system: System::new(n), single: SingleChange::new(n, n) }
     }
 
     /// Log-evidence of the belief, nats, against certainty that the coefficients are at the record's point.

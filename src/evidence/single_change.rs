@@ -21,16 +21,16 @@ const OWN: f64 = 1e-9;
 /// Room for the changes of n coefficients, one at a time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SingleChange {
-    /// C through the elimination of A: n rows of as many lanes as n needs.
+    /// C through the elimination of A: a row for each coefficient that errs, of as many lanes as those need.
     crossed: Vec<Lane>,
     /// ½ s²τ²/(1 + iτ²) and 1 + iτ² of each.
     changes: Vec<[f64; 2]>,
 }
 
 impl SingleChange {
-    /// Room for `n` coefficients.
-    pub fn new(n: usize) -> SingleChange {
-        SingleChange { crossed: vec![[0.0; WIDTH]; n * n.div_ceil(WIDTH)], changes: vec![[0.0; 2]; n] }
+    /// Room for changes of `n` coefficients of a law that errs in `erring`, those the first.
+    pub fn new(n: usize, erring: usize) -> SingleChange {
+        SingleChange { crossed: vec![[0.0; WIDTH]; erring * erring.div_ceil(WIDTH)], changes: vec![[0.0; 2]; n] }
     }
 
     /// Log-evidence, nats, of a change of one coefficient, each as likely as the others, against none. `record` is what
@@ -61,7 +61,7 @@ impl SingleChange {
 
     /// What is shared, through the elimination; what is not open was not in it.
     fn cross(&mut self, n: usize, shared: impl Fn(usize, usize) -> f64, system: &System, open: &[bool]) {
-        for (erring, target) in self.crossed.chunks_exact_mut(n.div_ceil(WIDTH)).enumerate() {
+        for (erring, target) in self.crossed.chunks_exact_mut(open.len().div_ceil(WIDTH)).enumerate() {
             let target = &mut target.as_flattened_mut()[..n];
             let entries = target.iter_mut().enumerate();
             entries.for_each(|(changed, entry)| *entry = if open[erring] { shared(changed, erring) } else { 0.0 });
@@ -142,7 +142,7 @@ mod tests {
         system.set_right(record.score.iter().zip(&prior.score).map(|(a, b)| a + b));
         (0..3).filter(|index| !open[*index]).for_each(|index| system.isolate(index));
         system.eliminate(1e-13);
-        SingleChange::new(3).evidence(
+        SingleChange::new(3, 3).evidence(
             &record,
             |changed, erring| record.entry(changed, erring),
             &system,

@@ -68,26 +68,31 @@ pub struct Bank {
     told: Information,
     /// Room for a step of the coefficients and of the state.
     moved: Vec<f64>,
+    /// Of changes, and of the law's errors.
     system: System,
+    erring: System,
     single: SingleChange,
 }
 
 impl Bank {
-    /// Room for `capacity` ≥ 4 hypotheses on `n` coefficients.
+    /// Room for `capacity` ≥ 4 hypotheses on `n` coefficients that a switch may move. The law errs in those and in that
+    /// of an effect beside them.
     pub fn new(n: usize, capacity: usize) -> Bank {
-        let lanes = || vec![[0.0; WIDTH]; (n + 2).div_ceil(WIDTH)];
+        let erring = n + 1;
+        let lanes = || vec![[0.0; WIDTH]; (erring + 2).div_ceil(WIDTH)];
         Bank {
             n,
-            hypotheses: vec![Hypothesis::none(n); capacity],
+            hypotheses: vec![Hypothesis::none(erring); capacity],
             count: 0,
             spread: vec![1.0; n],
             spread_log_determinant: 0.0,
             shared: Shared { input: [lanes(), lanes()], rows: [lanes(), lanes()] },
             since: Information::none(n),
-            told: Information::none(n),
-            moved: vec![0.0; n + 2],
+            told: Information::none(erring),
+            moved: vec![0.0; erring + 2],
             system: System::new(n),
-            single: SingleChange::new(n),
+            erring: System::new(erring),
+            single: SingleChange::new(n, erring),
         }
     }
 
@@ -110,7 +115,7 @@ impl Bank {
             let least = self.least_missed(start);
             self.remove(least);
         }
-        self.hypotheses[self.count].begin(start, law, &self.spread, &mut self.system);
+        self.hypotheses[self.count].begin(start, law, &self.spread, &mut self.erring);
         self.count += 1;
     }
 
@@ -121,9 +126,10 @@ impl Bank {
         }
     }
 
-    /// Takes what one interval did and what its measurements said.
-    pub fn step(&mut self, map: &IntervalMap, innovations: &[Option<Innovation>; 2]) {
-        self.shared.set_input(map);
+    /// Takes what one interval did, to the state by unit of the effect's coefficient that much, and what its
+    /// measurements said.
+    pub fn step(&mut self, map: &IntervalMap, effect: [f64; 2], innovations: &[Option<Innovation>; 2]) {
+        self.shared.set_input(map, effect);
         let said = innovations.map(|innovation| innovation.map_or(Said::NOTHING, Said::from));
         let (residuals, weights) = (said.each_ref().map(|said| said.residual), said.each_ref().map(|said| said.weight));
         let unexplained = said.iter().map(|said| 0.5 * said.weight * said.residual * said.residual).sum::<f64>();
@@ -136,10 +142,11 @@ impl Bank {
         }
     }
 
-    /// The coefficients in use have become those plus `step`.
-    pub fn shift(&mut self, step: &[f64]) {
+    /// The coefficients in use, that of the effect the last, have become those plus `step`.
+    pub fn shift(&mut self, step: impl Iterator<Item = f64>) {
+        self.moved.iter_mut().zip(step).for_each(|(slot, step)| *slot = step);
         for hypothesis in &mut self.hypotheses[..self.count] {
-            hypothesis.shift(step, &mut self.moved);
+            hypothesis.shift(&mut self.moved);
         }
     }
 
@@ -247,7 +254,7 @@ impl Bank {
     fn weigh(&mut self, index: usize) -> [f64; 2] {
         self.hypotheses[index].information.lead(&mut self.since);
         let all = self.all_switched();
-        let Bank { hypotheses, since, told, system, single, spread, .. } = self;
+        let Bank { hypotheses, since, told, erring: system, single, spread, .. } = self;
         let hypothesis = &hypotheses[index];
         hypothesis.tell_of_error(told);
         let shared = |changed, erring| hypothesis.shared(changed, erring);
@@ -315,10 +322,10 @@ impl From<Innovation> for Said {
 }
 
 impl Shared {
-    fn set_input(&mut self, map: &IntervalMap) {
+    fn set_input(&mut self, map: &IntervalMap, effect: [f64; 2]) {
         let [to_q, to_qd] = &mut self.input;
         let slots = to_q.as_flattened_mut().iter_mut().zip(to_qd.as_flattened_mut());
-        for ((q, qd), input) in slots.zip(&map.input) {
+        for ((q, qd), input) in slots.zip(map.input.iter().chain([&effect])) {
             (*q, *qd) = (input[0], input[1]);
         }
     }
@@ -361,29 +368,41 @@ mod tests {
         (0..8).map(|k| [0.0, 0.1 * (0.05 * (f64::from(k) + 1.0) * number as f64).sin()]).collect()
     }
 
-    /// A law of which that much is known, and all of whose state.
-    fn law(information: &Information) -> Law<'_> {
-        Law { information, sensitivity: &[[0.0; 2]; 8], open: &[true; 8], own: &[true; 8], explains: true }
+    /// A law of eight coefficients of which that much is known, and all of whose state but for what an effect beside them
+    /// does to it.
+    fn law(information: &Information, effect: [f64; 2]) -> Law<'_> {
+        let sensitivity = &[[0.0; 2]; 8];
+        Law { information, sensitivity, effect, open: &[true; 8], own: &[true; 8], explains: true }
     }
 
     /// A bank that has seen `samples`, q̇ alone measured with std 1; at sample `switch` a coefficient moves by
     /// `change`.
     fn bank(samples: u64, switch: u64, change: f64) -> Bank {
+        bank_beside(samples, [switch as f64, change], [0.0, f64::INFINITY])
+    }
+
+    /// The same where the coefficient of an effect beside the law's own is said to be known to `std`, and errs by
+    /// `error`.
+    fn bank_beside(samples: u64, [switch, change]: [f64; 2], [error, std]: [f64; 2]) -> Bank {
         let mut generator = ChaCha8Rng::seed_from_u64(7);
-        let (mut bank, mut information) = (Bank::new(8, 12), Information::none(8));
+        let (mut bank, mut information) = (Bank::new(8, 12), Information::none(9));
         bank.set_spread(&[5.0; 8]);
-        (0..8).for_each(|k| information.matrix[9 * k] = 1e4);
-        let (mut q, mut qd) = (0.0, 0.0);
+        (0..8).for_each(|k| information.matrix[10 * k] = 1e4);
+        information.matrix[80] = 1.0 / (std * std);
+        let carried = |[q, qd]: [f64; 2], push: f64| [0.98 * q + 0.02 * qd, -0.02 * q + 0.98 * qd + push];
+        let (mut state, mut sensitivity) = ([0.0; 2], [0.0; 2]);
         for number in 1..=samples {
             let map = IntervalMap { transition: TRANSITION, input: input(number), push: [0.0; 2] };
-            let moved = if number > switch { change * map.input[2][1] } else { 0.0 };
-            (q, qd) = (0.98 * q + 0.02 * qd, -0.02 * q + 0.98 * qd + moved);
-            let residual = qd + generator.sample::<f64, _>(StandardNormal);
+            let moved = if number as f64 > switch { change * map.input[2][1] } else { 0.0 };
+            let effect = [0.0, 0.1 * (0.27 * number as f64).cos()];
+            state = carried(state, moved + error * effect[1]);
+            sensitivity = carried(sensitivity, effect[1]);
+            let residual = state[1] + generator.sample::<f64, _>(StandardNormal);
             let said = Innovation { residual, variance: 1.0, precision: 1.0, gain: [0.0; 2] };
-            bank.step(&map, &[None, Some(said)]);
+            bank.step(&map, effect, &[None, Some(said)]);
             bank.look_at_all();
             if number.is_multiple_of(2) {
-                bank.spawn(number, &law(&information));
+                bank.spawn(number, &law(&information, sensitivity));
             }
         }
         bank
@@ -393,10 +412,11 @@ mod tests {
     fn of_all(bank: &mut Bank, index: usize) -> f64 {
         bank.hypotheses[index].information.lead(&mut bank.since);
         let all = bank.all_switched();
-        let Bank { hypotheses, since, system, .. } = bank;
+        let Bank { hypotheses, told, erring, .. } = bank;
         let hypothesis = &hypotheses[index];
         let law = hypothesis.likely_laws().next().unwrap();
-        all - hypothesis.unswitched(law, since, system)
+        hypothesis.tell_of_error(told);
+        all - hypothesis.unswitched(law, told, erring)
     }
 
     #[test]
@@ -414,6 +434,12 @@ mod tests {
     }
 
     #[test]
+    fn an_effect_whose_coefficient_errs_as_it_may_is_no_switch() {
+        let evidence = |std| bank_beside(400, [400.0, 0.0], [3.0, std]).suspect().unwrap().evidence;
+        assert!(evidence(1.0) < 3.0 && evidence(0.01) > 20.0, "{} {}", evidence(1.0), evidence(0.01));
+    }
+
+    #[test]
     fn the_likeliest_starts_lie_about_the_switch_in_their_order() {
         let bank = bank(500, 200, 1.5);
         let mut starts = [0; 4];
@@ -426,9 +452,9 @@ mod tests {
         let mut bank = bank(60, 60, 0.0);
         let start = bank.hypotheses[5].start;
         (bank.hypotheses[5].evidence, bank.hypotheses[8].evidence) = (6.0, 9.0);
-        let nothing = Information::none(8);
+        let nothing = Information::none(9);
         for number in 61..200 {
-            bank.spawn(number, &law(&nothing));
+            bank.spawn(number, &law(&nothing, [0.0; 2]));
         }
         assert!(bank.hypotheses.iter().any(|hypothesis| hypothesis.start == start));
     }

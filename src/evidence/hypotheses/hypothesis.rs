@@ -13,11 +13,13 @@ use serde::{Deserialize, Serialize};
 /// What the law in use knows of its coefficients when a hypothesis starts.
 #[derive(Clone, Copy, Debug)]
 pub struct Law<'a> {
-    /// Information on the coefficients from the stage so far.
+    /// Information on the n coefficients from the stage so far, and last on that of an effect beside them.
     pub information: &'a Information,
     /// ∂(q, q̇)/∂θ of the state that it has come to, n.
     pub sensitivity: &'a [[f64; 2]],
-    /// Which of them it may have.
+    /// The same of the effect's coefficient.
+    pub effect: [f64; 2],
+    /// Which of its own it may have.
     pub open: &'a [bool],
     /// Which of those it has.
     pub own: &'a [bool],
@@ -90,7 +92,7 @@ impl Hypothesis {
 
     /// The law switches after sample `start`; `precision` is 1/τ² of each coefficient.
     pub(super) fn begin(&mut self, start: u64, law: &Law, precision: &[f64], system: &mut System) {
-        let n = precision.len();
+        let (n, own) = (self.of_law.len(), precision.len());
         (self.start, self.age, self.looked) = (start, 0, 0);
         (self.evidence, self.unexplained, self.unexplained_then) = (0.0, 0.0, 0.0);
         for (component, channel) in self.sensitivity.iter_mut().enumerate() {
@@ -98,20 +100,21 @@ impl Hypothesis {
             channel.as_flattened_mut()[n + component] = 1.0;
         }
         self.information.clear();
-        self.of_law.copy_from_slice(law.sensitivity);
-        let sharpest = (0..n).map(|k| law.information.matrix[k * n + k] / precision[k]).fold(0.0, f64::max);
+        self.of_law.iter_mut().zip(law.sensitivity.iter().chain([&law.effect])).for_each(|(slot, of)| *slot = *of);
+        let sharpest = (0..own).map(|k| law.information.matrix[k * n + k] / precision[k]).fold(0.0, f64::max);
         let trust = if law.explains { 1.0 } else { CAUTION }.min((FINEST * FINEST * sharpest).recip());
         self.prior.clone_from_slices(law.information);
         self.prior.scale(trust);
-        for (index, (slot, open)) in self.full.active.iter_mut().zip(law.open).enumerate() {
+        for (index, (slot, open)) in self.full.active.iter_mut().zip(law.open.iter().chain([&true])).enumerate() {
             *slot = *open && law.information.matrix[index * n + index] > 0.0;
         }
         // a term that was dropped is 0 within what it could be, whatever the record leaves open
-        for index in (0..n).filter(|index| self.full.active[*index] && !law.own[*index]) {
+        for index in (0..own).filter(|index| self.full.active[*index] && !law.own[*index]) {
             self.prior.add_prior(index, precision[index], 0.0);
         }
         self.full.settle(&self.prior, system);
-        for ((slot, full), own) in self.own.active.iter_mut().zip(&self.full.active).zip(law.own) {
+        for ((slot, full), own) in self.own.active.iter_mut().zip(&self.full.active).zip(law.own.iter().chain([&true]))
+        {
             *slot = *full && *own;
         }
         if self.own.active == self.full.active {
@@ -173,13 +176,15 @@ impl Hypothesis {
         if self.unexplained > SILENT { wait } else { 0.0 }
     }
 
-    /// Moves the point about which δ is counted, in the past too: Λμ becomes Λ(μ − step); `moved` is room for n + 2.
-    pub(super) fn shift(&mut self, step: &[f64], moved: &mut [f64]) {
-        let n = step.len();
-        moved[..n].copy_from_slice(step);
-        let of_state = |component: usize| self.of_law.iter().zip(step).map(|(law, step)| law[component] * step).sum();
-        (moved[n], moved[n + 1]) = (of_state(0), of_state(1));
+    /// Moves the point about which δ is counted, in the past too: Λμ becomes Λ(μ − step). `moved` begins with the step,
+    /// and has room for that of the state.
+    pub(super) fn shift(&mut self, moved: &mut [f64]) {
+        let n = self.of_law.len();
+        for component in 0..2 {
+            moved[n + component] = self.of_law.iter().zip(&*moved).map(|(law, step)| law[component] * step).sum();
+        }
         self.information.shift(moved);
+        let step = &moved[..n];
         let pulled = |prior: &Information| step.iter().zip(&prior.score).map(|(step, pull)| step * pull).sum::<f64>();
         let before = pulled(&self.prior);
         self.prior.shift(step);
@@ -204,13 +209,13 @@ mod tests {
     /// The probabilities of a law with both of two coefficients and with the first alone, the second told to the std
     /// 1/√`told`.
     fn weights(told: f64) -> [f64; 2] {
-        let mut information = Information::none(2);
-        information.add(&[10.0, 0.0], 0.0, 1.0);
-        information.add(&[0.0, told.sqrt()], 0.0, 1.0);
-        let (open, own, sensitivity) = (&[true, true], &[true, false], &[[0.0; 2]; 2]);
-        let law = Law { information: &information, sensitivity, open, own, explains: true };
-        let mut hypothesis = Hypothesis::none(2);
-        hypothesis.begin(7, &law, &[4.0, 4.0], &mut System::new(2));
+        let mut information = Information::none(3);
+        information.add(&[10.0, 0.0, 0.0], 0.0, 1.0);
+        information.add(&[0.0, told.sqrt(), 0.0], 0.0, 1.0);
+        let (open, own, sensitivity, effect) = (&[true, true], &[true, false], &[[0.0; 2]; 2], [0.0; 2]);
+        let law = Law { information: &information, sensitivity, effect, open, own, explains: true };
+        let mut hypothesis = Hypothesis::none(3);
+        hypothesis.begin(7, &law, &[4.0, 4.0], &mut System::new(3));
         [hypothesis.full.log_weight.exp(), hypothesis.own.log_weight.exp()]
     }
 
@@ -228,7 +233,7 @@ mod tests {
     /// from half way on that coefficient hardly acts. What a run of the filter is told from there on, and the
     /// hypothesis of a switch there.
     fn halfway(error: f64) -> (Information, Bank) {
-        let (mut run, mut bank) = (Information::none(1), Bank::new(1, 4));
+        let (mut run, mut whole, mut bank) = (Information::none(1), Information::none(2), Bank::new(1, 4));
         bank.set_spread(&[30.0]);
         let transition = [[1.0, 0.02], [0.02, 1.0]];
         let (mut sensitivity, mut state) = ([0.0; 2], [0.0; 2]);
@@ -239,17 +244,15 @@ mod tests {
             let said = Innovation { residual: state[0], variance: 0.01, precision: 100.0, gain: [0.05, 0.05] };
             run.add(&[sensitivity[0]], said.residual, said.variance);
             let map = IntervalMap { transition, input: vec![[0.0, push]], push: [0.0; 2] };
-            bank.step(&map, &[Some(said), None]);
+            bank.step(&map, [0.0; 2], &[Some(said), None]);
             for carried in [&mut sensitivity, &mut state] {
                 let seen = carried[0];
                 carried.iter_mut().zip(said.gain).for_each(|(entry, gain)| *entry -= gain * seen);
             }
             if number == SAMPLES / 2 {
-                let sensitivity = &[sensitivity];
-                bank.spawn(
-                    number,
-                    &Law { information: &run, sensitivity, open: &[true], own: &[true], explains: true },
-                );
+                run.widen(&mut whole);
+                let (sensitivity, effect, own) = (&[sensitivity], [0.0; 2], &[true]);
+                bank.spawn(number, &Law { information: &whole, sensitivity, effect, open: own, own, explains: true });
                 run.clear();
             }
         }
@@ -259,7 +262,7 @@ mod tests {
     #[test]
     fn an_error_that_acts_on_is_told_as_by_the_run_itself() {
         let (run, bank) = halfway(0.3);
-        let (hypothesis, mut whole) = (&bank.hypotheses[0], Information::none(1));
+        let (hypothesis, mut whole) = (&bank.hypotheses[0], Information::none(2));
         hypothesis.tell_of_error(&mut whole);
         assert!((whole.matrix[0] / run.matrix[0] - 1.0).abs() < 1e-9, "{} {}", whole.matrix[0], run.matrix[0]);
         assert!((whole.score[0] / run.score[0] - 1.0).abs() < 1e-9, "{} {}", whole.score[0], run.score[0]);
@@ -279,7 +282,7 @@ mod tests {
     #[test]
     fn with_the_error_taken_off_nothing_is_left_to_explain() {
         let (_, mut bank) = halfway(0.3);
-        bank.shift(&[0.3]);
+        bank.shift([0.3, 0.0].into_iter());
         let scores = &bank.hypotheses[0].information.score;
         assert!(scores.iter().all(|score| score.abs() < 1e-9), "{scores:?}");
     }

@@ -2,12 +2,17 @@
 //! law.
 
 use super::adaptive_noise::AdaptiveNoise;
-use crate::estimation::{Innovation, Lacked, LagTest, Noise, Observation, OwnTerms, Pass, ScoreTest, ToldLag};
+use crate::estimation::{
+    AddedEffect, Information, Innovation, Lacked, LagTest, LawWithEffect, Noise, Observation, OwnTerms, Pass,
+    ScoreTest, ToldLag, WithAndWithout,
+};
+use crate::evidence::Law;
 use crate::identify::library::{KnownLaw, Trials};
 use crate::identify::problem::Problem;
 use crate::identify::segment::{MotionScales, Segment};
 use crate::identify::window::Window;
 use crate::law::Term;
+use crate::limits::SETTLED_ERROR;
 use serde::{Deserialize, Serialize};
 
 /// The law's own covariance counts this many times where it leaves the state open, as long as it is that of a
@@ -30,8 +35,13 @@ pub struct LawInUse {
     lag: LagTest,
     /// Effects that it lacks, by that run.
     effects: ScoreTest,
-    /// What it says of the law's own terms, as last asked.
+    /// What it says of the law's own terms, as last asked, with the effect that it has and without.
     own: OwnTerms,
+    laws: WithAndWithout,
+    /// That effect, by that run.
+    beside: AddedEffect,
+    /// What is told of the own terms and of that.
+    whole: Information,
     /// When F acted by all of its record, as last told.
     pub told: ToldLag,
     /// Its terms: the model's and, last, an effect that the model lacks.
@@ -75,6 +85,9 @@ impl LawInUse {
             lag: LagTest::new(n),
             effects: ScoreTest::new(&problem.terms, n),
             own: OwnTerms::none(n),
+            laws: WithAndWithout::none(n),
+            beside: AddedEffect::new(n),
+            whole: Information::none(n + 1),
             told: ToldLag::none(n),
             terms: problem.terms_and_effect(),
             all: problem.known.clone(),
@@ -100,8 +113,12 @@ impl LawInUse {
         let motion = problem.motion(&self.terms, &self.all);
         let noise = self.noise_now();
         let innovations = self.run.step(&motion, &problem.free_terms, &noise, observation);
-        self.lag.step(&motion, &self.run, shifts, &innovations, [0.0; 2]);
-        self.effects.step(&motion, &self.run, observation, &innovations, [0.0; 2]);
+        let beside = match self.effect() {
+            0.0 => [0.0; 2],
+            _ => self.beside.step(self.terms[self.terms.len() - 1], &motion, &self.run, observation, &innovations),
+        };
+        self.lag.step(&motion, &self.run, shifts, &innovations, beside);
+        self.effects.step(&motion, &self.run, observation, &innovations, beside);
         self.adaptive.add(&innovations, &observation.measured);
         self.follow_slopes(observation.dt, problem.free_inertia());
         let [q, qd] = innovations;
@@ -141,22 +158,49 @@ impl LawInUse {
         self.all[self.all.len() - 1]
     }
 
+    /// What a coefficient of 1 of its effect has done to (q, q̇) over the last interval; nothing where it has none.
+    pub fn effect_input(&self) -> [f64; 2] {
+        if self.effect() == 0.0 { [0.0; 2] } else { self.beside.input }
+    }
+
+    /// It as hypotheses of a switch begin from it, with `every` term that it may have or its own alone.
+    pub fn as_law<'a>(&'a mut self, every: Option<&'a [bool]>, explains: bool) -> Law<'a> {
+        let value = self.effect();
+        let LawInUse { run, beside, whole, active: own, .. } = self;
+        match value {
+            0.0 => run.information.widen(whole),
+            _ => beside.widen(value, &run.information, whole),
+        }
+        let (sensitivity, effect) = (&run.sensitivity, beside.sensitivity());
+        Law { information: whole, sensitivity, effect, open: every.unwrap_or(own), own, explains }
+    }
+
     /// Tells when F acted, by all of its record up to now.
     pub fn tell_lag(&mut self) {
-        let LawInUse { run, lag, own, told, active, overdispersion, .. } = self;
-        own.solve(&run.information, active);
+        let has_effect = self.effect() != 0.0;
+        let LawInUse { run, lag, own, told, active, overdispersion, beside, .. } = self;
+        own.solve(&run.information, active, has_effect.then_some(beside));
         lag.tell(own, &run.track, *overdispersion, told);
         own.clear();
     }
 
-    /// The effect that it lacks most by all of its record up to now, of more evidence than that; `step` becomes by how
-    /// much the free coefficients, n, are others with it.
+    /// The effect that it lacks most by all of its record up to now, or that is likelier than its own, of more evidence
+    /// than that; `step` becomes by how much the free coefficients, n, are others with it.
     pub fn likeliest_effect(&mut self, evidence: f64, step: &mut [f64]) -> Option<Lacked> {
-        self.own.solve(&self.run.information, &self.active);
-        let likeliest = self.effects.likeliest(&self.own, self.overdispersion);
-        let lacked = likeliest.filter(|lacked| lacked.missing.evidence > evidence);
-        lacked.iter().for_each(|lacked| self.effects.moved(&self.own, lacked, step));
-        self.own.clear();
+        let (term, coefficient) = (self.terms[self.terms.len() - 1], self.effect());
+        let squares = self.all.iter().take(self.all.len() - 1).map(|value| value * value).sum();
+        let LawInUse { run, effects, own, laws, beside, active, overdispersion, .. } = self;
+        let overdispersion = *overdispersion;
+        let is_enough = |lacked: &Lacked| lacked.missing.evidence > evidence;
+        if coefficient != 0.0 {
+            let effect = Some((&*beside, term, coefficient));
+            let law = LawWithEffect { effect, active, overdispersion, squares, bound: SETTLED_ERROR };
+            return effects.weigh(&law, laws, &[&run.information], step).likelier.filter(is_enough);
+        }
+        own.solve(&run.information, active, None);
+        let lacked = effects.likeliest(own, overdispersion).filter(is_enough);
+        lacked.iter().for_each(|lacked| effects.moved(own, lacked, step));
+        own.clear();
         lacked
     }
 
@@ -169,7 +213,7 @@ impl LawInUse {
 
     /// Takes over the segment's estimate and the run that led to it.
     pub fn adopt(&mut self, segment: &mut Segment, window: &Window) {
-        segment.hand_over(window, &mut self.run, &mut self.lag, &mut self.effects);
+        segment.hand_over(window, &mut self.run, &mut self.lag, &mut self.effects, &mut self.beside);
         self.terms.copy_from_slice(&segment.terms);
         self.all.copy_from_slice(&segment.all);
         self.active.copy_from_slice(&segment.active);
@@ -227,7 +271,12 @@ impl LawInUse {
         self.all.copy_from_slice(&problem.known);
         problem.scatter(&law.coefficients, &mut self.all);
         let place = self.all.len() - 1;
-        (self.terms[place], self.all[place]) = trials.effect();
+        self.all[place] = trials.effect.map_or(0.0, |effect| effect.coefficient);
+        self.beside.begin(self.run.filter.state());
+        if let Some(effect) = trials.effect {
+            self.terms[place] = effect.term;
+            self.beside.suppose(&effect);
+        }
         self.active.copy_from_slice(&law.active);
         self.covariance.copy_from_slice(&law.covariance);
         self.next = window.ready();

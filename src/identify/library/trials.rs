@@ -78,6 +78,8 @@ pub struct Trials {
     trials: Vec<Trial>,
     terms: Vec<Term>,
     all: Vec<f64>,
+    /// What is known of the effect that they all have.
+    pub effect: Option<KnownEffect>,
     start: u64,
     /// The place of the law that a switch at the start has left.
     pub left: Option<usize>,
@@ -101,6 +103,7 @@ impl Trials {
             trials: vec![trial; ROOM],
             terms: problem.terms_and_effect(),
             all: problem.known.clone(),
+            effect: None,
             start: 0,
             left: None,
             running: false,
@@ -126,11 +129,7 @@ impl Trials {
         let place = self.all.len() - 1;
         self.all[place] = effect.map_or(0.0, |effect| effect.coefficient);
         effect.into_iter().for_each(|effect| self.terms[place] = effect.term);
-    }
-
-    /// It and its coefficient.
-    pub fn effect(&self) -> (Term, f64) {
-        (self.terms[self.terms.len() - 1], self.all[self.all.len() - 1])
+        self.effect = effect;
     }
 
     /// Ends the trial.

@@ -12,7 +12,8 @@ use super::noise_covariance::UNEXPLAINED;
 use super::prior::{InertiaPrior, Prior};
 use super::state::{Checkpoint, InTheSensors, MissingEffects, NOISE_MEMORY, Runs, Segment};
 use crate::estimation::{
-    EffectPosterior, Filter, Lag, LagTest, LawWithEffect, Missing, Noise, Observation, Pass, ScoreTest, TWENTY_TO_ONE,
+    AddedEffect, EffectPosterior, Filter, Lag, LagTest, LawWithEffect, Missing, Noise, Observation, Pass, ScoreTest,
+    TWENTY_TO_ONE,
 };
 use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
@@ -177,11 +178,22 @@ impl Segment {
 
     /// The run that was just closed, at the head of the stream and linear about the new coefficients; the caller gets
     /// it in exchange for another one's room. The next run begins.
-    pub fn hand_over(&mut self, window: &Window, live: &mut Pass, lag: &mut LagTest, effects: &mut ScoreTest) {
+    pub fn hand_over(
+        &mut self,
+        window: &Window,
+        live: &mut Pass,
+        lag: &mut LagTest,
+        effects: &mut ScoreTest,
+        beside: &mut AddedEffect,
+    ) {
+        self.run.effect.hand_over(beside);
         std::mem::swap(&mut self.run.filter_run, live);
         std::mem::swap(&mut self.run.lag, lag);
         std::mem::swap(&mut self.score_test.candidates, effects);
         live.information.clone_from_slices(&self.information);
+        if self.effect() != 0.0 {
+            beside.hold(self.effect(), &mut live.information);
+        }
         self.begin_run(window);
     }
 
@@ -237,10 +249,7 @@ impl Segment {
         let (length, has_effect) = (self.length(self.run.next), self.effect() != 0.0);
         let Segment { score_test, run, active, fit, untried, untried_step, step, .. } = self;
         let MissingEffects { candidates, own, likeliest, posterior, next_try, .. } = score_test;
-        match has_effect {
-            true => run.effect.solve(own, &run.filter_run.information, active),
-            false => own.solve(&run.filter_run.information, active),
-        }
+        own.solve(&run.filter_run.information, active, has_effect.then_some(&run.effect));
         // a run that has not settled does not follow the motion yet
         *likeliest = candidates.likeliest(own, fit.overdispersion).filter(|_| settled);
         let asked = match has_effect {
@@ -265,7 +274,7 @@ impl Segment {
         let effect = (coefficient != 0.0).then_some((&run.effect, term, coefficient));
         let law = LawWithEffect { effect, active, overdispersion: fit.overdispersion, squares, bound: SETTLED_ERROR };
         let MissingEffects { candidates, laws, posterior, .. } = score_test;
-        *posterior = candidates.weigh(&law, laws, [&run.filter_run.information, &known.information], step);
+        *posterior = candidates.weigh(&law, laws, &[&run.filter_run.information, &known.information], step);
     }
 
     /// Log-likelihood that the likeliest of the effects that the law lacks gains, named or not, nats.
@@ -283,7 +292,7 @@ impl Segment {
         let mut better = (&run.lag, &run.filter_run, fit.overdispersion);
         let InTheSensors { lag, filter_run, told, running, .. } = in_the_sensors;
         if *running && filter_run.track.count == track.count {
-            own.solve(&filter_run.information, active);
+            own.solve(&filter_run.information, active, None);
             lag.tell(own, &filter_run.track, 1.0, told);
             if told.with() > timing.told.with() {
                 let evidence = told.with() - told.without.max(timing.told.without);
@@ -293,7 +302,7 @@ impl Segment {
             }
         }
         let (lag, filter_run, overdispersion) = better;
-        own.solve(&filter_run.information, &[true; Model::MAX_TERMS][..active.len()]);
+        own.solve(&filter_run.information, &[true; Model::MAX_TERMS][..active.len()], None);
         lag.tell(own, &filter_run.track, overdispersion, &mut timing.whole);
     }
 
@@ -388,6 +397,7 @@ impl Segment {
             let (step, moved) = self.run.effect.step_from(self.all[place], &self.step);
             self.all[place] += step;
             self.run.checkpoint.effect.shift(&self.step, step);
+            self.run.effect.shift(&self.step, step);
             self.run.lag.shift_beside(step);
             self.score_test.candidates.shift_beside(step);
             let mean = &mut self.run.filter_run.filter.mean;

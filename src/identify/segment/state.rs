@@ -290,13 +290,6 @@ impl Segment {
         (coefficient != 0.0).then_some(KnownEffect { term, coefficient, precision })
     }
 
-    /// By how much the free coefficients would be others, were that of the effect `other`, n.
-    pub fn with_effect_of(&self, other: f64, change: &mut [f64]) {
-        self.run.effect.likeness(&self.solution, &self.active, change);
-        let difference = self.effect() - other;
-        change.iter_mut().for_each(|change| *change *= difference);
-    }
-
     /// The law has the effect that the model lacks, or none.
     pub fn add_effect(&mut self, known: Option<KnownEffect>) {
         let place = self.terms.len() - 1;

@@ -45,7 +45,7 @@ impl Tracker {
             let number = monitor.law.next;
             let (observation, shifts) = (self.window.observation(number), self.window.shifts(number));
             let innovations = monitor.law.step(setup.problem, &observation, shifts);
-            monitor.bank.step(&monitor.law.run.map, &innovations);
+            monitor.bank.step(&monitor.law.run.map, monitor.law.effect_input(), &innovations);
             monitor.law.next += 1;
         }
         match self.in_sight(setup, post_alarm.left) {

@@ -1,8 +1,7 @@
 //! What a sample does: the law in use is followed, the segment refined, coefficients that move are tracked.
 
 use super::recognition::TRIAL_BUDGET;
-use super::state::{Setup, Tracker, YOUNG};
-use crate::evidence::Law;
+use super::state::{Monitor, Setup, Tracker, YOUNG};
 use crate::identify::change::{LONGEST_ERROR, SUSPENSE};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
@@ -85,7 +84,7 @@ impl Tracker {
                 self.lose();
                 return;
             }
-            monitor.bank.step(&monitor.law.run.map, &innovations);
+            monitor.bank.step(&monitor.law.run.map, monitor.law.effect_input(), &innovations);
             self.weigh_faults(number, &innovations);
             let (sample, monitor) = (self.window.sample(number), &mut self.monitor);
             monitor.prediction.step(setup.problem, setup.settings, &monitor.law, sample, &observation);
@@ -108,10 +107,8 @@ impl Tracker {
         let monitor = &mut self.monitor;
         // of a law that came back only its own terms are known from before: to seek the others too would make it look
         // unlikely
-        let own = &monitor.law.active;
-        let open = if self.regime.recognition().is_some() { own } else { &monitor.every_term };
-        let run = &monitor.law.run;
-        let law = Law { information: &run.information, sensitivity: &run.sensitivity, open, own, explains };
+        let every = self.regime.recognition().is_none().then_some(monitor.every_term.as_slice());
+        let law = monitor.law.as_law(every, explains);
         monitor.bank.spawn(number, &law);
     }
 
@@ -215,19 +212,17 @@ impl Tracker {
     }
 
     fn carry_hypotheses(&mut self, problem: &Problem, proven: bool) {
-        let Tracker { monitor, belief, segment, .. } = self;
-        // what a step of the effect's coefficient does is for the most part what a step of the law's own would do
-        segment.with_effect_of(monitor.law.effect(), &mut belief.from);
-        for (index, change) in belief.from.iter_mut().enumerate() {
-            *change += segment.coefficients[index] - monitor.law.all[problem.free[index]];
-        }
+        let Tracker { monitor: Monitor { law, bank, .. }, segment, .. } = self;
         match proven
             && !segment.has_left_itself()
-            && segment.has_terms_of(&monitor.law.terms, monitor.law.effect())
-            && monitor.law.noise.is_near(&segment.noise)
+            && segment.has_terms_of(&law.terms, law.effect())
+            && law.noise.is_near(&segment.noise)
         {
-            true => monitor.bank.shift(&belief.from),
-            false => monitor.bank.clear(),
+            true => {
+                let own = problem.free.iter().zip(&segment.coefficients).map(|(index, value)| value - law.all[*index]);
+                bank.shift(own.chain([segment.effect() - law.effect()]));
+            }
+            false => bank.clear(),
         }
     }
 }
