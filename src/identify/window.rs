@@ -30,6 +30,8 @@ pub struct Window {
     hold: Hold,
     band_limited: BandLimited,
     pace: Pace,
+    /// What of the excitation the next interval has unseen besides, N² s.
+    unseen: f64,
 }
 
 /// How the samples come, and how much the excitation moves between two of them.
@@ -78,7 +80,7 @@ impl Window {
     /// Room for `capacity` samples.
     pub fn new(capacity: usize, channels: Channels, hold: Hold) -> Window {
         let ring = vec![Reading::default(); capacity];
-        Window { ring, count: 0, channels, hold, band_limited: BandLimited::new(), pace: Pace::default() }
+        Window { ring, count: 0, channels, hold, band_limited: BandLimited::new(), pace: Pace::default(), unseen: 0.0 }
     }
 
     /// How many samples it can hold.
@@ -88,7 +90,8 @@ impl Window {
 
     /// Adds a sample; the oldest goes when there is no room.
     pub fn push(&mut self, reading: impl Into<Reading>) {
-        let reading = reading.into();
+        let mut reading = reading.into();
+        reading.unseen += std::mem::take(&mut self.unseen);
         if self.count > 0 {
             let before = *self.sample(self.count - 1);
             self.pace.take(&before, &reading.sample);
@@ -144,6 +147,23 @@ impl Window {
             true => range.rev().for_each(|number| self.move_excitation(number, later)),
             false => range.for_each(|number| self.move_excitation(number, later)),
         }
+        self.forget_ends(later);
+    }
+
+    /// What acts at the record's ends once F acts so many samples later is not in the window: it may be as far from
+    /// what is put there as F moves.
+    fn forget_ends(&mut self, later: f64) {
+        let unknown = later.abs().ceil() as u64;
+        let unseen = 2.0 * self.pace.roughness * self.pace.dt;
+        let ends = match later > 0.0 {
+            true => self.oldest()..(self.oldest() + unknown + 1).min(self.end()),
+            false => self.end().saturating_sub(unknown).max(self.oldest())..self.end(),
+        };
+        for number in ends {
+            let slot = self.slot(number);
+            self.ring[slot].unseen += unseen;
+        }
+        self.unseen += if later < 0.0 { unseen } else { 0.0 };
     }
 
     /// What was taken to act so many samples before this one acts with it; at the record's ends, what there is.
@@ -238,6 +258,21 @@ mod tests {
             alignment.align(lag, sample).into_iter().for_each(|sample| window.push(sample));
         }
         window
+    }
+
+    /// A force that comes a sample late is known of the last interval when the next sample has come; one that comes a
+    /// sample early was before the first.
+    #[test]
+    fn what_acted_at_the_ends_is_not_known_after_a_move() {
+        let unseen = |later: f64, samples: u64| {
+            let mut moved = window(0.0);
+            moved.set_timing(Hold::Zero, later);
+            (0..samples).for_each(|k| moved.push(Sample { t: 12.0 + k as f64, ..Sample::default() }));
+            (moved.oldest() + 1..moved.end()).map(|number| moved.observation(number).unseen > 0.0).collect::<Vec<_>>()
+        };
+        assert_eq!(unseen(-1.0, 2), [false, false, false, false, true, true, false]);
+        assert_eq!(unseen(1.0, 0), [true, false, false, false, false, false, false]);
+        assert_eq!(unseen(0.0, 2), [false; 7]);
     }
 
     #[test]
