@@ -5,7 +5,7 @@
 
 use super::filter::Innovation;
 use super::information::{Information, Solution};
-use super::one_more_coefficient::Sums;
+use super::one_more_coefficient::{OwnTerms, Sums};
 use super::pass::{Observation, Pass, gains};
 use crate::law::{Motion, State, Term};
 use serde::{Deserialize, Serialize};
@@ -66,10 +66,12 @@ impl AddedEffect {
         (self.before, self.known) = (other.before, [0.0; 2]);
     }
 
-    /// The law's own coefficients have become those plus `steps`, that of the effect that plus `step`.
-    pub fn shift(&mut self, steps: &[f64], step: f64) {
+    /// The law's own coefficients have become those plus `steps`, that of the effect that plus `step`; so the law's own
+    /// terms, which follow their own steps already, are told `own`.
+    pub fn shift(&mut self, steps: &[f64], step: f64, own: &mut Information) {
         self.sums.shift(steps);
         self.sums.score -= self.sums.information * step;
+        self.sums.take_out(-step, own);
     }
 
     /// Takes the sample that the run has just taken, under the law `motion` with the effect; returns what its
@@ -163,6 +165,13 @@ impl AddedEffect {
     }
 }
 
+impl OwnTerms {
+    /// As a run says it of those that are active, beside the effect that the law may have.
+    pub fn solve(&mut self, own: &Information, active: &[bool], effect: Option<&AddedEffect>) {
+        self.solve_beside(own, active, effect.map(|effect| &effect.sums));
+    }
+}
+
 /// The acceleration over the run's last interval, from the state `before` it, that a coefficient of 1 of the term is.
 fn push(term: Term, motion: &Motion, before: State, pass: &Pass, observation: &Observation) -> f64 {
     let state = pass.filter.state();
@@ -175,7 +184,6 @@ fn push(term: Term, motion: &Motion, before: State, pass: &Pass, observation: &O
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimation::OwnTerms;
 
     /// What forty readings of x + 0.3 y + 0.5 z say of the first two coefficients, and of the third beside them: x and
     /// y from 0, z from 0.2, each with the std 0.1.

@@ -148,9 +148,9 @@ impl LawWithEffect<'_> {
 }
 
 impl ScoreTest {
-    /// What the run with these candidates, and what was known before it, say of the law's effect, being `told` of its own
-    /// terms; `step` becomes by how much the free coefficients, n, are others with the likelier one. Nothing where the
-    /// candidates have not gone with the whole run.
+    /// What the run with these candidates, and what was known before it, say of the law's effect; `told` is what both
+    /// say of its own terms. `step` becomes by how much the free coefficients, n, are others with the likelier one.
+    /// Nothing where the candidates have not gone with the whole run.
     pub fn weigh(
         &self,
         law: &LawWithEffect,

@@ -1,6 +1,5 @@
 //! What a run of the filter says of one more coefficient than its law has, beside the law's own.
 
-use super::added_effect::AddedEffect;
 use super::filter::{Channel, Innovation};
 use super::information::{Information, Solution};
 use super::pass::Pass;
@@ -42,13 +41,13 @@ impl OwnTerms {
         self.solution.solve(&self.information, &self.active);
     }
 
-    /// As a run says it of those that are active, beside the effect that the law may have.
-    pub fn solve(&mut self, own: &Information, active: &[bool], effect: Option<&AddedEffect>) {
+    /// As a run says it of those that are active, and of the effect beside them that the law may have.
+    pub(super) fn solve_beside(&mut self, own: &Information, active: &[bool], effect: Option<&Sums>) {
         let OwnTerms { information, solution, active: all } = self;
         own.widen(information);
         all[..own.n].copy_from_slice(active);
         all[own.n] = effect.is_some();
-        if let Some(AddedEffect { sums, .. }) = effect {
+        if let Some(sums) = effect {
             information.tell_last(&sums.cross, sums.information, sums.score);
         }
         solution.solve(information, all);

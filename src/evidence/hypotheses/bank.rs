@@ -368,8 +368,8 @@ mod tests {
         (0..8).map(|k| [0.0, 0.1 * (0.05 * (f64::from(k) + 1.0) * number as f64).sin()]).collect()
     }
 
-    /// A law of eight coefficients of which that much is known, and all of whose state but for what an effect beside them
-    /// does to it.
+    /// A law of eight coefficients of which that much is known, and all of whose state but for what an effect beside
+    /// them does to it.
     fn law(information: &Information, effect: [f64; 2]) -> Law<'_> {
         let sensitivity = &[[0.0; 2]; 8];
         Law { information, sensitivity, effect, open: &[true; 8], own: &[true; 8], explains: true }

@@ -396,8 +396,8 @@ impl Segment {
         if self.all[place] != 0.0 {
             let (step, moved) = self.run.effect.step_from(self.all[place], &self.step);
             self.all[place] += step;
-            self.run.checkpoint.effect.shift(&self.step, step);
-            self.run.effect.shift(&self.step, step);
+            self.run.checkpoint.effect.shift(&self.step, step, &mut self.run.checkpoint.information);
+            self.run.effect.shift(&self.step, step, &mut self.run.filter_run.information);
             self.run.lag.shift_beside(step);
             self.score_test.candidates.shift_beside(step);
             let mean = &mut self.run.filter_run.filter.mean;

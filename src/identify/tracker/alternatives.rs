@@ -180,9 +180,12 @@ impl Tracker {
             return;
         }
         let promising = !self.regime.is_valid() && self.explains_what_the_segment_does_not();
+        // of two effects each is judged at its own best
+        let comparable = self.alternative.settled()
+            && (self.segment.settled() || self.segment.effect() == 0.0 || !self.tries_effect());
         let goes_on = if self.alternative.is_lost() {
             false
-        } else if self.alternative.settled() {
+        } else if comparable {
             let wins = self.alternative_wins(promising);
             let found_effect = wins && self.tries_effect();
             if wins {
