@@ -90,21 +90,21 @@ impl AddedEffect {
         self.sums.take(pass, pushed, &gains(innovations), innovations, [0.0; 2])
     }
 
-    /// What the law's own terms are told with the coefficient, which is `value`, left open …
+    /// What the law's own terms are told with the coefficient, which is `value`, left open.
     pub fn leave_open(&self, value: f64, own: &mut Information) {
         self.add_share(-1.0, value, own);
     }
 
-    /// … and beside it again, in that room for one more unknown, what is told of itself last.
+    /// What they are told with it held, of what they are with it left open.
+    pub fn hold(&self, value: f64, own: &mut Information) {
+        self.add_share(1.0, value, own);
+    }
+
+    /// What the law's own terms are told with it held, in that room for one more unknown: itself, the last.
     pub fn widen(&self, value: f64, own: &Information, whole: &mut Information) {
         own.widen(whole);
         let (information, score) = self.told(value);
         whole.tell_last(&self.sums.cross, information, score);
-    }
-
-    /// Takes back that it was left open.
-    pub fn hold(&self, value: f64, own: &mut Information) {
-        self.add_share(1.0, value, own);
     }
 
     /// Adds so many times ccᵀ ÷ i and cs ÷ i.
@@ -216,6 +216,23 @@ mod tests {
         let (step, _) = effect.step_from(0.2, &solution.step);
         assert!((solution.step[0] - 1.0).abs() < 1e-9 && (solution.step[1] - 0.3).abs() < 1e-9, "{:?}", solution.step);
         assert!((step - 0.3).abs() < 1e-9, "{step}");
+    }
+
+    /// A step of both, and the coefficient held again after it was left open: what was told about the old coefficients
+    /// is told about the new ones.
+    #[test]
+    fn what_was_left_open_is_held_again_about_other_coefficients() {
+        let (mut own, mut effect) = readings();
+        let (mut told, steps, step) = (own.clone(), [0.7, -0.2], 0.4);
+        effect.suppose(&KnownEffect { term: Term::power(2, 0), coefficient: 0.3, precision: 50.0 });
+        effect.leave_open(0.2, &mut told);
+        told.shift(&steps);
+        own.shift(&steps);
+        effect.shift(&steps, step, &mut own);
+        effect.hold(0.2 + step, &mut told);
+        let near = |(one, other): (&f64, &f64)| (one - other).abs() < 1e-9 * (1.0 + other.abs());
+        assert!(told.score.iter().zip(&own.score).all(near), "{:?} against {:?}", told.score, own.score);
+        assert!([0, 1, 3].iter().all(|entry| near((&told.matrix[*entry], &own.matrix[*entry]))));
     }
 
     #[test]
