@@ -21,6 +21,8 @@ pub struct EffectPosterior {
     /// The likeliest effect in the place of the one that the law has: its evidence is the logarithm of the odds between
     /// them. None where the law has none.
     pub likelier: Option<Lacked>,
+    /// The logarithm of the odds of the likeliest effect beside the one that the law has, against that alone.
+    pub beside: f64,
 }
 
 /// Of whose law it is asked.
@@ -174,12 +176,13 @@ impl ScoreTest {
         if law.effect.is_some() {
             laws.add(own_weight, 0.0);
         }
-        let mut likelier: Option<Lacked> = None;
+        let (mut likelier, mut most): (Option<Lacked>, f64) = (None, f64::NEG_INFINITY);
         let has = |term: Term| law.effect.is_some_and(|(_, own, _)| is_same(own, term));
         for candidate in self.candidates.iter().filter(|candidate| !has(candidate.term)) {
             let (sums, sign) = (&candidate.sums, Catalogue::ENTRIES[candidate.entry].sign);
             if let Some(beside) = law.beside(sums, 0.0, &terms.with, |_| 0.0, sign) {
                 laws.add(own_weight + beside.evidence + price, law.is_wrong(beside.moved));
+                most = most.max(beside.evidence + price);
             }
             let Some((_, _, coefficient)) = law.effect else { continue };
             let larger = coefficient * sums.cross[law.active.len()];
@@ -192,7 +195,7 @@ impl ScoreTest {
             }
         }
         terms.clear();
-        EffectPosterior { wrong: laws.wrong / laws.all, likelier }
+        EffectPosterior { wrong: laws.wrong / laws.all, likelier, beside: most }
     }
 }
 

@@ -184,8 +184,9 @@ impl LawInUse {
         own.clear();
     }
 
-    /// The effect that it lacks most by all of its record up to now, or that is likelier than its own, of more evidence
-    /// than that; `step` becomes by how much the free coefficients, n, are others with it.
+    /// The effect that it lacks most by all of its record up to now, of more evidence than that; `step` becomes by how
+    /// much the free coefficients, n, are others with it. Of a law that has one, the likeliest in its place, of the
+    /// evidence that it or another beside the law's own has.
     pub fn likeliest_effect(&mut self, evidence: f64, step: &mut [f64]) -> Option<Lacked> {
         let (term, coefficient) = (self.terms[self.terms.len() - 1], self.effect());
         let squares = self.all.iter().take(self.all.len() - 1).map(|value| value * value).sum();
@@ -195,7 +196,10 @@ impl LawInUse {
         if coefficient != 0.0 {
             let effect = Some((&*beside, term, coefficient));
             let law = LawWithEffect { effect, active, overdispersion, squares, bound: SETTLED_ERROR };
-            return effects.weigh(&law, laws, &[&run.information], step).likelier.filter(is_enough);
+            let told = effects.weigh(&law, laws, &[&run.information], step);
+            let mut likelier = told.likelier?;
+            likelier.missing.evidence = likelier.missing.evidence.max(told.beside);
+            return Some(likelier).filter(is_enough);
         }
         own.solve(&run.information, active, None);
         let lacked = effects.likeliest(own, overdispersion).filter(is_enough);
