@@ -53,6 +53,24 @@ fn a_motion_or_a_force_that_comes_a_sample_late_is_said_to_and_counted_with() {
     }
 }
 
+/// What F was over the last interval is not known before the next sample comes: where it is found to come late, nothing
+/// else must stand in for that.
+#[test]
+fn a_force_that_is_found_to_come_late_leaves_no_kick_in_the_record() {
+    let builtin = Builtin::DuffingWhite;
+    let model = Model::of("plant", builtin.terms().into_iter().map(|term| (term, Given::Fit)));
+    for seed in [7, 8, 9, 10] {
+        let read = samples(&scenario(builtin, seed, 1e-3));
+        let mut identifier = Identifier::new(&model, Settings::default()).unwrap();
+        for pair in read.windows(2) {
+            identifier.step(Sample { excitation: pair[0].excitation, ..pair[1] }).unwrap();
+            let output = identifier.output();
+            let (t, named) = (pair[1].t, output.missing.map(|missing| missing.effect().id));
+            assert!(t < 3.0 || output.valid && named.is_none(), "{seed}: {named:?} at {t}, {output:?}");
+        }
+    }
+}
+
 #[test]
 fn a_hold_that_is_said_wrongly_is_found_in_the_stream() {
     for (builtin, seed) in [(Builtin::DuffingWhite, 8), (Builtin::DuffingSine, 8), (Builtin::VanDerPolWhite, 9)] {
