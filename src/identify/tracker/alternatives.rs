@@ -157,6 +157,11 @@ impl Tracker {
         tried.is_some_and(|tried| own.is_none_or(|own| own.term != tried.term))
     }
 
+    /// Whether such an effect may still explain the record.
+    pub(super) fn has_effect_on_trial(&self) -> bool {
+        self.fitting == Fitting::Contested && self.tries_effect()
+    }
+
     /// Whether that effect gains what it must over the segment and over none, and explains most of what the segment
     /// does not.
     fn explains_by_effect(&self) -> bool {

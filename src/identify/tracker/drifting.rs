@@ -126,11 +126,13 @@ impl Tracker {
 
     /// Where a law of this record was validated, only coefficients that have drifted before do so again; where none
     /// was, they have to have moved for so long that a constant law would have been found, and none has been that
-    /// explains the record.
+    /// explains the record, nor is one on trial with the effect that it lacks most: such coefficients move with the
+    /// motion.
     fn is_sure_of_drift(&self) -> bool {
         let drift = &self.weak_row_drift;
         let had_a_law = self.regime.is_valid() || self.history.refuted_at > self.segment.start;
-        let explained = self.is_refining() && self.segment.settled() && self.segment.fit.explains;
+        let found = self.is_refining() && self.segment.settled() && self.segment.fit.explains;
+        let explained = found || self.has_effect_on_trial();
         match had_a_law {
             true => self.drifted,
             false => !self.history.explained && !explained && drift.has_no_rest(&self.window) && drift.spans_half(),
