@@ -8,7 +8,7 @@
 //! | valid and wrong | time with `valid` while e is above 0.05², the second after the switch left out, s a record |
 //! | dishonest | time with `valid` while a coefficient is beyond 6 of its std, s a record |
 //! | false | switches counted from the fault on that are none; of a law that lacks an effect, from the beginning on |
-//! | valid again | from the last faulty sample until the law is valid, s; of records valid before the fault |
+//! | valid again | from the last faulty sample until the law is valid for good, s; of records valid before the fault |
 //! | missed | next switches not counted in 10 s |
 //! | unknown | samples with `valid` and a coefficient without std |
 //! | named | delay of the switch's name ÷ limit of detection |

@@ -30,7 +30,7 @@ pub struct Seen {
     pub false_switches: u32,
     /// Whether a law was valid just before the fault.
     pub valid_before: bool,
-    /// From the last faulty sample until a law is valid, s; infinite where none is before the switch.
+    /// From the last faulty sample until a law is valid and stays so up to the switch, s; infinite where none does.
     pub valid_again: f64,
     /// Delay of the switch's name, s; infinite where it is missed.
     pub named: f64,
@@ -106,8 +106,8 @@ impl Seen {
         self.missing |= identifier.output().missing.is_some();
         if t < COURSE[0] - BEFORE {
             self.valid_before = valid;
-        } else if valid && t > last && t < COURSE[1] {
-            self.valid_again = self.valid_again.min(t - last);
+        } else if t > last && t < COURSE[1] {
+            self.valid_again = if valid { self.valid_again.min(t - last) } else { f64::INFINITY };
         }
         if !valid {
             return;
