@@ -62,7 +62,8 @@ impl Weighing {
         sum(true) - sum(false)
     }
 
-    /// The place of what is named: the law against all faults, or one fault against the law and all others.
+    /// The place of what is named: the law against all faults, or one fault against the law and all others. A force that
+    /// was not read and one that was misread leave the same record: neither has to be told from the other.
     pub fn named(&self) -> Option<usize> {
         let odds = self.law_against_fault();
         if odds.is_nan() || odds.abs() < TWENTY_TO_ONE {
@@ -70,7 +71,8 @@ impl Weighing {
         }
         let best = self.likeliest(odds > 0.0);
         let own = &self.hypotheses[best];
-        let others = self.hypotheses.iter().filter(|other| !other.kind.is_law() && other.kind != own.kind);
+        let same = |other: Kind| other == own.kind || other.is_kick() && own.kind.is_kick();
+        let others = self.hypotheses.iter().filter(|other| !other.kind.is_law() && !same(other.kind));
         let rival = others.map(|other| other.log).fold(f64::NEG_INFINITY, log_sum);
         (odds > 0.0 || own.log - rival > TWENTY_TO_ONE).then_some(best)
     }
