@@ -347,6 +347,29 @@ fn a_rough_excitation_that_is_stuck_or_misread_is_no_fault_of_the_motion() {
     }
 }
 
+/// A force that was misread and one that was not read at all are equally likely for ever, and a force that is unseen for
+/// a second scatters the motion by what nobody knows: neither is a reason to wait, nor to take the law back.
+#[test]
+fn a_law_stays_valid_after_a_fault_of_the_excitation() {
+    for (builtin, seed) in [(Builtin::DuffingWhite, 10_220), (Builtin::VanDerPolWhite, 73)] {
+        let scenario = plant(builtin, seed, 1e3, 16.0);
+        let clean = samples(&scenario);
+        let most = clean.iter().map(|sample| sample.excitation.abs()).fold(0.0, f64::max);
+        let misread = [-2.5, -1.7, -1.2, 1.2, 1.7, 2.5].map(|glitch| {
+            let mut misread = clean.clone();
+            misread[FIRST].excitation += glitch * most;
+            (misread, FAULT + 0.3)
+        });
+        let mut stuck = clean.clone();
+        stuck[FIRST..FIRST + 1000].iter_mut().for_each(|sample| sample.excitation = clean[FIRST - 1].excitation);
+        for (readings, allowed) in misread.into_iter().chain([(stuck, FAULT + 2.0)]) {
+            let seen = watch(&scenario, builtin, &readings);
+            assert!(seen.invalid_until < allowed && seen.switches == 0, "{builtin:?} {seed}: {seen:?}");
+            assert!(seen.worst < BEYOND, "{builtin:?} {seed}: {seen:?}");
+        }
+    }
+}
+
 #[test]
 fn an_outage_before_a_switch_makes_no_drift_of_it() {
     let builtin = Builtin::DuffingSine;

@@ -245,9 +245,13 @@ impl Pass {
                 return None;
             }
         }
-        self.rivals.update(channel, measured, variance);
+        // how far an unseen force scatters the motion is a guess, and tells nothing of the law's error or the sensors'
+        let counts = observation.unseen == 0.0;
+        self.rivals.update(channel, measured, variance, counts);
         let innovation = self.filter.update(channel, measured, variance);
-        self.track.add(channel, &innovation);
+        if counts {
+            self.track.add(channel, &innovation);
+        }
         Some(innovation)
     }
 

@@ -47,11 +47,14 @@ impl<const N: usize> Rivals<N> {
         }
     }
 
-    /// Both take one measurement with this noise variance.
+    /// Both take one measurement with this noise variance, which `counts` in their likelihood or does not.
     #[inline]
-    pub fn update(&mut self, channel: Channel, measured: f64, variance: f64) {
+    pub fn update(&mut self, channel: Channel, measured: f64, variance: f64, counts: bool) {
         for (rival, track) in self.filters.iter_mut().zip(&mut self.tracks) {
-            track.add(channel, &rival.update(channel, measured, variance));
+            let innovation = rival.update(channel, measured, variance);
+            if counts {
+                track.add(channel, &innovation);
+            }
         }
     }
 

@@ -142,7 +142,7 @@ impl<'a> Run<'a> {
     /// Takes the measurement of a channel; leaves the sensitivities of what was expected in the rows.
     fn measure(&mut self, channel: Channel, observation: &Observation, noise: &Noise) -> Option<Innovation<3>> {
         let (measured, variance) = (observation.measured[channel as usize]?, noise.sensor[channel as usize]);
-        self.rivals.update(channel, measured, variance);
+        self.rivals.update(channel, measured, variance, true);
         let innovation = self.filter.update(channel, measured, variance);
         self.track.add(channel, &innovation);
         for (own, row) in self.sensitivities.iter_mut().zip(&mut self.rows) {
