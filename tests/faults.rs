@@ -197,6 +197,40 @@ fn a_stuck_sensor_is_no_switch_and_is_said_to_be_stuck() {
     assert!(seen.said(1).contains(&SensorState::Stuck) && seen.said(1).last() == Some(&SensorState::Ok), "{seen:?}");
 }
 
+/// A sender that repeats its last message repeats F too, which is not what acts meanwhile.
+#[test]
+fn a_sender_that_stalls_is_no_switch() {
+    for (builtin, seed) in [(Builtin::DuffingSine, 52), (Builtin::VanDerPolSine, 53), (Builtin::DuffingWhite, 54)] {
+        let scenario = plant(builtin, seed, 1e3, 14.0);
+        let mut samples = samples(&scenario);
+        let before = samples[FIRST - 1];
+        samples[FIRST..FIRST + 1000].iter_mut().for_each(|sample| *sample = Sample { t: sample.t, ..before });
+        let seen = watch(&scenario, builtin, &samples);
+        assert!(seen.switches == 0 && seen.invalid_until < FAULT + 1.3 && seen.worst < BEYOND, "{builtin:?}: {seen:?}");
+        for channel in 0..3 {
+            let said = seen.said(channel);
+            assert!(
+                said.contains(&SensorState::Stuck) && said.last() == Some(&SensorState::Ok),
+                "{builtin:?}: {seen:?}"
+            );
+        }
+    }
+}
+
+/// What is left of an offset after a few readings is a part of the noise, and in thousands of samples a switch.
+#[test]
+fn a_sensor_that_is_off_from_some_sample_on_is_no_switch() {
+    let off = [(Builtin::VanDerPolSine, 20_002, 0.01, 0.1), (Builtin::VanDerPolSine, 20_005, 0.01, 0.07)];
+    for (builtin, seed, noise, offset) in off.into_iter().chain([(Builtin::VanDerPolSine, 55, 0.001, 0.02)]) {
+        let scenario = plant(builtin, seed, 1e3, 14.0).with_noise(noise);
+        let mut samples = samples(&scenario);
+        samples[FIRST..].iter_mut().for_each(|sample| sample.q += offset);
+        let seen = watch(&scenario, builtin, &samples);
+        assert!(seen.switches == 0 && seen.invalid_until < FAULT + 0.3, "{seed}: {seen:?}");
+        assert!(seen.worst < BEYOND && seen.said(0) == [SensorState::Ok, SensorState::Offset], "{seed}: {seen:?}");
+    }
+}
+
 /// Where the velocity turns the law expects it to stand: what stands still beside its noise is stuck.
 #[test]
 fn a_sensor_stuck_where_the_motion_turns_is_no_switch() {

@@ -18,13 +18,14 @@ const OFFSET: f64 = 0.05;
 /// A glitch of F, in amplitudes.
 const GLITCH: f64 = 2.5;
 
-/// A channel, or both of the motion.
+/// A channel, both of the motion, or every one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Of {
     Q,
     Qd,
     Both,
     F,
+    All,
 }
 
 /// What happens to a record.
@@ -52,6 +53,8 @@ pub enum Fault {
     Gap(u32),
     /// The displacement is off by 0.05 from a gap of 1 s on.
     Offset,
+    /// The displacement is off by 0.05 from a sample on.
+    Jump,
     /// One time stamp is 1e6.
     Stamp,
     /// q and q̇ come one sample late against F, throughout.
@@ -64,7 +67,7 @@ pub enum Fault {
 
 impl Fault {
     /// All of them, in the order of the table.
-    pub const ALL: [Fault; 30] = [
+    pub const ALL: [Fault; 32] = [
         Fault::Clean,
         Fault::Burst(Of::Q),
         Fault::Burst(Of::Qd),
@@ -73,6 +76,7 @@ impl Fault {
         Fault::Stuck(Of::Q),
         Fault::Stuck(Of::Qd),
         Fault::Stuck(Of::F),
+        Fault::Stuck(Of::All),
         Fault::Zero(Of::Q),
         Fault::Zero(Of::Qd),
         Fault::Zero(Of::Both),
@@ -84,6 +88,7 @@ impl Fault {
         Fault::Gap(1),
         Fault::Gap(5),
         Fault::Offset,
+        Fault::Jump,
         Fault::Stamp,
         Fault::Late,
         Fault::Coarse(2),
@@ -111,6 +116,7 @@ impl Fault {
             Fault::NotANumber => "NaN 5 s".into(),
             Fault::Gap(seconds) => format!("gap {seconds} s"),
             Fault::Offset => "offset 0.05 of q after a gap".into(),
+            Fault::Jump => "offset 0.05 of q".into(),
             Fault::Stamp => "one time stamp 1e6".into(),
             Fault::Late => "q, qd one sample late".into(),
             Fault::Coarse(step) => format!("steps of {step} ms, hold wrong"),
@@ -176,6 +182,10 @@ impl Fault {
                 readings[first..].iter_mut().for_each(|reading| reading.q += OFFSET);
                 end = first;
             }
+            Fault::Jump => {
+                readings[first..].iter_mut().for_each(|reading| reading.q += OFFSET);
+                end = first;
+            }
             Fault::Stamp => readings[first].t = 1e6,
             Fault::Late => late(readings),
             Fault::Coarse(step) => *readings = readings.iter().step_by(step).copied().collect(),
@@ -195,6 +205,7 @@ impl Of {
             Of::Qd => "qd",
             Of::Both => "q and qd",
             Of::F => "F",
+            Of::All => "q, qd and F",
         }
     }
 
@@ -204,6 +215,7 @@ impl Of {
             Of::Qd => reading.qd = from.qd,
             Of::Both => (reading.q, reading.qd) = (from.q, from.qd),
             Of::F => reading.excitation = from.excitation,
+            Of::All => *reading = Reading { t: reading.t, ..*from },
         }
     }
 }

@@ -1,4 +1,5 @@
-//! Whether a sensor came back from an outage with an offset: one unknown beside the law, in closed form.
+//! Whether a sensor came back from an outage with an offset, and what is left of one that was found: one unknown beside
+//! the law, in closed form.
 //!
 //! With an offset u of a channel the filter of the law in use expects z u more of it, z being carried from sample to
 //! sample as any sensitivity is. Its innovations ε of variance s then have the score g = Σ r ε ÷ s and the information
@@ -100,6 +101,13 @@ impl AfterOutage {
             return;
         }
         self.read(map, innovations);
+    }
+
+    /// An offset of the channel was found without an outage and taken off: this variance of it is left.
+    pub fn follow(&mut self, channel: Channel, variance: f64) {
+        self.offsets = [Offset::default(); 2];
+        self.offsets[channel as usize].variance = variance;
+        (self.since, self.due, self.taken) = (Some(0.0), 0.0, Some((channel, 0.0)));
     }
 
     /// Nothing is asked any more.

@@ -78,6 +78,8 @@ pub struct Quarantine {
     decided: u32,
     /// What is taken off the readings of q and q̇.
     offset: [f64; 2],
+    /// The channel of one that has just been found, and the variance that is left of it.
+    found: Option<(Channel, f64)>,
     sensors: [SensorState; 3],
 }
 
@@ -110,6 +112,7 @@ impl Quarantine {
             squares: [0.0; 2],
             decided: 0,
             offset: [0.0; 2],
+            found: None,
             sensors: [SensorState::Ok; 3],
         }
     }
@@ -179,6 +182,11 @@ impl Quarantine {
     /// Whether readings are held of which nothing is known yet.
     pub fn is_in_doubt(&self) -> bool {
         self.stance == Stance::Doubt
+    }
+
+    /// Whether both channels repeat themselves: an F that does so with them is not what acts, but a sender's last word.
+    pub fn stands_still(&self) -> bool {
+        matches!(self.stance, Stance::Named(place) if self.weighing.hypothesis(place).kind == Kind::BothStuck)
     }
 
     /// Whether what is held speaks for another law more than for any fault.
@@ -355,6 +363,12 @@ impl Quarantine {
             self.offset[index] = 0.0;
         }
         self.stance = Stance::Calm;
+        self.found = Some((channel, std * std));
+    }
+
+    /// The channel of an offset that has just been taken off, and the variance that is left of it.
+    pub fn found_offset(&mut self) -> Option<(Channel, f64)> {
+        self.found.take()
     }
 
     /// What the sensors do by the hypothesis just named.

@@ -43,6 +43,9 @@ impl Tracker {
     pub(super) fn weigh_faults(&mut self, number: u64, innovations: &[Option<Innovation>; 2]) {
         let Tracker { intake, window, monitor, .. } = self;
         let law = &monitor.law;
+        if let Some((channel, variance)) = intake.quarantine.found_offset() {
+            intake.after_outage.follow(channel, variance);
+        }
         let outage = window.ends_outage(number);
         if !(outage || intake.after_outage.is_open()) || !law.explains {
             return;
