@@ -217,6 +217,20 @@ fn a_sender_that_stalls_is_no_switch() {
     }
 }
 
+/// Where a sample is missed nobody has read what F was: what that did to the motion is no reading that is off.
+#[test]
+fn samples_that_are_missed_are_no_fault_of_the_sensors() {
+    for (builtin, seed) in [(Builtin::DuffingWhite, 20_002), (Builtin::VanDerPolWhite, 20_004)] {
+        let scenario = plant(builtin, seed, 1e3, 14.0);
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        let mut samples = samples(&scenario);
+        samples.retain(|sample| sample.t < FAULT || !generator.random_bool(0.05));
+        let seen = watch(&scenario, builtin, &samples);
+        assert!(seen.switches == 0 && seen.invalid_until < FAULT + 0.3 && seen.worst < BEYOND, "{builtin:?}: {seen:?}");
+        assert!((0..3).all(|channel| seen.said(channel) == [SensorState::Ok]), "{builtin:?}: {seen:?}");
+    }
+}
+
 /// What is left of an offset after a few readings is a part of the noise, and in thousands of samples a switch.
 #[test]
 fn a_sensor_that_is_off_from_some_sample_on_is_no_switch() {

@@ -132,6 +132,12 @@ impl Window {
         number > self.oldest() && self.sample(number).t - self.sample(number - 1).t > OUTAGE * self.pace.dt
     }
 
+    /// What is missed of F over the interval to the next sample, if that is so long and F moves by so much: intensity
+    /// of a white force, N² s.
+    pub fn missed(&self, dt: f64, moved: f64) -> f64 {
+        self.pace.unseen(dt, moved)
+    }
+
     /// What F is taken to do between samples.
     pub fn hold(&self) -> Hold {
         self.hold
@@ -193,7 +199,6 @@ impl Window {
         let counts = [self.channels.q && !q_faulty, self.channels.qd && !qd_faulty];
         let measured = [counts[0].then_some(after.q), counts[1].then_some(after.qd)];
         let dt = after.t - before.t;
-        let unseen = unseen + self.pace.unseen(dt, after.excitation - before.excitation);
         Observation { dt, drive, measured, unseen }
     }
 

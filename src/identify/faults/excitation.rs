@@ -33,9 +33,9 @@ pub struct ExcitationGate {
 }
 
 impl ExcitationGate {
-    /// Takes a sample. Where the last F was replaced, the reading holds the white force that this leaves open for the
-    /// interval.
-    pub fn take(&mut self, sample: Sample) -> Reading {
+    /// Takes a sample. The reading holds the white force that is left open for the interval: where the last F was
+    /// replaced, and what was `missed` of one that moved by so much over so long.
+    pub fn take(&mut self, sample: Sample, missed: impl Fn(f64, f64) -> f64) -> Reading {
         let (before, replaced) = (self.last, self.faulty && self.course.is_none());
         let force = sample.excitation;
         let absurd = self.count > KNOWN && (force.is_nan() || force.abs() > ABSURD * self.size());
@@ -52,7 +52,7 @@ impl ExcitationGate {
         self.last = sample;
         let dt = if self.count > 1.0 { sample.t - before.t } else { 0.0 };
         self.glitch = glitch * glitch * dt;
-        Reading { unseen: scatter * dt, ..Reading::from(sample) }
+        Reading { unseen: scatter * dt + missed(dt, moved), ..Reading::from(sample) }
     }
 
     /// Intensity of the white force, N² s, that F was over the interval before, if it was a glitch of its sensor; 0
@@ -96,7 +96,7 @@ mod tests {
 
     fn through(forces: &[f64]) -> Vec<Reading> {
         let mut gate = ExcitationGate::default();
-        forces.iter().enumerate().map(|(index, force)| gate.take(sample(index, *force))).collect()
+        forces.iter().enumerate().map(|(index, force)| gate.take(sample(index, *force), |_, _| 0.0)).collect()
     }
 
     fn sine() -> Vec<f64> {
@@ -110,7 +110,7 @@ mod tests {
         let mut gate = ExcitationGate::default();
         let glitches: Vec<f64> = (0..500)
             .map(|index| {
-                assert_eq!(gate.take(sample(index, forces[index])).sample.excitation, forces[index]);
+                assert_eq!(gate.take(sample(index, forces[index]), |_, _| 0.0).sample.excitation, forces[index]);
                 gate.glitch()
             })
             .collect();
@@ -136,7 +136,7 @@ mod tests {
         forces[300..].iter_mut().for_each(|force| *force += 0.5);
         let mut gate = ExcitationGate::default();
         forces.iter().enumerate().for_each(|(index, force)| {
-            gate.take(sample(index, *force));
+            gate.take(sample(index, *force), |_, _| 0.0);
             assert!(gate.glitch() == 0.0 && !gate.is_faulty());
         });
     }

@@ -20,7 +20,8 @@ impl Tracker {
     /// Takes a sample that is a number.
     pub fn step(&mut self, problem: &Problem, settings: &Settings, sample: Sample) {
         let setup = Setup { problem, settings };
-        let mut reading = self.intake.excitation.take(sample);
+        let window = &self.window;
+        let mut reading = self.intake.excitation.take(sample, |dt, moved| window.missed(dt, moved));
         self.weigh_glitch(problem, &mut reading);
         self.follow_excitation(problem, &mut reading);
         self.hold_against_law(setup, reading);
