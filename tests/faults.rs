@@ -395,8 +395,8 @@ fn a_rough_excitation_that_is_stuck_or_misread_is_no_fault_of_the_motion() {
     }
 }
 
-/// A force that was misread and one that was not read at all are equally likely for ever, and a force that is unseen for
-/// a second scatters the motion by what nobody knows: neither is a reason to wait, nor to take the law back.
+/// A force that was misread and one that was not read at all are equally likely for ever, and one that is unseen for a
+/// second scatters the motion by what nobody knows: neither is a reason to wait, nor to take the law back.
 #[test]
 fn a_law_stays_valid_after_a_fault_of_the_excitation() {
     for (builtin, seed) in [(Builtin::DuffingWhite, 10_220), (Builtin::VanDerPolWhite, 73)] {
