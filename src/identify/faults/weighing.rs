@@ -62,8 +62,8 @@ impl Weighing {
         sum(true) - sum(false)
     }
 
-    /// The place of what is named: the law against all faults, or one fault against the law and all others. A force that
-    /// was not read and one that was misread leave the same record: neither has to be told from the other.
+    /// The place of what is named: the law against all faults, or one fault against the law and all others. A force
+    /// that was not read and one that was misread leave the same record: neither has to be told from the other.
     pub fn named(&self) -> Option<usize> {
         let odds = self.law_against_fault();
         if odds.is_nan() || odds.abs() < TWENTY_TO_ONE {
