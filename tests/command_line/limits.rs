@@ -64,6 +64,24 @@ fn text_answers_first_and_says_what_was_left_out_and_what_is_known() {
     assert!(text.contains("numbers only: all of them count as sought") && !text.contains("(known)"), "{text}");
 }
 
+/// What a stuck sensor leaves is neither compared with the limit nor laid to the law.
+#[test]
+fn a_fault_of_a_sensor_is_not_laid_to_the_law() {
+    let bench = bench("limits-fault");
+    let record = std::fs::read_to_string(bench.0.join("record.csv")).unwrap();
+    let mut lines: Vec<String> = record.lines().map(String::from).take(10_001).collect();
+    let rest = |line: &str| line.split_once(',').unwrap().1.to_string();
+    let last = rest(&lines[6000]);
+    for line in &mut lines[6001..7001] {
+        *line = format!("{},{last}", line.split_once(',').unwrap().0);
+    }
+    bench.write("stalled.csv", &(lines.join("\n") + "\n"));
+    let text = String::from_utf8(bench.run(&["identify", "stalled.csv", "--model", "model.toml"]).stdout).unwrap();
+    assert!(text.contains("sensor of q: stuck from 6.0"), "{text}");
+    assert!(text.contains("a sensor's fault lies in this stage: no comparison"), "{text}");
+    assert!(!text.contains("switchid diagnose") && !text.contains("the law leaves more"), "{text}");
+}
+
 #[test]
 fn options_that_cannot_be_read_are_named() {
     let bench = bench("limits-options");
