@@ -221,7 +221,7 @@ fn a_sender_that_stalls_is_no_switch() {
 #[test]
 fn samples_that_are_sent_twice_are_read_once() {
     for first in [1, FIRST] {
-        let scenario = plant(Builtin::VanDerPolSine, 20_005, 11.0, 14.0);
+        let scenario = plant(Builtin::VanDerPolSine, 20_005, 11.0, 18.0);
         let mut samples = samples(&scenario);
         for index in (first..samples.len()).step_by(2) {
             samples[index] = Sample { t: samples[index].t, ..samples[index - 1] };
