@@ -2,7 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use switchid::identify::{Channels, Identifier, Sample, SensorState, Settings, Skipped};
+use switchid::identify::{Channels, Identifier, Sample, SensorState, Settings};
 use switchid::law::{Given, Model};
 use switchid::simulate::{Builtin, Scenario, record};
 
@@ -214,23 +214,6 @@ fn a_sender_that_stalls_is_no_switch() {
                 "{builtin:?}: {seen:?}"
             );
         }
-    }
-}
-
-/// What repeats the last sample in every channel is that one again: no reading, and no reason to leave readings out.
-#[test]
-fn samples_that_are_sent_twice_are_read_once() {
-    for first in [1, FIRST] {
-        let scenario = plant(Builtin::VanDerPolSine, 20_005, 11.0, 18.0);
-        let mut samples = samples(&scenario);
-        for index in (first..samples.len()).step_by(2) {
-            samples[index] = Sample { t: samples[index].t, ..samples[index - 1] };
-        }
-        let seen = watch(&scenario, Builtin::VanDerPolSine, &samples);
-        assert!(seen.switches == 1 && seen.valid_at_the_end && seen.worst < BEYOND, "from {first} on: {seen:?}");
-        let mut identifier = identifier(Builtin::VanDerPolSine);
-        let repeated = |sample: &&Sample| matches!(identifier.step(**sample), Err(Skipped::Repeated { .. }));
-        assert!(samples.iter().filter(repeated).count() > 3 * (samples.len() - first) / 7, "from {first} on");
     }
 }
 

@@ -1,7 +1,7 @@
 //! The identifier: which procedure is at work, what a sample is checked for, what the caller sees.
 
 use super::check::{BuildError, check};
-use super::faults::{Clock, Resent};
+use super::faults::Clock;
 use super::force_law::ForceTracker;
 use super::library::{SavedLaws, SavedLawsError};
 use super::problem::Problem;
@@ -42,7 +42,6 @@ pub struct Identifier {
     coefficients: Vec<Coefficient>,
     output: Output,
     clock: Clock,
-    resent: Resent,
     alignment: Alignment,
 }
 
@@ -58,8 +57,8 @@ impl Identifier {
         let engine = Engine::new(&problem, &settings);
         let potential = model.potential.clone();
         let output = Output { hold: settings.hold, ..Output::default() };
-        let (clock, resent, alignment) = (Clock::default(), Resent::default(), Alignment::default());
-        Ok(Identifier { settings, problem, engine, potential, coefficients, output, clock, resent, alignment })
+        let (clock, alignment) = (Clock::default(), Alignment::default());
+        Ok(Identifier { settings, problem, engine, potential, coefficients, output, clock, alignment })
     }
 
     /// Takes one sample.
@@ -103,27 +102,19 @@ impl Identifier {
     fn skip(&mut self, t: f64, skipped: Skipped) -> Skipped {
         if self.clock.is_stale(t) {
             self.output.valid = false;
-            let said = match skipped {
-                Skipped::NotFinite { channel, .. } => Some((SensorState::Missing, Some(channel))),
-                Skipped::Repeated { .. } => Some((SensorState::Stuck, None)),
-                _ => None,
-            };
-            if let Some((state, only)) = said {
-                let sensors = CHANNELS.into_iter().zip(&mut self.output.sensors);
-                let meant = sensors.filter(|(name, _)| only.is_none_or(|only| only == *name));
-                meant.for_each(|(_, sensor)| *sensor = state);
+            if let Skipped::NotFinite { channel, .. } = skipped {
+                let sensor = CHANNELS.into_iter().zip(&mut self.output.sensors).find(|(name, _)| *name == channel);
+                sensor.into_iter().for_each(|(_, state)| *state = SensorState::Missing);
             }
         }
         skipped
     }
 
     /// The time in the record of a sample as it was measured.
-    fn accept(&mut self, sample: &Sample) -> Result<f64, Skipped> {
-        let &Sample { t, q, qd, excitation } = sample;
+    fn accept(&mut self, &Sample { t, q, qd, excitation }: &Sample) -> Result<f64, Skipped> {
         let values = [("t", t), ("q", q), ("qd", qd), ("F", excitation)];
         match values.into_iter().find(|(_, value)| !value.is_finite()) {
             Some((channel, _)) => Err(Skipped::NotFinite { t, channel }),
-            None if self.resent.take(sample) => Err(Skipped::Repeated { t }),
             None => self.clock.time(t, self.settings.sample_time),
         }
     }

@@ -88,8 +88,6 @@ impl Watch {
                 return self.raise(Condition::TooFarApart, sample.t, log, || format!("no sample for {missing} s"));
             }
             Err(Skipped::TooSoon { .. }) => self.raise(Condition::Thinned, sample.t, log, || THINNED.into()),
-            // what it repeats is looked for below
-            Err(Skipped::Repeated { .. }) => {}
             Ok(()) => self.take_accepted(sample, log),
         }
         self.look_for_change(sample, log);

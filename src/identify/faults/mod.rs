@@ -15,8 +15,7 @@
 //! - `quarantine`: readings held, and what is let through;
 //! - `excitation`: a reading of F that leaves its course and returns;
 //! - `after_outage`: whether a sensor came back from an outage with an offset;
-//! - `clock`: time stamps that are none;
-//! - `resent`: messages that are sent again.
+//! - `clock`: time stamps that are none.
 
 mod after_outage;
 mod clock;
@@ -25,7 +24,6 @@ mod hypothesis;
 mod price;
 mod quarantine;
 mod repetition;
-mod resent;
 mod weighing;
 
 pub use after_outage::{AfterOutage, Returned};
@@ -34,4 +32,3 @@ pub use excitation::ExcitationGate;
 pub use hypothesis::{Expected, LOUDER};
 pub use quarantine::Quarantine;
 pub use repetition::Repetition;
-pub use resent::Resent;
