@@ -79,12 +79,18 @@ fn switching(plant: Builtin, effect: &str, seed: u64) -> Scenario {
     scenario.stages.truncate(2);
     scenario.stages[1].start = 20.0;
     scenario.duration = 30.0;
+    lacking(scenario, effect, 30.0)
+}
+
+/// The scenario for `duration` s with an effect in it that has a tenth of the inertia's force over its own.
+fn lacking(mut scenario: Scenario, effect: &str, duration: f64) -> Scenario {
     let term = Term::parse(effect).unwrap();
     let (motion, inertia) = (record(&scenario).unwrap(), scenario.stages[0].coefficients[0]);
     let of_inertia = |pair: &[Reading]| inertia * (pair[1].qd - pair[0].qd) / scenario.excitation.sample_time;
     let squares: f64 = motion.windows(2).map(|pair| of_inertia(pair).powi(2)).sum();
     let lacked: f64 = motion.iter().map(|at| term.force(at.q, at.qd, 0.0).powi(2)).sum();
     scenario.hidden.push(term, 0.1 * (squares / lacked).sqrt());
+    scenario.duration = duration;
     scenario.with_noise(0.01)
 }
 
@@ -141,6 +147,22 @@ fn what_stands_in_for_an_effect_and_fails_is_no_switch() {
             assert_eq!(switches, [0, 1], "{} {effect} seed {seed}", plant.id());
         }
     }
+}
+
+/// Coefficients that move with the motion are those of a law that lacks an effect: while that is tried, nothing drifts.
+#[test]
+fn what_moves_with_the_motion_is_no_drift() {
+    let mut scenario = Builtin::DuffingWhite.random(10_186).with_noise(0.0);
+    scenario.stages.truncate(2);
+    (scenario.stages[1].start, scenario.duration) = (20.0, 20.0);
+    let scenario = lacking(scenario, "signed_quadratic_stiffness", 30.0);
+    let mut identifier = Identifier::new(&Model::cubic_library(), Settings::default()).unwrap();
+    for Reading { t, q, qd, excitation } in record(&scenario).unwrap() {
+        identifier.step(Sample { t, q, qd, excitation }).unwrap();
+        assert!(!identifier.output().drifting, "at {t} s");
+    }
+    let missing = identifier.output().missing.map(|missing| Catalogue::ENTRIES[missing.entry].id);
+    assert_eq!((identifier.output().switch_count, missing), (1, Some("signed_quadratic_stiffness")));
 }
 
 /// Time before the switch in which the identifier calls a law valid whose e of eq. (8) is above 0.05², s.

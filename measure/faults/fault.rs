@@ -177,12 +177,8 @@ impl Fault {
                 (reading.q, reading.qd, reading.excitation) = (f64::NAN, f64::NAN, f64::NAN);
             }),
             Fault::Gap(_) => drop(readings.drain(first..last)),
-            Fault::Offset => {
+            Fault::Offset | Fault::Jump => {
                 drop(readings.drain(first..last));
-                readings[first..].iter_mut().for_each(|reading| reading.q += OFFSET);
-                end = first;
-            }
-            Fault::Jump => {
                 readings[first..].iter_mut().for_each(|reading| reading.q += OFFSET);
                 end = first;
             }
