@@ -2,7 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use switchid::identify::{Channels, Identifier, Sample, SensorState, Settings};
+use switchid::identify::{Channels, Identifier, Sample, SensorState, Settings, Skipped};
 use switchid::law::{Given, Model};
 use switchid::simulate::{Builtin, Scenario, record};
 
@@ -214,6 +214,38 @@ fn a_sender_that_stalls_is_no_switch() {
                 "{builtin:?}: {seen:?}"
             );
         }
+    }
+}
+
+/// A sample that nobody has read, sent between two that were: the last one again, or their mean. `first` is the first.
+fn fill_in(samples: &mut [Sample], first: usize, mean: bool) {
+    for index in (first..samples.len() - 1).step_by(2) {
+        let (before, after) = (samples[index - 1], samples[if mean { index + 1 } else { index - 1 }]);
+        let between = |of: fn(&Sample) -> f64| 0.5 * (of(&before) + of(&after));
+        let [q, qd, excitation] = [between(|s| s.q), between(|s| s.qd), between(|s| s.excitation)];
+        samples[index] = Sample { t: samples[index].t, q, qd, excitation };
+    }
+}
+
+/// A sample that was sent again or interpolated is no reading, and no reason to leave readings out.
+#[test]
+fn samples_that_nobody_has_read_are_left_out() {
+    for (mean, first) in [(false, 1), (false, FIRST), (true, 1), (true, FIRST)] {
+        let scenario = plant(Builtin::VanDerPolSine, 20_005, 11.0, 18.0);
+        let mut samples = samples(&scenario);
+        fill_in(&mut samples, first, mean);
+        let seen = watch(&scenario, Builtin::VanDerPolSine, &samples);
+        assert!(
+            seen.switches == 1 && seen.valid_at_the_end && seen.worst < BEYOND,
+            "{mean}, from {first} on: {seen:?}"
+        );
+        let mut identifier = identifier(Builtin::VanDerPolSine);
+        let left_out = |sample: &&Sample| match identifier.step(**sample) {
+            Err(Skipped::Interpolated { .. }) => mean,
+            Err(Skipped::Repeated { .. }) => !mean,
+            _ => false,
+        };
+        assert!(samples.iter().filter(left_out).count() > 12 * (samples.len() - first) / 25, "{mean}, from {first} on");
     }
 }
 

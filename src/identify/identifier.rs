@@ -1,7 +1,7 @@
 //! The identifier: which procedure is at work, what a sample is checked for, what the caller sees.
 
 use super::check::{BuildError, check};
-use super::faults::Clock;
+use super::faults::{Clock, Sender};
 use super::force_law::ForceTracker;
 use super::library::{SavedLaws, SavedLawsError};
 use super::problem::Problem;
@@ -42,6 +42,7 @@ pub struct Identifier {
     coefficients: Vec<Coefficient>,
     output: Output,
     clock: Clock,
+    sender: Sender,
     alignment: Alignment,
 }
 
@@ -57,19 +58,20 @@ impl Identifier {
         let engine = Engine::new(&problem, &settings);
         let potential = model.potential.clone();
         let output = Output { hold: settings.hold, ..Output::default() };
-        let (clock, alignment) = (Clock::default(), Alignment::default());
-        Ok(Identifier { settings, problem, engine, potential, coefficients, output, clock, alignment })
+        let (clock, sender, alignment) = (Clock::default(), Sender::default(), Alignment::default());
+        Ok(Identifier { settings, problem, engine, potential, coefficients, output, clock, sender, alignment })
     }
 
     /// Takes one sample.
     ///
     /// # Errors
-    /// [`Skipped`] says why the sample was not used; the identifier goes on unchanged.
+    /// [`Skipped`] says why the sample, or the one before it, was not used; the identifier goes on unchanged.
     pub fn step(&mut self, sample: Sample) -> Result<(), Skipped> {
         let measured = self.measured(sample);
         let t = self.accept(&measured).map_err(|skipped| self.skip(sample.t, skipped))?;
         self.clock.advance(t);
-        let Some(sample) = self.alignment.align(self.problem.timing.lag, Sample { t, ..measured }) else {
+        let read = self.sender.read(Sample { t, ..measured })?;
+        let Some(sample) = read.and_then(|sample| self.alignment.align(self.problem.timing.lag, sample)) else {
             return Ok(());
         };
         let Identifier { settings, problem, engine, coefficients, output, .. } = self;
@@ -102,20 +104,28 @@ impl Identifier {
     fn skip(&mut self, t: f64, skipped: Skipped) -> Skipped {
         if self.clock.is_stale(t) {
             self.output.valid = false;
-            if let Skipped::NotFinite { channel, .. } = skipped {
-                let sensor = CHANNELS.into_iter().zip(&mut self.output.sensors).find(|(name, _)| *name == channel);
-                sensor.into_iter().for_each(|(_, state)| *state = SensorState::Missing);
+            let varies = self.sender.varies();
+            for (index, sensor) in self.output.sensors.iter_mut().enumerate() {
+                match skipped {
+                    Skipped::NotFinite { channel, .. } if channel == CHANNELS[index] => *sensor = SensorState::Missing,
+                    Skipped::Repeated { .. } if varies[index] => *sensor = SensorState::Stuck,
+                    _ => {}
+                }
             }
         }
         skipped
     }
 
     /// The time in the record of a sample as it was measured.
-    fn accept(&mut self, &Sample { t, q, qd, excitation }: &Sample) -> Result<f64, Skipped> {
+    fn accept(&mut self, sample: &Sample) -> Result<f64, Skipped> {
+        let &Sample { t, q, qd, excitation } = sample;
         let values = [("t", t), ("q", q), ("qd", qd), ("F", excitation)];
         match values.into_iter().find(|(_, value)| !value.is_finite()) {
             Some((channel, _)) => Err(Skipped::NotFinite { t, channel }),
-            None => self.clock.time(t, self.settings.sample_time),
+            None => {
+                let time = self.clock.time(t, self.settings.sample_time)?;
+                if self.sender.repeats(sample) { Err(Skipped::Repeated { t }) } else { Ok(time) }
+            }
         }
     }
 

@@ -49,6 +49,18 @@ pub enum Skipped {
         /// Time of the last accepted one, s.
         previous: f64,
     },
+    /// Every channel repeats the last sample, which is no chance: that was sent again.
+    #[error("the sample at t = {t} s repeats the last one in every channel: it was sent again, and is skipped")]
+    Repeated {
+        /// Time of the sample, s.
+        t: f64,
+    },
+    /// Every channel of the sample before lay on the line to this one, which is no chance: nobody has read it.
+    #[error("the sample at t = {t} s lies on the line between its neighbours in every channel: interpolated, skipped")]
+    Interpolated {
+        /// Time of the sample, s.
+        t: f64,
+    },
     /// The stream is faster than `sample_time`; thinned.
     #[error("the sample at t = {t} s comes sooner than sample_time after the last one: thinned")]
     TooSoon {

@@ -183,7 +183,7 @@ impl Running {
 /// A sample that the identifier did not take; what comes too soon or after a hole is for the [`Watch`] to say.
 fn say_skipped(skipped: Skipped, log: &mut Log) {
     match skipped {
-        Skipped::TooSoon { .. } | Skipped::Ahead { .. } => {}
+        Skipped::TooSoon { .. } | Skipped::Ahead { .. } | Skipped::Repeated { .. } | Skipped::Interpolated { .. } => {}
         Skipped::NotFinite { t, channel } => {
             log.warn_rarely(channel, || Skipped::NotFinite { t: seconds(t), channel }.to_string());
         }

@@ -88,6 +88,12 @@ impl Watch {
                 return self.raise(Condition::TooFarApart, sample.t, log, || format!("no sample for {missing} s"));
             }
             Err(Skipped::TooSoon { .. }) => self.raise(Condition::Thinned, sample.t, log, || THINNED.into()),
+            // what it repeats is looked for below
+            Err(Skipped::Repeated { .. }) => {}
+            Err(Skipped::Interpolated { .. }) => {
+                self.raise(Condition::NotFresh, sample.t, log, || INTERPOLATED.into());
+                self.take_accepted(sample, log);
+            }
             Ok(()) => self.take_accepted(sample, log),
         }
         self.look_for_change(sample, log);
@@ -173,5 +179,7 @@ impl Condition {
 const THINNED: &str = "samples come closer than half of sample_time and are left out: set sample_time to the step of the simulation to use all of them";
 const NOT_CONNECTED: &str = "q, qd and F have been 0 since the start: are they connected?";
 const NO_MOTION: &str = "q and qd have not changed for 500 samples: without motion there is nothing to identify";
+const INTERPOLATED: &str = "q, qd and F lie on the line between the steps before and after: they are interpolated, and what was sent \
+                            between two readings is left out; take the communication step of what sends them";
 const NOT_FRESH: &str = "q, qd and F are bit by bit those of the step before, though the velocity is not 0: they are held or stuck; take the \
                          communication step of what sends them";

@@ -96,8 +96,24 @@ fn inputs_that_are_held_are_named() {
         run.feed(f64::from(k) * 1e-2, 1e-2, motion(held));
     }
     let warnings = run.warnings();
-    assert_eq!((run.stream().as_str(), warnings.len()), ("not_fresh", 1), "{warnings:?}");
-    assert!(warnings[0].starts_with("t = 0.01 s: "), "{warnings:?}");
+    assert_eq!(run.stream(), "not_fresh");
+    assert!(warnings[0].starts_with("t = 0.01 s: ") && warnings[0].contains("held or stuck"), "{warnings:?}");
+    // each is read once, so that the motion tells how F moves from one to the next
+    assert!(warnings.len() == 2 && warnings[1].contains("F is linear between samples"), "{warnings:?}");
+}
+
+#[test]
+fn inputs_that_are_interpolated_are_named() {
+    let run = Run::new();
+    for k in 0..2000 {
+        let [from, to] = [k / 2, k / 2 + 1].map(|k| motion(f64::from(k) * 2e-2));
+        let share = 0.5 * f64::from(k % 2);
+        let between = std::array::from_fn(|channel| (1.0 - share) * from[channel] + share * to[channel]);
+        run.feed(f64::from(k) * 1e-2, 1e-2, between);
+    }
+    let warnings = run.warnings();
+    assert_eq!(run.stream(), "not_fresh");
+    assert!(warnings[0].contains("interpolated") && warnings.len() <= 2, "{warnings:?}");
 }
 
 #[test]

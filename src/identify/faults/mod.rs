@@ -15,7 +15,8 @@
 //! - `quarantine`: readings held, and what is let through;
 //! - `excitation`: a reading of F that leaves its course and returns;
 //! - `after_outage`: whether a sensor came back from an outage with an offset;
-//! - `clock`: time stamps that are none.
+//! - `clock`: time stamps that are none;
+//! - `sender`: samples that nobody has read, sent again or interpolated.
 
 mod after_outage;
 mod clock;
@@ -24,6 +25,7 @@ mod hypothesis;
 mod price;
 mod quarantine;
 mod repetition;
+mod sender;
 mod weighing;
 
 pub use after_outage::{AfterOutage, Returned};
@@ -32,3 +34,4 @@ pub use excitation::ExcitationGate;
 pub use hypothesis::{Expected, LOUDER};
 pub use quarantine::Quarantine;
 pub use repetition::Repetition;
+pub use sender::Sender;

@@ -184,11 +184,6 @@ impl Quarantine {
         self.stance == Stance::Doubt
     }
 
-    /// Whether both channels repeat themselves: an F that does so with them is not what acts, but a sender's last word.
-    pub fn stands_still(&self) -> bool {
-        matches!(self.stance, Stance::Named(place) if self.weighing.hypothesis(place).kind == Kind::BothStuck)
-    }
-
     /// Whether what is held speaks for another law more than for any fault.
     pub fn suspects_law(&self) -> bool {
         self.count > 0 && self.weighing.law_against_fault() > 0.0

@@ -65,11 +65,8 @@ impl Tracker {
         let expected = known.then(|| (expected(problem, law, &segment.scales, size), law.run.filter));
         let measured = [problem.channels.q, problem.channels.qd];
         intake.quarantine.take(reading, measured, problem.timing.hold, window.pace(), expected);
-        let (in_doubt, stands_still) = (intake.quarantine.is_in_doubt(), intake.quarantine.stands_still());
-        if (in_doubt || stands_still) && self.is_excitation_stuck() {
-            if in_doubt {
-                self.intake.quarantine.settle();
-            }
+        if intake.quarantine.is_in_doubt() && self.is_excitation_stuck() {
+            self.intake.quarantine.settle();
             self.lose_excitation();
         }
     }
