@@ -99,7 +99,7 @@ fn stage_limit(
     let (law, pairs) = known_law(stage)?;
     let (courses, motion) = motion(&pairs, parts, settings, noise)?;
     let channels = parts.first()?.channels();
-    let measured = [channels.q, channels.qd];
+    let measured = channels.of_motion();
     let sensors = Sensors([0, 1].map(|channel| measured[channel].then_some(motion.noise.sensor[channel].sqrt())));
     let bound = bound(&law, &courses, sensors, Start::Unknown).ok()?;
     Some(StageLimit { law, bound, share, explained: !is_evident(&motion) })

@@ -17,6 +17,10 @@
 //!   later, both beside its [`OwnTerms`]; [`AddedEffect`]: one of the effects, added; [`EffectPosterior`]: whether that
 //!   is the right one;
 //! - [`TermSelection`]: which of the terms that it may have the law has;
+//! - [`SandwichFactor`]: whether innovations are as independent as the filter says;
+//! - [`RandomWalk`]: coefficients that wander, known from equations; `regression`: moments of equations, by blocks of
+//!   time, and whether what a law leaves of them is white;
+//! - `kinematics`: the motion where no law tells it, from how smooth it is;
 //! - [`Information`]: sums of what is known of the coefficients, and [`Solution`], what follows from them; [`System`]
 //!   solves them.
 
@@ -29,11 +33,15 @@ mod filter;
 mod information;
 mod initial_state;
 mod innovation_gate;
+mod kinematics;
 mod lag_test;
 mod odds;
 mod one_more_coefficient;
 mod pass;
+mod random_walk;
+mod regression;
 mod rivals;
+mod sandwich;
 mod score_test;
 mod smoother;
 mod symmetric;
@@ -50,14 +58,18 @@ pub use filter::{Channel, Filter, Innovation, Noise, times, white_acceleration};
 pub use information::{Information, Solution};
 pub use initial_state::{LOST, initial_state};
 pub use innovation_gate::{InnovationGate, OUTLYING};
+pub use kinematics::{FixedLagSmoother, Instant, LONGEST, MotionNoise};
 pub use lag_test::{Lag, LagTest, ToldLag};
 pub use odds::{SAMPLES_OF_A_VARIANCE, TWENTY_TO_ONE, log_sum};
 pub use one_more_coefficient::OwnTerms;
 pub use pass::{IntervalMap, Observation, Pass, gains};
+pub use random_walk::{Equation, RandomWalk};
+pub use regression::{Blocks, FEWEST, Moments, SURPRISE, Weight, Whiteness};
 pub use rivals::{RIVALS, Rivals};
+pub use sandwich::SandwichFactor;
 pub use score_test::{Lacked, Missing, ScoreTest};
 pub use smoother::{Smoothable, smooth};
-pub use symmetric::{Lane, LogSum, System, WIDTH, dot};
+pub use symmetric::{Lane, System, WIDTH, dot};
 pub use term_selection::{TermSelection, price_of_a_term};
 pub use track::Track;
 pub use weak_start::{OVERLAP, RowsOfLength, VARIATION};

@@ -172,7 +172,10 @@ const STREAM: [(&str, &str); 8] = [
     ("not_a_number", "A sample was NaN or infinite and is left out"),
     ("not_connected", "q, qd and F have been 0 since the start"),
     ("no_motion", "q and qd do not change"),
-    ("not_fresh", "q, qd and F repeat bit by bit or lie on a line though the motion goes on: held, interpolated, or stuck"),
+    (
+        "not_fresh",
+        "q, qd and F repeat bit by bit or lie on a line though the motion goes on: held, interpolated, or stuck",
+    ),
     ("thinned", "Samples closer than half of sample_time are left out"),
     ("too_far_apart", "There was no sample for more than a sixth of a natural period"),
     ("too_coarse", "Fewer than six samples in a natural period of the motion"),

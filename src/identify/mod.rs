@@ -3,7 +3,6 @@
 //! [`Settings`] are checked once at construction; [`Identifier`] is plain data that clones, compares and serialises.
 //! A step does a bounded amount of work, allocates nothing, and cannot fail.
 
-mod blocks;
 mod change;
 mod check;
 mod deviation;
@@ -14,7 +13,6 @@ mod functional;
 mod identification;
 mod identifier;
 mod library;
-mod moments;
 mod outputs;
 mod packed;
 mod packed_readings;

@@ -47,6 +47,11 @@ pub struct Channels {
 impl Channels {
     /// Displacement, velocity and excitation.
     pub const ALL: Channels = Channels { q: true, qd: true, excitation: true };
+
+    /// Whether q and q̇ are.
+    pub fn of_motion(self) -> [bool; 2] {
+        [self.q, self.qd]
+    }
 }
 
 /// The settings of an identifier. [`Settings::default`] serves every scenario; 0 means "automatic" where it says so.
@@ -101,6 +106,13 @@ impl Default for Settings {
             weight_q: 1.0,
             weight_qd: 1.0,
         }
+    }
+}
+
+impl Settings {
+    /// Variances of the sensors of q and q̇ where they are given.
+    pub(super) fn given_noise(&self) -> [Option<f64>; 2] {
+        [self.noise_q, self.noise_qd].map(|std| (std > 0.0).then_some(std * std))
     }
 }
 

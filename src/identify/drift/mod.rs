@@ -1,13 +1,12 @@
 //! Coefficients that move while the record runs.
 //!
-//! - `weak_rows`: where no constant law explains the record; random walks (`random_walk`) measured by weak rows of many
+//! - `weak_rows`: where no constant law explains the record; random walks measured by weak rows of many
 //!   lengths (`variation_length`), for motions of whatever period (`oscillation`);
 //! - `augmented`: away from a law that explained its record; filters of the state together with the coefficients, on
 //!   trial at an alarm.
 
 mod augmented;
 mod oscillation;
-mod random_walk;
 mod variation_length;
 mod weak_rows;
 

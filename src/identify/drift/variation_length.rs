@@ -1,7 +1,7 @@
 //! What weak rows of one variation length say of coefficients that may wander: a bank of [`RandomWalk`]s, weighed
 //! against each other by how well they predict the next row.
 
-use super::random_walk::{Equation, RandomWalk};
+use crate::estimation::{Equation, RandomWalk};
 use crate::identify::problem::Problem;
 use crate::law::Term;
 use crate::weak::Row;

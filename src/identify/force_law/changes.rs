@@ -9,9 +9,8 @@
 //! least its threshold, in samples (Pollak, *Annals of Statistics* 13, 1985).
 
 use super::segment::ROUNDING;
-use crate::estimation::{Lane, System, WIDTH, log_sum};
+use crate::estimation::{Lane, Moments, System, WIDTH, log_sum};
 use crate::evidence::SWITCH_SIZE;
-use crate::identify::moments::Moments;
 use serde::{Deserialize, Serialize};
 
 /// Most hypotheses: twice those of the tracker of motion, since each costs a regression and no filter.

@@ -7,7 +7,7 @@
 //! the fifth of q and the ninth of q̇.
 
 use super::super::problem::Problem;
-use super::smoother::Instant;
+use crate::estimation::Instant;
 use crate::law::{Model, State};
 
 /// Points of the displacement in std, and their weights.

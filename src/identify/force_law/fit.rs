@@ -1,11 +1,11 @@
 //! One law over a whole recording: the regression that the stream comes to, with the motion as all readings tell it.
 
-use super::noise::MotionNoise;
 use super::segment::Segment;
-use super::smoother::{Instant, LONGEST, Smoother};
+use crate::estimation::{FixedLagSmoother, Instant, LONGEST, MotionNoise};
 use crate::identify::check::{BuildError, check};
 use crate::identify::problem::Problem;
 use crate::identify::recording::{Recording, settings_for};
+use crate::identify::sample::Sample;
 use crate::identify::settings::Settings;
 use crate::law::{Model, State};
 
@@ -57,15 +57,18 @@ pub fn fit_force_law(model: &Model, recording: &Recording) -> Result<Option<Forc
 
 /// The motion of every piece between gaps.
 fn believed(settings: &Settings, recording: &Recording) -> Vec<Instant> {
-    let mut noise = MotionNoise::new(settings);
+    let mut noise = MotionNoise::new(settings.channels.of_motion(), settings.sample_time);
     for piece in recording.pieces() {
         noise.interrupt();
-        piece.for_each(|index| noise.add(&recording.sample(index)));
+        piece.for_each(|index| {
+            let Sample { t, q, qd, .. } = recording.sample(index);
+            noise.add(t, [q, qd]);
+        });
     }
-    let Some(beliefs) = noise.likeliest(settings) else { return Vec::new() };
+    let Some(beliefs) = noise.likeliest(settings.given_noise()) else { return Vec::new() };
     let mut instants = Vec::with_capacity(recording.count());
     for piece in recording.pieces() {
-        let mut smoother = Smoother::new();
+        let mut smoother = FixedLagSmoother::new();
         smoother.believe(beliefs);
         let count = piece.len();
         for index in piece {

@@ -1,11 +1,10 @@
 //! The regression of one stage: its coefficients, how well they are known, and whether they explain the force.
 
 use super::features::{Expected, expect};
-use super::smoother::{Instant, LONGEST};
-use super::whiteness::{SURPRISE, Whiteness};
-use crate::estimation::{OUTLYING, SAMPLES_OF_A_VARIANCE, System, dot, price_of_a_term};
-use crate::identify::blocks::Blocks;
-use crate::identify::moments::{Moments, Weight};
+use crate::estimation::{
+    Blocks, Instant, LONGEST, Moments, OUTLYING, SAMPLES_OF_A_VARIANCE, SURPRISE, System, Weight, Whiteness, dot,
+    price_of_a_term,
+};
 use crate::identify::problem::Problem;
 use crate::identify::report::Coefficient;
 use crate::identify::settings::Settings;

@@ -2,9 +2,8 @@
 
 use super::changes::{Changes, Switch};
 use super::features::is_weighable;
-use super::noise::MotionNoise;
 use super::segment::{COHERENT, Segment};
-use super::smoother::{Instant, LONGEST, Smoother};
+use crate::estimation::{FixedLagSmoother, Instant, LONGEST, MotionNoise};
 use crate::identify::change::SUSPENSE;
 use crate::identify::deviation::Deviation;
 use crate::identify::problem::Problem;
@@ -31,7 +30,7 @@ const ALONE: usize = 2;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ForceTracker {
     noise: MotionNoise,
-    smoother: Smoother,
+    smoother: FixedLagSmoother,
     /// The first samples, until the smoother can begin.
     first: ArrayVec<Sample, FIRST>,
     next_look: u64,
@@ -61,8 +60,8 @@ impl ForceTracker {
     /// In its initial state.
     pub fn new(problem: &Problem, settings: &Settings) -> ForceTracker {
         ForceTracker {
-            noise: MotionNoise::new(settings),
-            smoother: Smoother::new(),
+            noise: MotionNoise::new(settings.channels.of_motion(), settings.sample_time),
+            smoother: FixedLagSmoother::new(),
             first: ArrayVec::new(),
             next_look: FIRST as u64,
             lag: LONGEST,
@@ -88,7 +87,7 @@ impl ForceTracker {
         if ![sample.q, sample.qd, sample.excitation].into_iter().all(is_weighable) {
             return;
         }
-        self.noise.add(&sample);
+        self.noise.add(sample.t, [sample.q, sample.qd]);
         let mut step = Step { problem, settings, now: sample.t, output };
         if self.smoother.count() > 0 {
             self.advance(&mut step, sample);
@@ -121,7 +120,7 @@ impl ForceTracker {
 
     /// Renews what is believed of the sensors.
     fn believe(&mut self, settings: &Settings) {
-        self.noise.likeliest(settings).into_iter().for_each(|channels| self.smoother.believe(channels));
+        self.noise.likeliest(settings.given_noise()).into_iter().for_each(|channels| self.smoother.believe(channels));
         self.next_look += self.next_look.div_ceil(4);
     }
 

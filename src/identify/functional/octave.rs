@@ -1,8 +1,7 @@
 //! One length of variation: rows from samples averaged so far that there are two in a time constant of the variation.
 
 use super::regression::{Estimate, Regression};
-use crate::identify::blocks::{Blocks, FEWEST};
-use crate::identify::moments::Weight;
+use crate::estimation::{Blocks, FEWEST, Weight};
 use crate::identify::problem::Problem;
 use crate::identify::sample::{GAP, Sample};
 use crate::law::{State, Term};

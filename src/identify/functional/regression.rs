@@ -6,9 +6,7 @@
 //! the error's correlation state too little. White sensor noise takes its known share out of the moments (errors in
 //! variables; Fuller, *Measurement Error Models*, 1987).
 
-use crate::estimation::{System, dot};
-use crate::identify::blocks::FEWEST;
-use crate::identify::moments::Moments;
+use crate::estimation::{FEWEST, Moments, System, dot};
 use crate::identify::problem::Problem;
 use crate::law::Term;
 use serde::{Deserialize, Serialize};

@@ -58,17 +58,17 @@ impl Segment {
 
     /// Sensor variances that are not given follow the innovations.
     fn follow_sensors(&mut self, settings: &Settings, track: &Track) {
-        let given = [settings.noise_q, settings.noise_qd];
+        let given = settings.given_noise();
         for channel in Channel::ALL {
             let index = channel as usize;
             let floor = Noise::floor(self.run.largest[index]);
             self.noise.sensor[index] = match given[index] {
-                0.0 => {
+                None => {
                     let (count, known) = (track.count[index], self.known.weight);
                     let seen = count * self.noise.sensor[index] * track.scale(channel);
                     ((seen + known * self.known.noise[index]) / (count + known).max(1.0)).max(floor)
                 }
-                std => std * std,
+                Some(variance) => variance,
             };
         }
     }

@@ -4,12 +4,12 @@ use super::convergence::Convergence;
 use super::motion_scales::MotionScales;
 use super::prior::InertiaPrior;
 use crate::estimation::{
-    AddedEffect, EffectPosterior, Information, KnownEffect, Lacked, LagTest, Missing, Noise, OwnTerms, Pass, ScoreTest,
-    Solution, TermSelection, ToldLag, WithAndWithout,
+    AddedEffect, EffectPosterior, Information, KnownEffect, Lacked, LagTest, Missing, Noise, OwnTerms, Pass,
+    SandwichFactor, ScoreTest, Solution, TermSelection, ToldLag, WithAndWithout,
 };
 use crate::identify::library::Estimate;
 use crate::identify::problem::Problem;
-use crate::identify::validation::{Constancy, SandwichFactor, Stability};
+use crate::identify::validation::{Constancy, Stability};
 use crate::law::Term;
 use serde::{Deserialize, Serialize};
 

@@ -63,7 +63,7 @@ impl Tracker {
         let known = law.running && law.explains && regime.law().is_some() && problem.timing.hold != Hold::BandLimited;
         let size = intake.quarantine.size();
         let expected = known.then(|| (expected(problem, law, &segment.scales, size), law.run.filter));
-        let measured = [problem.channels.q, problem.channels.qd];
+        let measured = problem.channels.of_motion();
         intake.quarantine.take(reading, measured, problem.timing.hold, window.pace(), expected);
         if intake.quarantine.is_in_doubt() && self.is_excitation_stuck() {
             self.intake.quarantine.settle();

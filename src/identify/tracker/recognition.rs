@@ -242,14 +242,12 @@ impl Tracker {
 
     /// The same over a record that no alarm began, as soon as it has two samples.
     pub(super) fn begin_first_trials(&mut self, setup: Setup) {
-        let settings = setup.settings;
         let due = self.library.trial_due.filter(|start| self.window.end() >= start + 2);
         if let Some(start) = due {
             self.library.trial_due = None;
-            let given = [settings.noise_q, settings.noise_qd].map(|std| (std > 0.0).then_some(std * std));
             self.segment.start = start;
             self.library.trials.left = None;
-            self.begin_trials(start, given);
+            self.begin_trials(start, setup.settings.given_noise());
         }
     }
 }

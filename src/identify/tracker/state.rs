@@ -318,10 +318,7 @@ impl Setup<'_> {
     /// Sensor variances before any law: as set, or from differences.
     pub(super) fn first_noise(&self, differences: &DifferenceNoise) -> [f64; 2] {
         let found = differences.variance().unwrap_or([0.0; 2]);
-        let given = [self.settings.noise_q, self.settings.noise_qd];
-        [0, 1].map(|index| match given[index] {
-            0.0 => found[index] + f64::MIN_POSITIVE,
-            std => std * std,
-        })
+        let given = self.settings.given_noise();
+        [0, 1].map(|index| given[index].unwrap_or(found[index] + f64::MIN_POSITIVE))
     }
 }

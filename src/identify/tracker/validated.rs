@@ -59,7 +59,7 @@ impl Tracker {
             let louder = lately.map(|lately| lately * law.noise.sensor[channel]);
             louder.unwrap_or(self.segment.noise.sensor[channel]).sqrt()
         };
-        let measured = [problem.channels.q, problem.channels.qd];
+        let measured = problem.channels.of_motion();
         self.published.noise = [0, 1].map(|channel| measured[channel].then(|| std(channel)));
         self.published.noise_by_law = true;
     }

@@ -2,15 +2,12 @@
 //!
 //! - `bounds`: what its stated error may be;
 //! - `stability`: what a wrong structure or a wrong minimum makes up does not survive more data;
-//! - `constancy`: estimates of one law in a growing record agree;
-//! - `sandwich`: whether innovations are as independent as the filter says.
+//! - `constancy`: estimates of one law in a growing record agree.
 
 mod bounds;
 mod constancy;
-mod sandwich;
 mod stability;
 
 pub use bounds::{DOUBTED, DOUBTFUL, SURE, TRUSTED, VALIDATED};
 pub use constancy::Constancy;
-pub use sandwich::SandwichFactor;
 pub use stability::{Stability, is_one_law};

@@ -3,7 +3,7 @@
 //! A law λ with −1 at the right side leaves xᵀλ of a row, so that Mλ is its score and λᵀMλ its loss. Moments add and
 //! subtract: any stretch of a record is the difference of two.
 
-use crate::estimation::System;
+use crate::estimation::symmetric::System;
 use serde::{Deserialize, Serialize};
 
 /// What a row counts.

@@ -4,7 +4,8 @@
 //! Tracking and Navigation*, 2001, 6.2.3); readings of q and q̇ have white noise of variance R. The filter's
 //! innovations e with variance s give the likelihood of Q and R.
 
-use crate::estimation::{Channel, Filter, Matrix};
+use crate::estimation::covariance::Matrix;
+use crate::estimation::filter::{Channel, Filter};
 
 /// q, q̇, q̈ and their covariance.
 pub type Kinematics = Filter<3>;

@@ -3,10 +3,9 @@
 //! Both variances scale with R, so that for each ratio R = mean e²/s is the maximum in closed form (concentrated
 //! likelihood, Harvey, *Forecasting, Structural Time Series Models and the Kalman Filter*, 1989, 3.4.1).
 
-use super::kinematics::{Kinematics, advance, begin};
-use crate::estimation::{Channel, LogSum};
-use crate::identify::sample::Sample;
-use crate::identify::settings::Settings;
+use super::filter::{Kinematics, advance, begin};
+use crate::estimation::filter::Channel;
+use crate::estimation::symmetric::LogSum;
 use serde::{Deserialize, Serialize};
 
 /// Ratios that are tried: of the filter's corner frequency from 0.003 rad per sample on …
@@ -66,16 +65,16 @@ pub struct Smoothness {
 }
 
 impl MotionNoise {
-    /// No reading yet.
-    pub fn new(settings: &Settings) -> MotionNoise {
-        let of = |channel, is_measured: bool| is_measured.then(|| ChannelNoise::new(channel, settings.sample_time));
-        MotionNoise { channels: [of(Channel::Q, settings.channels.q), of(Channel::Qd, settings.channels.qd)] }
+    /// No reading yet of the channels that are `measured`, about every `sample_time` s.
+    pub fn new(measured: [bool; 2], sample_time: f64) -> MotionNoise {
+        let of = |channel: Channel| measured[channel as usize].then(|| ChannelNoise::new(channel, sample_time));
+        MotionNoise { channels: Channel::ALL.map(of) }
     }
 
-    /// Takes a sample.
-    pub fn add(&mut self, sample: &Sample) {
-        for (noise, value) in self.channels.iter_mut().zip([sample.q, sample.qd]) {
-            noise.iter_mut().for_each(|noise| noise.add(sample.t, value));
+    /// Takes what q and q̇ are read to be at time t, s.
+    pub fn add(&mut self, t: f64, readings: [f64; 2]) {
+        for (noise, value) in self.channels.iter_mut().zip(readings) {
+            noise.iter_mut().for_each(|noise| noise.add(t, value));
         }
     }
 
@@ -89,14 +88,14 @@ impl MotionNoise {
         self.channels.iter().flatten().all(|noise| noise.begun >= readings)
     }
 
-    /// What each channel that is measured tells, with the noise that is given where it is; none before enough readings.
-    pub fn likeliest(&self, settings: &Settings) -> Option<[Option<Smoothness>; 2]> {
+    /// What each channel that is measured tells, with the variance that is `given` where one is; none before enough
+    /// readings.
+    pub fn likeliest(&self, given: [Option<f64>; 2]) -> Option<[Option<Smoothness>; 2]> {
         let mut found = [None; 2];
-        let given = [settings.noise_q, settings.noise_qd].map(|std| std * std);
         for ((slot, noise), given) in found.iter_mut().zip(&self.channels).zip(given) {
             if let Some(noise) = noise {
                 let Smoothness { variance, intensity } = noise.likeliest()?;
-                *slot = Some(Smoothness { variance: if given > 0.0 { given } else { variance }, intensity });
+                *slot = Some(Smoothness { variance: given.unwrap_or(variance), intensity });
             }
         }
         Some(found)

@@ -5,9 +5,9 @@
 //! block and, by Bartlett's weight ½, into the next one (Newey and West, *Econometrica* 55, 1987; Cameron and Miller,
 //! *J. Human Resources* 50, 2015, for the factor B ÷ (B − 1)).
 
-use crate::estimation::dot;
-use crate::identify::blocks::FEWEST;
-use crate::identify::moments::Moments;
+use super::blocks::FEWEST;
+use super::moments::Moments;
+use crate::estimation::symmetric::dot;
 use serde::{Deserialize, Serialize};
 
 /// Std by which the scores may exceed what white noise gives: one chance in a thousand.

@@ -5,7 +5,7 @@
 //! the coefficients, by the same factor (the sandwich estimate of White, Econometrica 50, 1982, here as one factor for
 //! all).
 
-use crate::estimation::Information;
+use super::information::Information;
 use serde::{Deserialize, Serialize};
 
 /// Blocks in a record: the largest ratio of one coefficient is then 1 ± 0.35 under the right law, √(2 ÷ 16).

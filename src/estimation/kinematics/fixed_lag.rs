@@ -4,9 +4,9 @@
 //! the motion, M ← M Aᵀ, and every reading corrects x_j by M h e/s (Anderson and Moore, *Optimal Filtering*, 1979,
 //! 7.3).
 
-use super::kinematics::{Kinematics, advance, begin, carried};
+use super::filter::{Kinematics, advance, begin, carried};
 use super::noise::Smoothness;
-use crate::estimation::{Channel, Innovation};
+use crate::estimation::filter::{Channel, Innovation};
 use serde::{Deserialize, Serialize};
 
 /// Longest lag, samples.
@@ -34,7 +34,7 @@ struct Past {
 
 /// The present state and those of the last samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Smoother {
+pub struct FixedLagSmoother {
     present: Kinematics,
     /// Variances of the noise of q and q̇; none of what is not measured.
     noise: [Option<f64>; 2],
@@ -45,10 +45,10 @@ pub struct Smoother {
     last: Instant,
 }
 
-impl Smoother {
+impl FixedLagSmoother {
     /// No sample yet.
-    pub fn new() -> Smoother {
-        Smoother {
+    pub fn new() -> FixedLagSmoother {
+        FixedLagSmoother {
             present: Kinematics::default(),
             noise: [None; 2],
             intensity: 0.0,
