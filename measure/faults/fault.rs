@@ -43,6 +43,8 @@ pub enum Fault {
     Zero(Of),
     /// One F is 2.5 amplitudes off.
     Glitch,
+    /// 2 to 20 of them are, each by its own.
+    GlitchBurst,
     /// One F is 1e100.
     HugeForce,
     /// Ten q are 1e300.
@@ -67,7 +69,7 @@ pub enum Fault {
 
 impl Fault {
     /// All of them, in the order of the table.
-    pub const ALL: [Fault; 32] = [
+    pub const ALL: [Fault; 33] = [
         Fault::Clean,
         Fault::Burst(Of::Q),
         Fault::Burst(Of::Qd),
@@ -82,6 +84,7 @@ impl Fault {
         Fault::Zero(Of::Both),
         Fault::Zero(Of::F),
         Fault::Glitch,
+        Fault::GlitchBurst,
         Fault::HugeForce,
         Fault::HugeDisplacement,
         Fault::NotANumber,
@@ -111,6 +114,7 @@ impl Fault {
             Fault::Stuck(of) => format!("stuck 1 s, {}", of.id()),
             Fault::Zero(of) => format!("zero 1 s, {}", of.id()),
             Fault::Glitch => "glitch of F".into(),
+            Fault::GlitchBurst => "burst of 2 to 20, F".into(),
             Fault::HugeForce => "one F = 1e100".into(),
             Fault::HugeDisplacement => "ten q = 1e300".into(),
             Fault::NotANumber => "NaN 5 s".into(),
@@ -164,9 +168,14 @@ impl Fault {
                 let zero = Reading { t: 0.0, q: 0.0, qd: 0.0, excitation: 0.0 };
                 readings[first..last].iter_mut().for_each(|reading| of.set(reading, &zero));
             }
-            Fault::Glitch => {
+            Fault::Glitch | Fault::GlitchBurst => {
                 let most = readings.iter().map(|reading| reading.excitation.abs()).fold(0.0, f64::max);
-                readings[first].excitation += GLITCH * most * sign(&mut generator);
+                let many = self == Fault::GlitchBurst;
+                end = first + if many { SHORT[generator.random_range(0..SHORT.len())] } else { 1 };
+                for reading in &mut readings[first..end] {
+                    let size = if many { generator.random_range(0.5..1.5) } else { 1.0 };
+                    reading.excitation += size * GLITCH * most * sign(&mut generator);
+                }
             }
             Fault::HugeForce => readings[first].excitation = 1e100,
             Fault::HugeDisplacement => {

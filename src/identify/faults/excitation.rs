@@ -1,5 +1,5 @@
-//! A reading of F that leaves its course and returns may be a glitch of its sensor or have acted; one that nothing can
-//! have exerted is replaced.
+//! Readings of F that leave its course and return may be a burst of its sensor's or have acted; one that nothing can have
+//! exerted is replaced.
 
 use crate::estimation::SAMPLES_OF_A_VARIANCE;
 use crate::identify::reading::Reading;
@@ -7,8 +7,11 @@ use crate::identify::sample::Sample;
 use serde::{Deserialize, Serialize};
 
 /// A reading of F further from the last one than so many times what F usually moves by leaves its course: Gaussian
-/// excitation does so once in 10¹⁵ readings.
-const JUMP: f64 = 8.0;
+/// excitation does so once in a million readings.
+const JUMP: f64 = 5.0;
+
+/// Readings of a burst at most: an F that has been elsewhere for longer is there.
+const LONGEST: u32 = 20;
 
 /// Readings after which it is known what F usually is …
 const KNOWN: f64 = 100.0;
@@ -21,15 +24,30 @@ const ABSURD: f64 = 1e6;
 pub struct ExcitationGate {
     /// The last sample.
     last: Sample,
-    /// Where F was before it left its course with the last reading.
+    /// Where F was before it left its course, while it is away, for how many readings that has been, and the sum of
+    /// the squares that they are off by.
     course: Option<f64>,
-    /// Whether the last reading was replaced, or one before it was a glitch.
+    away: u32,
+    off: f64,
+    /// Readings since it left, while that is not long ago, and how often it has jumped since; 0 else.
+    since: u32,
+    jumps: u32,
+    /// Whether the last reading was replaced, or a burst has ended with it.
     faulty: bool,
-    /// Intensity of the white force that a glitch just ended may not have been, N² s.
-    glitch: f64,
+    /// The burst that has just ended.
+    ended: Option<Stray>,
     /// Mean squares of F, and of what it moves by.
     squares: [f64; 2],
     count: f64,
+}
+
+/// Readings of F off its course, which it has returned to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Stray {
+    /// How many there were.
+    pub readings: u32,
+    /// Mean square of what they were off by, N².
+    pub square: f64,
 }
 
 impl ExcitationGate {
@@ -41,24 +59,48 @@ impl ExcitationGate {
         let absurd = self.count > KNOWN && (force.is_nan() || force.abs() > ABSURD * self.size());
         let force = if absurd { before.excitation } else { force };
         let moved = force - before.excitation;
-        let leaves = self.leaves(moved);
-        let returned = self.course.filter(|course| leaves && !self.leaves(force - course));
-        let glitch = returned.map_or(0.0, |course| before.excitation - course);
         let scatter = if replaced { self.squares[1] } else { 0.0 };
-        self.course = (leaves && returned.is_none()).then_some(before.excitation);
-        self.faulty = absurd || returned.is_some();
+        self.follow_course(force, moved);
+        self.faulty = absurd || self.ended.is_some();
         let sample = Sample { excitation: force, ..sample };
         self.learn(force, moved);
         self.last = sample;
         let dt = if self.count > 1.0 { sample.t - before.t } else { 0.0 };
-        self.glitch = glitch * glitch * dt;
         Reading { unseen: scatter * dt + missed(dt, moved), ..Reading::from(sample) }
     }
 
-    /// Intensity of the white force, N² s, that F was over the interval before, if it was a glitch of its sensor; 0
-    /// where F kept its course.
-    pub fn glitch(&self) -> f64 {
-        self.glitch
+    /// Whether F leaves its course, is away from it, or returns to it.
+    fn follow_course(&mut self, force: f64, moved: f64) {
+        let (leaves, course) = (self.leaves(moved), self.course);
+        // where its course has led meanwhile nobody has seen
+        let returned = course.filter(|course| leaves && !self.leaves((force - course) / f64::from(self.away)));
+        self.ended = returned.map(|_| Stray { readings: self.away, square: self.off / f64::from(self.away) });
+        (self.away, self.off) = if course.is_some() { (self.away, self.off) } else { (0, 0.0) };
+        self.course = match returned {
+            Some(_) => None,
+            None => course.or(leaves.then_some(self.last.excitation)).filter(|_| self.away < LONGEST),
+        };
+        self.since = if self.since > 0 || self.course.is_some() { (self.since + 1) % (2 * LONGEST) } else { 0 };
+        self.jumps = if self.since > 0 { self.jumps + u32::from(leaves) } else { 0 };
+        if let Some(course) = self.course {
+            (self.away, self.off) = (self.away + 1, self.off + (force - course).powi(2));
+        }
+    }
+
+    /// Whether it is off its course.
+    pub fn is_away(&self) -> bool {
+        self.course.is_some()
+    }
+
+    /// Readings since F left its course, where that is so short ago that what the motion does may tell of it; none
+    /// where it only went to another one.
+    pub fn left(&self) -> Option<u32> {
+        (self.jumps > 1).then_some(self.since)
+    }
+
+    /// The burst that has ended with the last reading.
+    pub fn ended(&self) -> Option<Stray> {
+        self.ended
     }
 
     /// RMS of F.
@@ -66,7 +108,7 @@ impl ExcitationGate {
         self.squares[0].sqrt()
     }
 
-    /// Whether the last reading of F was replaced, or a glitch has just ended.
+    /// Whether the last reading of F was replaced, or a burst has just ended.
     pub fn is_faulty(&self) -> bool {
         self.faulty
     }
@@ -103,20 +145,26 @@ mod tests {
         (0..500).map(|index| (0.0015 * f64::from(index)).sin()).collect()
     }
 
-    #[test]
-    fn a_glitch_leaves_the_interval_after_it_open() {
-        let mut forces = sine();
-        forces[300] += 5.0;
+    /// The bursts that were told with each of the forces.
+    fn ended(forces: &[f64]) -> Vec<(usize, Stray)> {
         let mut gate = ExcitationGate::default();
-        let glitches: Vec<f64> = (0..500)
-            .map(|index| {
-                assert_eq!(gate.take(sample(index, forces[index]), |_, _| 0.0).sample.excitation, forces[index]);
-                gate.glitch()
-            })
-            .collect();
-        let open: Vec<usize> = (0..500).filter(|index| glitches[*index] > 0.0).collect();
-        assert_eq!(open, [301]);
-        assert!((glitches[301] / (25.0 * 1e-3) - 1.0).abs() < 0.01);
+        let told = forces.iter().enumerate().filter_map(|(index, force)| {
+            assert_eq!(gate.take(sample(index, *force), |_, _| 0.0).sample.excitation, *force);
+            gate.ended().map(|stray| (index, stray))
+        });
+        told.collect()
+    }
+
+    #[test]
+    fn a_burst_is_told_when_it_has_ended() {
+        for readings in [1, 7, 20] {
+            let mut forces = sine();
+            forces[300..300 + readings].iter_mut().zip(0..).for_each(|(force, k)| *force += [5.0, -4.0][k % 2]);
+            let told = ended(&forces);
+            let [(at, stray)] = told[..] else { panic!("{told:?}") };
+            assert_eq!((at, stray.readings as usize), (300 + readings, readings));
+            assert!((15.0..26.0).contains(&stray.square), "{stray:?}");
+        }
     }
 
     #[test]
@@ -131,13 +179,9 @@ mod tests {
     }
 
     #[test]
-    fn a_step_is_no_glitch() {
+    fn a_step_is_no_burst() {
         let mut forces = sine();
         forces[300..].iter_mut().for_each(|force| *force += 0.5);
-        let mut gate = ExcitationGate::default();
-        forces.iter().enumerate().for_each(|(index, force)| {
-            gate.take(sample(index, *force), |_, _| 0.0);
-            assert!(gate.glitch() == 0.0 && !gate.is_faulty());
-        });
+        assert!(ended(&forces).is_empty());
     }
 }

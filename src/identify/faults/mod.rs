@@ -30,7 +30,7 @@ mod weighing;
 
 pub use after_outage::{AfterOutage, Returned};
 pub use clock::Clock;
-pub use excitation::ExcitationGate;
+pub use excitation::{ExcitationGate, Stray};
 pub use hypothesis::{Expected, LOUDER};
 pub use quarantine::Quarantine;
 pub use repetition::Repetition;

@@ -1,7 +1,7 @@
 //! An alarm that is a sensor's fault: evidence against the law that a fault explains as well or better.
 
 use super::regime::Event;
-use super::state::Tracker;
+use super::state::{Intake, Tracker};
 use crate::estimation::{Channel, Filter, Innovation, TWENTY_TO_ONE};
 use crate::evidence::{INERTIA_SPREAD, Suspect};
 use crate::identify::change::LawInUse;
@@ -75,8 +75,8 @@ impl Tracker {
         if !self.monitor.law.explains {
             return false;
         }
-        if self.is_excitation_stuck() {
-            self.lose_excitation();
+        if let Some(readings) = self.misread_excitation() {
+            self.lose_excitation(readings);
             return true;
         }
         // one that began when it is most likely, as rare as a switch
@@ -88,20 +88,27 @@ impl Tracker {
         self.is_offset(suspect, threshold)
     }
 
-    /// Whether F repeats exactly where it varied, for longer than chance allows: where the motion goes its own way as
-    /// well, it is not what acts. A motion that has followed it for a radian says that it is: the drive is off.
-    pub(super) fn is_excitation_stuck(&self) -> bool {
-        let lasts = self.intake.force.length() as f64 * self.window.pace();
-        let is_stuck = self.intake.force.run() + SELDOM > TWENTY_TO_ONE;
-        is_stuck && !self.intake.force_lost && lasts < self.segment.scales.natural_time()
+    /// For how many readings F is not what acts, where the motion goes its own way as well: it repeats exactly where it
+    /// varied, for longer than chance allows, or it has just left its course. A motion that has followed an F that
+    /// stands still for a radian says that it is what acts: the drive is off.
+    pub(super) fn misread_excitation(&self) -> Option<u64> {
+        let Intake { force, force_lost, excitation, .. } = &self.intake;
+        let lasts = force.length() as f64 * self.window.pace();
+        let is_stuck = force.run() + SELDOM > TWENTY_TO_ONE && lasts < self.segment.scales.natural_time();
+        let readings = if is_stuck { Some(force.length()) } else { excitation.left().map(u64::from) };
+        readings.filter(|_| !force_lost)
     }
 
-    /// F is stuck, so that it is not known.
-    pub(super) fn lose_excitation(&mut self) {
+    /// F has not been what acts for so many readings, so that it is not known.
+    pub(super) fn lose_excitation(&mut self, readings: u64) {
         self.intake.force_lost = true;
-        let (since, unseen) = (self.intake.force.length(), self.unknown_excitation());
+        self.leave_open(readings, self.unknown_excitation());
+    }
+
+    /// F over the last so many intervals was not what was read, but for a white force of that intensity, N² s.
+    pub(super) fn leave_open(&mut self, count: u64, unseen: f64) {
         let open = |reading: &mut Reading| reading.unseen += unseen;
-        let recorded = self.intake.quarantine.amend(since, open);
+        let recorded = self.intake.quarantine.amend(count, open);
         self.window.amend(recorded, open);
         self.segment.begin_run(&self.window);
         self.restart_law(None);

@@ -3,6 +3,7 @@
 use super::faulted::expected;
 use super::state::{Intake, Setup, Tracker};
 use crate::estimation::OUTLYING;
+use crate::identify::faults::Stray;
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::report::{SensorState, Status};
@@ -22,7 +23,7 @@ impl Tracker {
         let setup = Setup { problem, settings };
         let window = &self.window;
         let mut reading = self.intake.excitation.take(sample, |dt, moved| window.missed(dt, moved));
-        self.weigh_glitch(problem, &mut reading);
+        self.weigh_stray(problem, &mut reading);
         self.follow_excitation(problem, &mut reading);
         self.hold_against_law(setup, reading);
         for _ in 0..CATCH_UP {
@@ -31,27 +32,28 @@ impl Tracker {
         }
     }
 
-    /// A glitch of F that would have moved q̇ by more than its readings scatter is told by q̇ itself: it acted, or the
+    /// A burst of F that would have moved q̇ by more than its readings scatter is told by q̇ itself: it acted, or the
     /// motion has been kicked the other way. Of a smaller one nobody knows.
-    fn weigh_glitch(&self, problem: &Problem, reading: &mut Reading) {
-        let (glitch, law) = (self.intake.excitation.glitch(), &self.monitor.law);
-        if glitch == 0.0 || !law.running {
-            return;
-        }
+    fn weigh_stray(&mut self, problem: &Problem, reading: &mut Reading) {
+        let (ended, law) = (self.intake.excitation.ended(), &self.monitor.law);
+        let Some(Stray { readings, square }) = ended.filter(|_| law.running) else { return };
         let motion = problem.motion(&law.terms, &law.all);
-        let dt = reading.sample.t - self.now();
-        let push = glitch * dt / motion.mass(law.run.filter.mean[0]).powi(2);
+        let dt = reading.sample.t - self.intake.quarantine.now();
+        let push = f64::from(readings) * square * (dt / motion.mass(law.run.filter.mean[0])).powi(2);
         if push < OUTLYING * OUTLYING * law.noise.sensor[1] {
-            reading.unseen += glitch;
+            reading.unseen += square * dt;
+            if readings > 1 {
+                self.leave_open(u64::from(readings - 1), square * dt);
+            }
         }
     }
 
-    /// An F that is stuck says nothing until it varies again.
+    /// An F that is lost says nothing until it varies again, on its course.
     fn follow_excitation(&mut self, problem: &Problem, reading: &mut Reading) {
         let varies = self.intake.force.take(reading.sample.excitation, f64::INFINITY, 0.0).is_none();
         if self.intake.force_lost && problem.channels.excitation {
             reading.unseen += self.unknown_excitation();
-            self.intake.force_lost = !varies;
+            self.intake.force_lost = !varies || self.intake.excitation.is_away();
         }
     }
 
@@ -65,9 +67,10 @@ impl Tracker {
         let expected = known.then(|| (expected(problem, law, &segment.scales, size), law.run.filter));
         let measured = problem.channels.of_motion();
         intake.quarantine.take(reading, measured, problem.timing.hold, window.pace(), expected);
-        if intake.quarantine.is_in_doubt() && self.is_excitation_stuck() {
+        let in_doubt = intake.quarantine.is_in_doubt();
+        if let Some(readings) = self.misread_excitation().filter(|_| in_doubt) {
             self.intake.quarantine.settle();
-            self.lose_excitation();
+            self.lose_excitation(readings);
         }
     }
 
@@ -76,8 +79,8 @@ impl Tracker {
         let Intake { excitation, quarantine, force_lost, .. } = &self.intake;
         let [q, qd, kicked] = quarantine.sensors();
         let force = match (force_lost, excitation.is_faulty()) {
-            (true, _) => SensorState::Stuck,
-            (false, true) => SensorState::Outlier,
+            (true, _) if !excitation.is_away() => SensorState::Stuck,
+            (true, _) | (false, true) => SensorState::Outlier,
             (false, false) => kicked,
         };
         [q, qd, force]
