@@ -16,9 +16,6 @@ const UNDECIDED: f64 = 3.0;
 /// … and is made before with these log-odds: the law and the offset are near each other for some tenths of a second.
 const DECISIVE: f64 = 6.0;
 
-/// Probability of a fault, as a logarithm, before anything speaks for one: as of any event in a sample.
-const SELDOM: f64 = -20.0;
-
 /// What readings are held against: the law in use, in a motion of these scales and this size.
 pub(super) fn expected<'a>(
     problem: &'a Problem,
@@ -88,13 +85,13 @@ impl Tracker {
         self.is_offset(suspect, threshold)
     }
 
-    /// For how many readings F is not what acts, where the motion goes its own way as well: it repeats exactly where it
-    /// varied, for longer than chance allows, or it has just left its course. A motion that has followed an F that
-    /// stands still for a radian says that it is what acts: the drive is off.
+    /// For how many readings F is not what acts, where the motion goes its own way as well, so that a fault is as likely
+    /// as a switch: F repeats exactly where it varied, or it has just left its course. A motion that has followed an F
+    /// that stands still for a radian says that it is what acts: the drive is off.
     pub(super) fn misread_excitation(&self) -> Option<u64> {
         let Intake { force, force_lost, excitation, .. } = &self.intake;
         let lasts = force.length() as f64 * self.window.pace();
-        let is_stuck = force.run() + SELDOM > TWENTY_TO_ONE && lasts < self.segment.scales.natural_time();
+        let is_stuck = force.run() > TWENTY_TO_ONE && lasts < self.segment.scales.natural_time();
         let readings = if is_stuck { Some(force.length()) } else { excitation.left().map(u64::from) };
         readings.filter(|_| !force_lost)
     }
