@@ -32,7 +32,7 @@ pub struct ExcitationGate {
     /// Readings since it left, while that is not long ago, and how often it has jumped since; 0 else.
     since: u32,
     jumps: u32,
-    /// Whether the last reading was replaced, or a burst has ended with it.
+    /// Whether the last reading was replaced, or ends a burst that is a fault.
     faulty: bool,
     /// The burst that has just ended.
     ended: Option<Stray>,
@@ -61,7 +61,7 @@ impl ExcitationGate {
         let moved = force - before.excitation;
         let scatter = if replaced { self.squares[1] } else { 0.0 };
         self.follow_course(force, moved);
-        self.faulty = absurd || self.ended.is_some();
+        self.faulty = absurd;
         let sample = Sample { excitation: force, ..sample };
         self.learn(force, moved);
         self.last = sample;
@@ -108,7 +108,12 @@ impl ExcitationGate {
         self.squares[0].sqrt()
     }
 
-    /// Whether the last reading of F was replaced, or a burst has just ended.
+    /// The burst that has ended with the last reading is a fault.
+    pub fn blame(&mut self) {
+        self.faulty = true;
+    }
+
+    /// Whether the last reading of F was replaced, or ends a burst that is a fault.
     pub fn is_faulty(&self) -> bool {
         self.faulty
     }

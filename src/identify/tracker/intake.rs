@@ -36,12 +36,13 @@ impl Tracker {
     /// motion has been kicked the other way. Of a smaller one nobody knows.
     fn weigh_stray(&mut self, problem: &Problem, reading: &mut Reading) {
         let (ended, law) = (self.intake.excitation.ended(), &self.monitor.law);
-        let Some(Stray { readings, square }) = ended.filter(|_| law.running) else { return };
+        let Some(Stray { readings, square }) = ended.filter(|_| self.tells_readings()) else { return };
         let motion = problem.motion(&law.terms, &law.all);
         let dt = reading.sample.t - self.intake.quarantine.now();
         let push = f64::from(readings) * square * (dt / motion.mass(law.run.filter.mean[0])).powi(2);
         if push < OUTLYING * OUTLYING * law.noise.sensor[1] {
             reading.unseen += square * dt;
+            self.intake.excitation.blame();
             if readings > 1 {
                 self.leave_open(u64::from(readings - 1), square * dt);
             }
@@ -58,11 +59,17 @@ impl Tracker {
     }
 
     /// A validated law that explains its record says what a reading can be; nothing else does.
+    fn tells_readings(&self) -> bool {
+        let law = &self.monitor.law;
+        law.running && law.explains && self.regime.law().is_some()
+    }
+
+    /// What may be a sensor's fault is held against such a law.
     fn hold_against_law(&mut self, setup: Setup, reading: Reading) {
         let Setup { problem, .. } = setup;
-        let Tracker { intake, monitor, window, segment, regime, .. } = self;
+        let known = self.tells_readings() && problem.timing.hold != Hold::BandLimited;
+        let Tracker { intake, monitor, window, segment, .. } = self;
         let law = &monitor.law;
-        let known = law.running && law.explains && regime.law().is_some() && problem.timing.hold != Hold::BandLimited;
         let size = intake.quarantine.size();
         let expected = known.then(|| (expected(problem, law, &segment.scales, size), law.run.filter));
         let measured = problem.channels.of_motion();

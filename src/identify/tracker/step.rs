@@ -153,9 +153,11 @@ impl Tracker {
 
     /// What the run that has just closed says is made known, and taken into use where it is worth it.
     fn heed_run(&mut self, setup: Setup) {
-        self.published.missing = self.segment.missing.filter(|_| self.there_and_back(LONGEST_ERROR) < 1.0);
         let mixed = self.is_mixed();
         let trusted = self.segment.settled() && self.segment.stated_error() < TRUSTED && !mixed;
+        // of a law of which nothing is known nobody knows what it lacks
+        let is_law = trusted || self.regime.is_valid();
+        self.published.missing = self.segment.missing.filter(|_| is_law && self.there_and_back(LONGEST_ERROR) < 1.0);
         self.make_known(setup, trusted);
         let waits = self.monitor.unusual_since.is_some_and(|since| self.window.end() < since + SUSPENSE);
         self.history.mixed_runs = if mixed { self.history.mixed_runs + 1 } else { 0 };
