@@ -427,6 +427,29 @@ fn a_rough_excitation_that_is_stuck_or_misread_is_no_fault_of_the_motion() {
     }
 }
 
+/// Whether the motion follows them or not: under a sine each is small beside what it moves, and all of them are not.
+#[test]
+fn wild_forces_in_a_row_are_no_switch() {
+    for (builtin, seed, noise) in [
+        (Builtin::DuffingSine, 20_010, 0.01),
+        (Builtin::DuffingSine, 20_013, 0.001),
+        (Builtin::VanDerPolSine, 20_016, 0.001),
+        (Builtin::VanDerPolWhite, 20_021, 0.01),
+    ] {
+        let scenario = plant(builtin, seed, 1e3, 12.0).with_noise(noise);
+        let mut samples = samples(&scenario);
+        let most = samples.iter().map(|sample| sample.excitation.abs()).fold(0.0, f64::max);
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        for sample in &mut samples[FIRST..FIRST + 20] {
+            let sign = if generator.random_bool(0.5) { 1.0 } else { -1.0 };
+            sample.excitation += sign * most * generator.random_range(1.5..4.0);
+        }
+        let seen = watch(&scenario, builtin, &samples);
+        assert!(seen.switches == 0 && seen.valid_at_the_end && seen.worst < BEYOND, "{builtin:?} {seed}: {seen:?}");
+        assert!(seen.invalid_until < FAULT + 0.3, "{builtin:?} {seed}: {seen:?}");
+    }
+}
+
 /// A force that was misread and one that was not read at all are equally likely for ever, and one that is unseen for a
 /// second scatters the motion by what nobody knows: neither is a reason to wait, nor to take the law back.
 #[test]

@@ -160,6 +160,25 @@ fn real_records_with_friction_give_the_coefficients_that_they_know() {
     assert!(10 * sharp >= 9 * well_known, "{sharp} of {well_known} known to a third");
 }
 
+/// Pulses, torques and quakes that the machine exerts are none of a sensor's faults, and of a law of which nothing is
+/// known nobody knows what it lacks.
+#[test]
+fn forces_that_leave_their_course_and_act_are_no_fault() {
+    let frame = DAMPER.replace("[terms]", "[terms]\ninertia = \"fit\"");
+    let axis = with_friction("", "\"fit\"", "");
+    for (name, model) in [
+        ("emps/emps_test_pulses_tidy.csv", with_friction(EMPS_COLUMNS, "\"fit\"", "")),
+        ("real/kuka_ax6.csv", axis),
+        ("real/shake1_elcentro.csv", frame),
+    ] {
+        let Some(data) = recording(name) else { return };
+        let found = identify(&data, &model);
+        let sensors = found["sensors"].as_array().unwrap();
+        assert!(sensors.iter().all(|fault| fault["channel"] != "F"), "{name}: {sensors:#?}");
+        assert!(found["stages"][0]["missing"].is_null(), "{name}: {found:#}");
+    }
+}
+
 /// Machines move these dampers: the forces that are measured are no excitation of any inertia.
 #[test]
 fn no_law_with_an_inertia_below_zero_is_told_of_a_damper() {

@@ -1,5 +1,5 @@
-//! Readings of F that leave its course and return may be a burst of its sensor's or have acted; one that nothing can have
-//! exerted is replaced.
+//! Readings of F that leave its course and return may be a burst of its sensor's or have acted; one that nothing can
+//! have exerted is replaced.
 
 use crate::estimation::SAMPLES_OF_A_VARIANCE;
 use crate::identify::reading::Reading;

@@ -85,9 +85,9 @@ impl Tracker {
         self.is_offset(suspect, threshold)
     }
 
-    /// For how many readings F is not what acts, where the motion goes its own way as well, so that a fault is as likely
-    /// as a switch: F repeats exactly where it varied, or it has just left its course. A motion that has followed an F
-    /// that stands still for a radian says that it is what acts: the drive is off.
+    /// For how many readings F is not what acts, where the motion goes its own way as well, so that a fault is as
+    /// likely as a switch: F repeats exactly where it varied, or it has just left its course. A motion that has
+    /// followed an F that stands still for a radian says that it is what acts: the drive is off.
     pub(super) fn misread_excitation(&self) -> Option<u64> {
         let Intake { force, force_lost, excitation, .. } = &self.intake;
         let lasts = force.length() as f64 * self.window.pace();
