@@ -1,6 +1,6 @@
 //! The streaming identifier names the effect that its law lacks, and none where it lacks none.
 
-use switchid::identify::{Identifier, Sample, Settings};
+use switchid::identify::{Identifier, Sample, SensorState, Settings};
 use switchid::law::{Catalogue, Given, Model, Term};
 use switchid::simulate::{Builtin, Reading, Scenario, record};
 
@@ -163,6 +163,21 @@ fn what_moves_with_the_motion_is_no_drift() {
     }
     let missing = identifier.output().missing.map(|missing| Catalogue::ENTRIES[missing.entry].id);
     assert_eq!((identifier.output().switch_count, missing), (1, Some("signed_quadratic_stiffness")));
+}
+
+/// Nor is F late while what may explain the same is tried: under one sine a lag is told by little.
+#[test]
+fn what_a_law_lacks_is_no_late_channel() {
+    let mut scenario = Builtin::DuffingSine.random(10_241).with_noise(0.0);
+    scenario.stages.truncate(2);
+    (scenario.stages[1].start, scenario.duration) = (20.0, 20.0);
+    let scenario = lacking(scenario, "signed_quadratic_stiffness", 20.0);
+    let model = Model::of("Duffing", Builtin::DuffingSine.terms().into_iter().map(|term| (term, Given::Fit)));
+    let mut identifier = Identifier::new(&model, Settings::default()).unwrap();
+    for Reading { t, q, qd, excitation } in record(&scenario).unwrap() {
+        identifier.step(Sample { t, q, qd, excitation }).unwrap();
+        assert_eq!(identifier.output().sensors, [SensorState::Ok; 3], "at {t} s");
+    }
 }
 
 /// Time before the switch in which the identifier calls a law valid whose e of eq. (8) is above 0.05², s.

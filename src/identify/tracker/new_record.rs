@@ -57,9 +57,11 @@ impl Tracker {
         self.begin_under_another_timing(problem, corrected.late() - before.late());
     }
 
-    /// When F acted where the record of the present law says `lag`, and no effect that it lacks explains that as well.
+    /// When F acted where the record of the present law says `lag`, and no effect that it lacks explains that as well,
+    /// by its own evidence or by a trial that is still to end.
     pub(super) fn corrected_timing(&self, problem: &Problem, lag: &Lag) -> Option<Timing> {
-        let lacks = self.segment.effect_evidence() > lag.evidence;
+        let on_trial = self.has_effect_on_trial() || self.segment.untried.is_some();
+        let lacks = self.segment.effect_evidence() > lag.evidence || on_trial;
         let corrected = problem.timing.corrected(lag, self.record_length());
         corrected.filter(|_| self.is_refining() && !lacks)
     }
