@@ -62,6 +62,11 @@ impl Kind {
         self == Kind::BothLouder || self == Kind::Louder(channel)
     }
 
+    /// Whether a channel does.
+    pub fn is_loud(self) -> bool {
+        matches!(self, Kind::Louder(_) | Kind::BothLouder)
+    }
+
     /// Whether q̇ moved once by what no reading tells, and q follows.
     pub fn is_kick(self) -> bool {
         matches!(self, Kind::Kick | Kind::Glitch)

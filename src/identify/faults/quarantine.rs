@@ -307,7 +307,9 @@ impl Quarantine {
         self.weighing.take(law, arrival.dt, &arrival.drive, arrival.values, self.count);
         self.count += 1;
         let full = self.count == ROOM;
-        let named = self.weighing.named().or_else(|| full.then(|| self.weighing.best()));
+        // louder sensors are told from a burst of small readings by their going on alone
+        let named = self.weighing.named().filter(|place| !self.weighing.hypothesis(*place).kind.is_loud());
+        let named = named.or_else(|| full.then(|| self.weighing.best()));
         named.into_iter().for_each(|place| self.name(place, law));
     }
 
