@@ -132,6 +132,22 @@ fn a_burst_in_which_no_reading_is_far_off_is_no_switch() {
 }
 
 /// What a loud second explained is no reason against the switch that follows it.
+/// The first readings of a burst near the noise are what louder sensors would read.
+#[test]
+fn a_burst_near_the_noise_is_not_louder_sensors() {
+    for seed in [7, 13, 15, 20, 58] {
+        let scenario = plant(Builtin::DuffingWhite, 80 + seed, 1e3, 10.0);
+        let mut samples = samples(&scenario);
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        for sample in &mut samples[FIRST..FIRST + 15] {
+            let mut off = || 3.0 * NOISE * generator.random_range(0.5..1.5) * [-1.0, 1.0][generator.random_range(0..2)];
+            (sample.q, sample.qd) = (sample.q + off(), sample.qd + off());
+        }
+        let seen = watch(&scenario, Builtin::DuffingWhite, &samples);
+        assert!(seen.switches == 0 && seen.worst < BEYOND, "{seed}: {seen:?}");
+    }
+}
+
 #[test]
 fn a_switch_after_a_loud_second_is_seen_soon() {
     for seed in 10..14 {
@@ -428,6 +444,21 @@ fn a_rough_excitation_that_is_stuck_or_misread_is_no_fault_of_the_motion() {
 }
 
 /// Whether the motion follows them or not: under a sine each is small beside what it moves, and all of them are not.
+/// A force that stands still where it turns is what acts for longer than elsewhere.
+#[test]
+fn a_force_that_is_stuck_where_it_turns_is_no_switch() {
+    use Builtin::{DuffingSine, VanDerPolSine};
+    for (builtin, seed) in [(DuffingSine, 139), (DuffingSine, 140), (VanDerPolSine, 168), (VanDerPolSine, 169)] {
+        let scenario = plant(builtin, seed, 1e3, 16.0);
+        let mut samples = samples(&scenario);
+        let first = FIRST + (seed as usize * 97) % 3000;
+        let stuck = samples[first].excitation;
+        samples[first..first + 1000].iter_mut().for_each(|sample| sample.excitation = stuck);
+        let seen = watch(&scenario, builtin, &samples);
+        assert!(seen.switches == 0 && seen.worst < BEYOND, "{builtin:?} {seed}: {seen:?}");
+    }
+}
+
 #[test]
 fn wild_forces_in_a_row_are_no_switch() {
     for (builtin, seed, noise) in [

@@ -108,6 +108,11 @@ impl ExcitationGate {
         self.squares[0].sqrt()
     }
 
+    /// Samples in which F goes as far as it usually is from 0.
+    pub fn pace(&self) -> f64 {
+        (self.squares[0] / self.squares[1]).sqrt()
+    }
+
     /// The burst that has ended with the last reading is a fault.
     pub fn blame(&mut self) {
         self.faulty = true;

@@ -76,22 +76,29 @@ impl Tracker {
             self.lose_excitation(readings);
             return true;
         }
-        // one that began when it is most likely, as rare as a switch
-        if self.monitor.law.adaptive.burst() > suspect.evidence {
+        self.is_burst(suspect, threshold) || self.is_offset(suspect, threshold)
+    }
+
+    /// Whether a burst that began when it is most likely, as rare as a switch, is likelier than that, or cannot be told
+    /// from it yet.
+    fn is_burst(&mut self, suspect: &Suspect, threshold: f64) -> bool {
+        let burst = self.monitor.law.adaptive.burst();
+        if burst > suspect.evidence {
             self.monitor.law.adaptive.forget_burst();
             self.restart_law(None);
             return true;
         }
-        self.is_offset(suspect, threshold)
+        burst > threshold && suspect.evidence - burst < TWENTY_TO_ONE
     }
 
     /// For how many readings F is not what acts, where the motion goes its own way as well, so that a fault is as
     /// likely as a switch: F repeats exactly where it varied, or it has just left its course. A motion that has
-    /// followed an F that stands still for a radian says that it is what acts: the drive is off.
+    /// followed an F that stands still for a radian, after the time in which what acts would have gone elsewhere, says
+    /// that it is what acts: the drive is off.
     pub(super) fn misread_excitation(&self) -> Option<u64> {
         let Intake { force, force_lost, excitation, .. } = &self.intake;
-        let lasts = force.length() as f64 * self.window.pace();
-        let is_stuck = force.run() > TWENTY_TO_ONE && lasts < self.segment.scales.natural_time();
+        let elsewhere = (force.length() as f64 - excitation.pace()) * self.window.pace();
+        let is_stuck = force.run() > TWENTY_TO_ONE && elsewhere < self.segment.scales.natural_time();
         let readings = if is_stuck { Some(force.length()) } else { excitation.left().map(u64::from) };
         readings.filter(|_| !force_lost)
     }
