@@ -113,7 +113,9 @@ fn inputs_that_are_interpolated_are_named() {
     }
     let warnings = run.warnings();
     assert_eq!(run.stream(), "not_fresh");
-    assert!(warnings[0].contains("interpolated") && warnings.len() <= 2, "{warnings:?}");
+    assert!(warnings[0].contains("interpolated"), "{warnings:?}");
+    // and F, which the interpolation makes linear, is told to be
+    assert!(warnings[1..].iter().all(|warning| warning.starts_with("hold: ")) && warnings.len() <= 2, "{warnings:?}");
 }
 
 #[test]
