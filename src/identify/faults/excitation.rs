@@ -39,6 +39,8 @@ pub struct ExcitationGate {
     /// Mean squares of F, and of what it moves by.
     squares: [f64; 2],
     count: f64,
+    /// Samples in which F goes as far as it usually is from 0.
+    pace: f64,
 }
 
 /// Readings of F off its course, which it has returned to.
@@ -108,9 +110,9 @@ impl ExcitationGate {
         self.squares[0].sqrt()
     }
 
-    /// Samples in which F goes as far as it usually is from 0.
+    /// Samples in which F goes as far as it usually is from 0, by what it did before it stood still.
     pub fn pace(&self) -> f64 {
-        (self.squares[0] / self.squares[1]).sqrt()
+        self.pace
     }
 
     /// The burst that has ended with the last reading is a fault.
@@ -134,6 +136,10 @@ impl ExcitationGate {
         let most = if self.count > KNOWN { JUMP * JUMP * self.squares[1] } else { f64::INFINITY };
         for (square, value) in self.squares.iter_mut().zip([force * force, moved.min(most)]) {
             *square += (value - *square) / self.count;
+        }
+        // an F that stands still says nothing of how fast it goes elsewhere
+        if moved > 0.0 {
+            self.pace = (self.squares[0] / self.squares[1]).sqrt();
         }
     }
 }
@@ -186,6 +192,22 @@ mod tests {
             forces[300] = forces[299];
             assert_eq!(seen, forces);
         }
+    }
+
+    #[test]
+    fn an_excitation_that_is_held_for_long_keeps_its_pace() {
+        let mut gate = ExcitationGate::default();
+        let forces = sine().into_iter().chain(std::iter::repeat_n(0.5, 50_000));
+        let paces: Vec<f64> = forces
+            .enumerate()
+            .map(|(index, force)| {
+                gate.take(sample(index, force), |_, _| 0.0);
+                gate.pace()
+            })
+            .collect();
+        assert!((200.0..1000.0).contains(&paces[499]), "{}", paces[499]);
+        // the last move is the one to where it is held
+        assert_eq!(paces[50_499], paces[500]);
     }
 
     #[test]
