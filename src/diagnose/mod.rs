@@ -10,6 +10,7 @@ mod fit;
 mod judge;
 mod motion;
 mod piece;
+mod products;
 mod remarks;
 mod scale;
 mod verdict;

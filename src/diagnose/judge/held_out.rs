@@ -9,6 +9,7 @@ use super::memory::{FOLDS, Memory};
 use super::record::{Column, Record};
 use super::regression::{self, Normal};
 use super::windows::COUNT;
+use crate::diagnose::products::dot;
 use nalgebra::{DMatrix, DVector};
 use std::ops::Range;
 
@@ -86,7 +87,7 @@ impl Folds {
 
     /// Products of two sets of equations' rows, by the part of the record that holds them out.
     pub(super) fn products(&self, which: usize, one: &[f64], other: &[f64]) -> Vec<f64> {
-        let sum = |rows: &Range<usize>| one[rows.clone()].iter().zip(&other[rows.clone()]).map(|(a, b)| a * b).sum();
+        let sum = |rows: &Range<usize>| dot(&one[rows.clone()], &other[rows.clone()]);
         self.parts[which].iter().map(sum).collect()
     }
 
@@ -329,14 +330,13 @@ impl<'a> Screen<'a> {
         let part = self.parts[which][fold].as_ref()?;
         let column = &column[which];
         let weighted: Vec<f64> = column.iter().zip(&part.weights).map(|(value, weight)| value * weight).collect();
-        let dot = |other: &[f64]| weighted.iter().zip(other).map(|(a, b)| a * b).sum::<f64>();
         let columns = self.equation.columns(which);
         let p = columns.len();
-        let mut cross: Vec<f64> = columns.iter().map(|column| dot(column)).collect();
-        cross.push(dot(column));
+        let mut cross: Vec<f64> = columns.iter().map(|column| dot(&weighted, column)).collect();
+        cross.push(dot(&weighted, column));
         let own = &part.normal;
         let entry = |a: usize, b: usize| if a < p && b < p { own.gram[(a, b)] } else { cross[a.min(b)] };
-        let right = dot(&self.equation.right[which]);
+        let right = dot(&weighted, &self.equation.right[which]);
         let moment = DVector::from_fn(p + 1, |a, _| if a < p { own.moment[a] } else { right });
         let normal = Normal { gram: DMatrix::from_fn(p + 1, p + 1, entry), moment };
         let solution = normal.solve()?;

@@ -1,6 +1,7 @@
 //! Huber's regression by reweighting (Huber, Robust Statistics, Wiley 1981, ch. 7): a bad stretch of the record pulls
 //! no harder than a good one.
 
+use crate::diagnose::products::dot;
 use nalgebra::{DMatrix, DVector};
 
 /// Residual ÷ robust std beyond which an equation's pull stays: 95 % of the efficiency of least squares under Gaussian
@@ -63,10 +64,6 @@ impl Normal {
         let solution = self.inverse()? * &self.moment;
         solution.iter().all(|value| value.is_finite()).then(|| solution.iter().copied().collect())
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Target − columns · solution.

@@ -4,6 +4,7 @@
 //! eighth of its length. φ and its first three derivatives vanish at both ends, so that derivatives of q may move to
 //! it.
 
+use crate::diagnose::products::dot;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// How many window lengths there are.
@@ -93,8 +94,8 @@ impl Windows {
             for (weights, row) in self.weights.iter().zip(rows) {
                 let weights = &weights[order];
                 let cells = &cells[*piece][*first..*first + weights.len()];
-                let one = |([mean, rise], [value, moment]): (&[f64; 2], &[f64; 2])| mean * value + rise * moment;
-                *row += factor * weights.iter().zip(cells).map(one).sum::<f64>();
+                // means with values and rises with moments
+                *row += factor * dot(weights.as_flattened(), cells.as_flattened());
             }
         }
     }
