@@ -4,7 +4,6 @@ use crate::command::{cargo, root, run};
 use crate::error::Error;
 use crate::files::{file, write};
 use crate::{licences, platforms};
-use std::path::PathBuf;
 use switchid::fmu::{DUFFING, VAN_DER_POL, identifier, plant};
 use switchid::law::Model;
 use switchid_fmu_package::{Fmu, LINUX64, Platform};
@@ -66,12 +65,14 @@ fn pack(fmu: Fmu) -> Result<(), Error> {
 }
 
 /// The harness's command line, `target/release/switchid-harness`: without MAT, Parquet and pictures, which would take
-/// longer to build than the cross-check takes to run.
+/// longer to build than the cross-check takes to run. Beside this program, whose library it shares.
 ///
 /// # Errors
 /// What cargo says.
 pub fn build_command() -> Result<(), Error> {
-    build_package("switchid-harness-command").map(|_| ())
+    let packages = ["--package", "xtask", "--package", "switchid-harness-command"];
+    let mut command = cargo(&["build", "--quiet", "--release", "--bin", "switchid-harness", "--target-dir"]);
+    run(command.arg(root().join("target")).args(packages), "install Rust from https://rustup.rs")
 }
 
 /// A package's dynamic library without symbols, which would be three quarters of it.
@@ -81,13 +82,4 @@ fn build_binary(package: &str) -> Result<Vec<u8>, Error> {
     run(cargo(&arguments).args(strip), "install Rust from https://rustup.rs")?;
     let path = root().join("target/release").join(LINUX64.file(package));
     std::fs::read(&path).map_err(file("read", &path))
-}
-
-/// Builds one package apart from the others, so that it gets the features that it asks for and no more; where its
-/// binary lies.
-fn build_package(package: &str) -> Result<PathBuf, Error> {
-    let target = root().join("target");
-    let mut command = cargo(&["build", "--quiet", "--release", "--package", package, "--target-dir"]);
-    run(command.arg(&target), "install Rust from https://rustup.rs")?;
-    Ok(target.join("release"))
 }

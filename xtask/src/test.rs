@@ -16,7 +16,7 @@ const CHECK: &str = "switchid-fmu-check";
 /// # Errors
 /// [`Error::Steps`]; [`Error::Data`] when real records are missing in CI.
 pub fn test() -> Result<(), Error> {
-    let mut steps = Steps::new(18);
+    let mut steps = Steps::new(17);
     steps.check("real records", real_records);
     steps.check("licences of the FMUs' crates", licences::check);
     steps.check("format", || cargo_run(&["fmt", "--all", "--check"]));
@@ -26,17 +26,19 @@ pub fn test() -> Result<(), Error> {
         cargo_run(&clippy(&["--package", "switchid", "--no-default-features", "--features", "cli"]))
     });
     steps.check("documentation", documentation);
-    steps.check("Rust tests", || cargo_run(&["test", "--release", "--quiet", "--no-fail-fast"]));
-    steps.check("measuring programs", || cargo_run(&["test", "--release", "--quiet", "--package", "switchid-measure"]));
     steps.check("FMUs", fmu::build);
+    let wine = steps.begin("Windows binary under Wine", foreign::compare_quickly);
+    steps.check("Rust tests", || {
+        cargo_run(&["test", "--release", "--quiet", "--no-fail-fast", "--workspace", "--exclude", CHECK])
+    });
     steps.check("random FMI calls", binaries::bounded);
     steps.check("slave under AddressSanitizer", sanitize::slave);
-    steps.check("Windows binary under Wine", foreign::compare_quickly);
     steps.check("FMUs through the fmi crate", fmi_crate);
     steps.check("command line of the cross-check", fmu::build_command);
     steps.check("commands of the documents", readme::commands);
     let interpreter = steps.run("Python environment", python::environment);
     steps.check("harness tests", || pytest(&interpreter?));
+    steps.wait(wine);
     steps.finish()
 }
 
