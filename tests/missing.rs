@@ -75,11 +75,15 @@ fn nothing_is_missing_from_a_law_that_is_still_sought() {
 
 /// Plants whose laws switch at 20 s, with an effect that their models lack: a tenth of the inertia's force.
 fn switching(plant: Builtin, effect: &str, seed: u64) -> Scenario {
+    lacking(two_laws(plant, seed, 30.0), effect, 30.0)
+}
+
+/// The plant without noise for `duration` s, and with another law from 20 s on.
+fn two_laws(plant: Builtin, seed: u64, duration: f64) -> Scenario {
     let mut scenario = plant.random(seed).with_noise(0.0);
     scenario.stages.truncate(2);
-    scenario.stages[1].start = 20.0;
-    scenario.duration = 30.0;
-    lacking(scenario, effect, 30.0)
+    (scenario.stages[1].start, scenario.duration) = (20.0, duration);
+    scenario
 }
 
 /// The scenario for `duration` s with an effect in it that has a tenth of the inertia's force over its own.
@@ -152,10 +156,7 @@ fn what_stands_in_for_an_effect_and_fails_is_no_switch() {
 /// Coefficients that move with the motion are those of a law that lacks an effect: while that is tried, nothing drifts.
 #[test]
 fn what_moves_with_the_motion_is_no_drift() {
-    let mut scenario = Builtin::DuffingWhite.random(10_186).with_noise(0.0);
-    scenario.stages.truncate(2);
-    (scenario.stages[1].start, scenario.duration) = (20.0, 20.0);
-    let scenario = lacking(scenario, "signed_quadratic_stiffness", 30.0);
+    let scenario = lacking(two_laws(Builtin::DuffingWhite, 10_186, 20.0), "signed_quadratic_stiffness", 30.0);
     let mut identifier = Identifier::new(&Model::cubic_library(), Settings::default()).unwrap();
     for Reading { t, q, qd, excitation } in record(&scenario).unwrap() {
         identifier.step(Sample { t, q, qd, excitation }).unwrap();
@@ -168,10 +169,7 @@ fn what_moves_with_the_motion_is_no_drift() {
 /// Nor is F late while what may explain the same is tried: under one sine a lag is told by little.
 #[test]
 fn what_a_law_lacks_is_no_late_channel() {
-    let mut scenario = Builtin::DuffingSine.random(10_241).with_noise(0.0);
-    scenario.stages.truncate(2);
-    (scenario.stages[1].start, scenario.duration) = (20.0, 20.0);
-    let scenario = lacking(scenario, "signed_quadratic_stiffness", 20.0);
+    let scenario = lacking(two_laws(Builtin::DuffingSine, 10_241, 20.0), "signed_quadratic_stiffness", 20.0);
     let model = Model::of("Duffing", Builtin::DuffingSine.terms().into_iter().map(|term| (term, Given::Fit)));
     let mut identifier = Identifier::new(&model, Settings::default()).unwrap();
     for Reading { t, q, qd, excitation } in record(&scenario).unwrap() {

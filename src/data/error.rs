@@ -11,7 +11,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum DataError {
     /// It cannot be opened or read.
-    #[error("{file}: cannot be read: {source}")]
+    #[error("{file}: cannot be read: {source}{}", mending(source))]
     Read {
         /// The file.
         file: String,
@@ -494,4 +494,14 @@ fn time_hint(kind: FileKind, channel: &str) -> &'static str {
 
 fn span_hint(span: Option<(f64, f64)>) -> String {
     span.map_or_else(String::new, |(first, last)| format!("; the file runs from {first} s to {last} s"))
+}
+
+/// What helps where the system refuses a file.
+fn mending(refused: &std::io::Error) -> &'static str {
+    match refused.kind() {
+        std::io::ErrorKind::NotFound => "; a path counts from the folder in which the command is called",
+        std::io::ErrorKind::PermissionDenied => "; allow this user to read it",
+        std::io::ErrorKind::IsADirectory => "; name a file in it",
+        _ => "",
+    }
 }

@@ -26,6 +26,14 @@ fn bad_cells_are_named_by_line_and_column() {
 }
 
 #[test]
+fn what_is_no_file_says_where_it_was_looked_for() {
+    let bench = Bench::new("nowhere");
+    bench.identify_refuses("nowhere.csv", &["nowhere.csv: cannot be read", "from the folder in which"]);
+    std::fs::create_dir_all(bench.0.join("folder.csv")).unwrap();
+    bench.identify_refuses("folder.csv", &["folder.csv: cannot be read", "name a file in it"]);
+}
+
+#[test]
 fn ragged_rows_and_bad_times_are_named_by_line() {
     let bench = Bench::new("rows");
     bench.write(
