@@ -293,6 +293,21 @@ fn a_sensor_that_is_off_from_some_sample_on_is_no_switch() {
     }
 }
 
+/// Five stds are chance in one reading: in these streams every reading was, each for itself, until the law had switched.
+#[test]
+fn an_offset_of_five_stds_is_told_by_all_its_readings() {
+    for (builtin, seed) in
+        [(Builtin::DuffingSine, 10_303), (Builtin::DuffingWhite, 10_310), (Builtin::DuffingSine, 10_314)]
+    {
+        let scenario = plant(builtin, seed, 1e3, 14.0);
+        let mut samples = samples(&scenario);
+        samples[10_000..].iter_mut().for_each(|sample| sample.q += 5.0 * NOISE);
+        let seen = watch(&scenario, builtin, &samples);
+        assert!(seen.switches == 0 && seen.valid_at_the_end, "{seed}: {seen:?}");
+        assert!(seen.said(0).contains(&SensorState::Offset) && seen.worst < BEYOND, "{seed}: {seen:?}");
+    }
+}
+
 /// Where the velocity turns the law expects it to stand: what stands still beside its noise is stuck.
 #[test]
 fn a_sensor_stuck_where_the_motion_turns_is_no_switch() {

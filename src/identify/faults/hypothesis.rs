@@ -85,6 +85,8 @@ pub struct Expected<'a> {
     pub motion: Motion<'a>,
     /// The sensors' noise, and what the law leaves unexplained.
     pub noise: Noise,
+    /// How many times the evidence is asked of the law that one known for sure would need.
+    pub caution: f64,
     /// Std of what a switch adds to q̈, and of the part of F ÷ m that it does.
     pub switch: [f64; 2],
     /// Radians of the motion in a second.
@@ -160,6 +162,8 @@ pub struct Hypothesis {
     covariance: [[f64; 4]; 4],
     /// Log-likelihood of the readings since it began, with its prior.
     pub log: f64,
+    /// That prior.
+    pub prior: f64,
     bursts: [Burst; 2],
     /// Which readings are a sensor's fault: one bit a sample held, by channel.
     faulty: [u64; 2],
@@ -179,6 +183,7 @@ impl Hypothesis {
             mean: [0.0; 4],
             covariance: [[0.0; 4]; 4],
             log: 0.0,
+            prior: 0.0,
             bursts: [Burst::default(); 2],
             faulty: [0; 2],
             doubtful: [0; 2],
@@ -192,7 +197,7 @@ impl Hypothesis {
         let ([q, qd], [[qq, qv], [vq, vv]]) = (filter.mean, filter.covariance);
         self.mean = [q, qd, 0.0, 0.0];
         self.covariance = [[qq, qv, 0.0, 0.0], [vq, vv, 0.0, 0.0], [0.0; 4], [0.0; 4]];
-        (self.log, self.age) = (log, 0);
+        (self.log, self.prior, self.age) = (log, log, 0);
         self.bursts = [Burst::default(); 2];
         self.forget_held();
         let [acceleration, gain] = law.switch;
@@ -212,7 +217,7 @@ impl Hypothesis {
 
     /// Forgets all of it: what says nothing any more takes no room in a saved state.
     pub fn clear(&mut self) {
-        (self.mean, self.covariance, self.log, self.age) = ([0.0; 4], [[0.0; 4]; 4], 0.0, 0);
+        (self.mean, self.covariance, self.log, self.prior, self.age) = ([0.0; 4], [[0.0; 4]; 4], 0.0, 0.0, 0);
         self.bursts = [Burst::default(); 2];
         self.path.fill(State::default());
         self.forget_held();

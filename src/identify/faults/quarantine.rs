@@ -19,7 +19,7 @@ pub const ROOM: usize = 64;
 const SELDOM: f64 = 1e6;
 
 /// A reading is held from so many stds on: two of them in a row would make an alarm of a false-alarm interval of 1e6 s,
-/// 16 nats, and by chance one comes in 16 000 readings.
+/// 16 nats, and by chance one comes in 16 000 readings. Of a law of which more evidence is asked more is.
 const HELD: f64 = 4.0;
 
 /// A channel is in no burst any more below this probability of one.
@@ -262,14 +262,16 @@ impl Quarantine {
         }
     }
 
-    /// Once no burst goes on and everything is in the record, the law in use says again what is expected.
+    /// Once no burst goes on and everything is in the record, the law in use says again what is expected; not while the
+    /// readings speak for anything else: five stds are chance in one reading, and an offset in three.
     fn calm_down(&mut self) {
         if let Stance::Named(place) = self.stance
             && self.behind() == 0
         {
             let named = self.weighing.hypothesis(place);
             let over = Channel::ALL.into_iter().all(|channel| named.burst(channel) < OVER);
-            if over && (named.kind == Kind::Readings || named.kind.is_kick()) {
+            let forgotten = named.kind == Kind::Readings && self.weighing.is_idle();
+            if over && (forgotten || named.kind.is_kick()) {
                 self.stance = Stance::Calm;
                 self.weighing.clear();
             }
@@ -281,7 +283,7 @@ impl Quarantine {
         Channel::ALL.into_iter().all(|channel| match arrival.values[channel as usize] {
             Some(Value { value, repeats, .. }) => {
                 let (residual, variance) = expected.residual(channel, value, law.noise.sensor[channel as usize]);
-                repeats.is_none() && residual * residual <= HELD * HELD * variance
+                repeats.is_none() && residual * residual <= HELD * HELD * law.caution * variance
             }
             None => true,
         })

@@ -38,6 +38,12 @@ impl Weighing {
         }
     }
 
+    /// Whether the readings have made nothing likelier than it was: were it to begin now, it would lose nothing.
+    pub fn is_idle(&self) -> bool {
+        let gained = |hypothesis: &Hypothesis| hypothesis.log - hypothesis.prior;
+        self.hypotheses.iter().all(|other| gained(other) <= gained(&self.hypotheses[0]))
+    }
+
     /// There is nothing to weigh any more.
     pub fn clear(&mut self) {
         self.hypotheses.iter_mut().for_each(Hypothesis::clear);

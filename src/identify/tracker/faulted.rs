@@ -16,16 +16,19 @@ const UNDECIDED: f64 = 3.0;
 /// … and is made before with these log-odds: the law and the offset are near each other for some tenths of a second.
 const DECISIVE: f64 = 6.0;
 
-/// What readings are held against: the law in use, in a motion of these scales and this size.
+/// What readings are held against: the law in use, of which `caution` times the evidence is asked, in a motion of these
+/// scales and this size.
 pub(super) fn expected<'a>(
     problem: &'a Problem,
     law: &'a LawInUse,
+    caution: f64,
     scales: &MotionScales,
     size: [f64; 2],
 ) -> Expected<'a> {
     Expected {
         motion: problem.motion(&law.terms, &law.all),
         noise: law.noise_now(),
+        caution,
         switch: [scales.restoring_acceleration(), INERTIA_SPREAD],
         rate: scales.natural_time().recip(),
         size,

@@ -67,7 +67,7 @@ impl Tracker {
     }
 
     /// What the law in use has to its credit.
-    fn decision(&self) -> Decision {
+    pub(super) fn decision(&self) -> Decision {
         // what the segment leaves tells more than the law in use did when it began; not where one like it explained its
         // record: a switch may be in this one already
         let lately = if self.history.explained { 1.0 } else { self.segment.fit.overdispersion };
