@@ -293,7 +293,7 @@ fn a_sensor_that_is_off_from_some_sample_on_is_no_switch() {
     }
 }
 
-/// Five stds are chance in one reading: in these streams every reading was, each for itself, until the law had switched.
+/// Five stds are chance in one reading: in these streams every one was, each for itself, until the law had switched.
 #[test]
 fn an_offset_of_five_stds_is_told_by_all_its_readings() {
     for (builtin, seed) in
