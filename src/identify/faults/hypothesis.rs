@@ -85,7 +85,7 @@ pub struct Expected<'a> {
     pub motion: Motion<'a>,
     /// The sensors' noise, and what the law leaves unexplained.
     pub noise: Noise,
-    /// How many times the evidence is asked of the law that one known for sure would need.
+    /// How many times the evidence is asked of a reading that a law known for sure would need.
     pub caution: f64,
     /// Std of what a switch adds to q̈, and of the part of F ÷ m that it does.
     pub switch: [f64; 2],
