@@ -179,6 +179,18 @@ fn forces_that_leave_their_course_and_act_are_no_fault() {
     }
 }
 
+/// A young law of this pendulum, or one without its friction, is off by five stds for a while: no sensor has an offset.
+#[test]
+fn what_a_law_leaves_of_a_real_pendulum_is_no_fault_of_its_sensor() {
+    let more = "pendulum_restoring = \"fit\"\n";
+    let alone = format!("[terms]\ninertia = 1\nlinear_damping = \"fit\"\nconstant_force = \"fit\"\n{more}");
+    for model in [alone, with_friction("", "1", more)] {
+        let Some(data) = recording("real/marm_free.csv") else { return };
+        let found = identify(&data, &model);
+        assert!(found["sensors"].as_array().unwrap().is_empty(), "{:#}", found["sensors"]);
+    }
+}
+
 /// Machines move these dampers: the forces that are measured are no excitation of any inertia.
 #[test]
 fn no_law_with_an_inertia_below_zero_is_told_of_a_damper() {
