@@ -53,7 +53,7 @@ const RANDOM: &str = "#include <stddef.h>\n\
      }\n";
 
 /// A library and the program that steps it.
-struct Stepper {
+pub struct Stepper {
     replay: PathBuf,
     library: PathBuf,
 }
@@ -84,7 +84,7 @@ pub fn compare() -> Result<(), Error> {
 ///
 /// # Errors
 /// As [`compare`].
-pub fn compare_quickly() -> Result<(), Error> {
+pub fn compare_quickly(linux: &Stepper) -> Result<(), Error> {
     let program = match WINE.find() {
         Err(error) if std::env::var_os("CI").is_none() => {
             eprintln!("{error}: the Windows binary is not tried");
@@ -92,14 +92,26 @@ pub fn compare_quickly() -> Result<(), Error> {
         }
         found => found?,
     };
-    let arguments = ["build", "--quiet", "--release", "--package", "switchid-fmu-slave", "--features", "host", "--bin"];
-    run(cargo(&arguments).arg("switchid-fmu-replay"), "install Rust from https://rustup.rs")?;
-    let release = root().join("target/release");
-    let linux =
-        Stepper { replay: release.join("switchid-fmu-replay"), library: release.join(LINUX64.file(BINARIES[0])) };
     let (replay, library) = platforms::build_for_wine(BINARIES[0])?;
     let [(fmu, settings), _] = subjects()?;
-    WINE.step_both(program, &fmu, settings, &linux, &Stepper { replay, library })
+    WINE.step_both(program, &fmu, settings, linux, &Stepper { replay, library })
+}
+
+/// This machine's identifier as `cargo xtask fmu` built it, and what steps it, copied aside: what is built meanwhile
+/// replaces both.
+///
+/// # Errors
+/// What cargo says; a file that cannot be copied.
+pub fn own_stepper() -> Result<Stepper, Error> {
+    let arguments = ["build", "--quiet", "--release", "--package", "switchid-fmu-slave", "--features", "host", "--bin"];
+    run(cargo(&arguments).arg("switchid-fmu-replay"), "install Rust from https://rustup.rs")?;
+    let [release, aside] = ["target/release", "target/foreign"].map(|folder| root().join(folder));
+    std::fs::create_dir_all(&aside).map_err(file("create", &aside))?;
+    let copied = |name: &str| {
+        let [from, to] = [&release, &aside].map(|folder| folder.join(name));
+        std::fs::copy(&from, &to).map_err(file("copy", &from)).map(|_| to)
+    };
+    Ok(Stepper { replay: copied("switchid-fmu-replay")?, library: copied(&LINUX64.file(BINARIES[0]))? })
 }
 
 /// Each FMU with parameters under which something happens.

@@ -88,7 +88,7 @@ fn chore(arguments: &[String]) -> Result<(), Error> {
         ("fmu", []) => fmu::renew(false),
         ("fmu", [platforms]) if platforms == "--platforms" => fmu::renew(true),
         ("foreign", []) => foreign::compare(),
-        ("foreign", [quick]) if quick == "--quick" => foreign::compare_quickly(),
+        ("foreign", [quick]) if quick == "--quick" => foreign::compare_quickly(&foreign::own_stepper()?),
         ("fuzz", rest) => binaries::fuzz(rest),
         ("sanitize", rest) => sanitize::sanitize(rest),
         ("endurance", rest) => binaries::endurance(rest),

@@ -16,6 +16,7 @@ pub struct Steps {
 /// A step that goes on beside the following ones.
 pub struct Beside {
     name: String,
+    numbered: String,
     thread: JoinHandle<(Result<(), Error>, Duration)>,
 }
 
@@ -45,18 +46,18 @@ impl Steps {
 
     /// Begins a step that may go on beside the following ones, which leave a processor idle at times.
     pub fn begin(&mut self, name: &str, step: impl FnOnce() -> Result<(), Error> + Send + 'static) -> Beside {
-        let name = self.announce(name);
+        let (name, numbered) = (name.to_string(), self.announce(name));
         let timed = || {
             let began = Instant::now();
             (step(), began.elapsed())
         };
-        Beside { name, thread: spawn(timed) }
+        Beside { name, numbered, thread: spawn(timed) }
     }
 
     /// Waits for the end of such a step: a failure is shown and kept as that of [`Steps::check`].
     pub fn wait(&mut self, step: Beside) {
         let (result, took) = step.thread.join().unwrap_or_else(|panic| resume_unwind(panic));
-        self.say_end(&step.name, result.is_ok(), took);
+        self.say_end(&step.numbered, result.is_ok(), took);
         self.keep(&step.name, result);
     }
 

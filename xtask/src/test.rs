@@ -27,7 +27,8 @@ pub fn test() -> Result<(), Error> {
     });
     steps.check("documentation", documentation);
     steps.check("FMUs", fmu::build);
-    let wine = steps.begin("Windows binary under Wine", foreign::compare_quickly);
+    let own = foreign::own_stepper();
+    let wine = steps.begin("Windows binary under Wine", || foreign::compare_quickly(&own?));
     steps.check("Rust tests", || {
         cargo_run(&["test", "--release", "--quiet", "--no-fail-fast", "--workspace", "--exclude", CHECK])
     });
