@@ -6,8 +6,8 @@ use crate::identify::reading::Reading;
 use crate::identify::sample::Sample;
 use serde::{Deserialize, Serialize};
 
-/// A reading of F further from the last one than so many times what F usually moves by leaves its course: Gaussian
-/// excitation does so once in a million readings.
+/// A reading of F leaves its course where it is so many stds from what the last one lets expect: Gaussian excitation
+/// does so once in a million readings.
 const JUMP: f64 = 5.0;
 
 /// Readings of a burst at most: an F that has been elsewhere for longer is there.
@@ -62,7 +62,7 @@ impl ExcitationGate {
         let force = if absurd { before.excitation } else { force };
         let moved = force - before.excitation;
         let scatter = if replaced { self.squares[1] } else { 0.0 };
-        self.follow_course(force, moved);
+        self.follow_course(force);
         self.faulty = absurd;
         let sample = Sample { excitation: force, ..sample };
         self.learn(force, moved);
@@ -72,10 +72,10 @@ impl ExcitationGate {
     }
 
     /// Whether F leaves its course, is away from it, or returns to it.
-    fn follow_course(&mut self, force: f64, moved: f64) {
-        let (leaves, course) = (self.leaves(moved), self.course);
+    fn follow_course(&mut self, force: f64) {
+        let (leaves, course) = (self.leaves(self.last.excitation, force, 1), self.course);
         // where its course has led meanwhile nobody has seen
-        let returned = course.filter(|course| leaves && !self.leaves((force - course) / f64::from(self.away)));
+        let returned = course.filter(|course| leaves && !self.leaves(*course, force, self.away + 1));
         self.ended = returned.map(|_| Stray { readings: self.away, square: self.off / f64::from(self.away) });
         (self.away, self.off) = if course.is_some() { (self.away, self.off) } else { (0, 0.0) };
         self.course = match returned {
@@ -125,8 +125,12 @@ impl ExcitationGate {
         self.faulty
     }
 
-    fn leaves(&self, moved: f64) -> bool {
-        self.count > KNOWN && moved * moved > JUMP * JUMP * self.squares[1]
+    /// Whether F is further from where it was so many samples ago than what it usually is and moves by lets expect: an
+    /// excitation that forgets where it was at a steady pace, as an autoregression of first order does.
+    fn leaves(&self, from: f64, to: f64, samples: u32) -> bool {
+        let [square, moved] = self.squares;
+        let kept = (1.0 - 0.5 * moved / square).clamp(0.0, 1.0).powi(samples as i32);
+        self.count > KNOWN && (to - kept * from).powi(2) > JUMP * JUMP * (1.0 - kept * kept) * square
     }
 
     /// A reading that leaves its course tells little of what is usual.
