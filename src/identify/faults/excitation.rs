@@ -125,12 +125,13 @@ impl ExcitationGate {
         self.faulty
     }
 
-    /// Whether F is further from where it was so many samples ago than what it usually is and moves by lets expect: an
-    /// excitation that forgets where it was at a steady pace, as an autoregression of first order does.
+    /// Whether one of two values of F is further from the other, so many samples away, than what it usually is and moves
+    /// by lets expect, its moves all being one way: what it keeps of where it was is its correlation over that time.
     fn leaves(&self, from: f64, to: f64, samples: u32) -> bool {
         let [square, moved] = self.squares;
-        let kept = (1.0 - 0.5 * moved / square).clamp(0.0, 1.0).powi(samples as i32);
-        self.count > KNOWN && (to - kept * from).powi(2) > JUMP * JUMP * (1.0 - kept * kept) * square
+        let kept = (1.0 - 0.5 * f64::from(samples).powi(2) * moved / square).max(0.0);
+        let off = (to - kept * from).abs().max((from - kept * to).abs());
+        self.count > KNOWN && off * off > JUMP * JUMP * (1.0 - kept * kept) * square
     }
 
     /// A reading that leaves its course tells little of what is usual.
@@ -151,6 +152,9 @@ impl ExcitationGate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::StandardNormal;
 
     fn sample(index: usize, excitation: f64) -> Sample {
         Sample { t: 1e-3 * index as f64, excitation, ..Sample::default() }
@@ -185,6 +189,26 @@ mod tests {
             assert_eq!((at, stray.readings as usize), (300 + readings, readings));
             assert!((15.0..26.0).contains(&stray.square), "{stray:?}");
         }
+    }
+
+    /// White noise moves by more than it is: what it never is tells, not what it never moves by.
+    #[test]
+    fn a_burst_is_told_where_the_excitation_is_white() {
+        let mut generator = ChaCha8Rng::seed_from_u64(18);
+        let mut forces: Vec<f64> = (0..2000).map(|_| generator.sample(StandardNormal)).collect();
+        let mut gate = ExcitationGate::default();
+        forces[1990..].copy_from_slice(&[0.3, 6.5, 7.1, 6.8, 0.9, -0.4, 0.1, 0.8, -1.2, 0.2]);
+        let jumps: Vec<Option<u32>> = forces
+            .iter()
+            .enumerate()
+            .map(|(index, force)| {
+                gate.take(sample(index, *force), |_, _| 0.0);
+                gate.left()
+            })
+            .collect();
+        assert!(jumps[..1992].iter().all(Option::is_none));
+        assert_eq!(jumps[1992..1995], [Some(2), Some(3), Some(4)]);
+        assert!(!gate.is_away());
     }
 
     #[test]
