@@ -125,8 +125,8 @@ impl ExcitationGate {
         self.faulty
     }
 
-    /// Whether one of two values of F is further from the other, so many samples away, than what it usually is and moves
-    /// by lets expect, its moves all being one way: what it keeps of where it was is its correlation over that time.
+    /// Whether one of two values of F is further from the other, that many samples apart, than F's size and pace let
+    /// expect: what it keeps of where it was is its correlation, as if all its moves meanwhile went one way.
     fn leaves(&self, from: f64, to: f64, samples: u32) -> bool {
         let [square, moved] = self.squares;
         let kept = (1.0 - 0.5 * f64::from(samples).powi(2) * moved / square).max(0.0);

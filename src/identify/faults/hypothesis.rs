@@ -7,6 +7,7 @@
 use super::price::{Burst, faulty, working};
 use crate::estimation::{Channel, Filter, Matrix, Noise, times, white_acceleration};
 use crate::law::{Drive, Motion, State};
+use crate::limits::SETTLED_ERROR;
 use serde::{Deserialize, Serialize};
 
 /// What may have happened.
@@ -14,6 +15,8 @@ use serde::{Deserialize, Serialize};
 pub enum Kind {
     /// Nothing but readings that are wide draws, if any.
     Readings,
+    /// Nothing but those, and the law in use is as wrong as a valid one may be.
+    Misfit,
     /// The law changed so many samples before the first reading that is held, and q̈ by so many times what a switch
     /// usually adds.
     Law { before: u8, times: u8 },
@@ -35,8 +38,9 @@ pub enum Kind {
 
 impl Kind {
     /// Every one of them, the least first.
-    pub const ALL: [Kind; 14] = [
+    pub const ALL: [Kind; 15] = [
         Kind::Readings,
+        Kind::Misfit,
         Kind::Law { before: 0, times: 1 },
         Kind::Law { before: 0, times: 10 },
         Kind::Law { before: 3, times: 1 },
@@ -51,6 +55,11 @@ impl Kind {
         Kind::Louder(Channel::Qd),
         Kind::BothLouder,
     ];
+
+    /// Whether nothing has happened but readings that are wide draws.
+    pub fn is_no_event(self) -> bool {
+        matches!(self, Kind::Readings | Kind::Misfit)
+    }
 
     /// Whether the channel repeats its value.
     pub fn sticks(self, channel: Channel) -> bool {
@@ -103,6 +112,12 @@ impl Expected<'_> {
     /// Intensity of the white force, N² s, that moves q̇ by its own RMS within an interval of `dt` s.
     pub fn kick(&self, q: f64, dt: f64) -> f64 {
         (self.size[1] * self.motion.mass(q)).powi(2) / dt
+    }
+
+    /// Variance of what a valid law may leave out of q̈.
+    fn misfit(&self) -> f64 {
+        let [acceleration, _] = self.switch;
+        SETTLED_ERROR * acceleration * acceleration
     }
 
     /// The filter of (q, q̇) after an interval of the law in use.
@@ -162,9 +177,10 @@ pub struct Hypothesis {
     covariance: [[f64; 4]; 4],
     /// Log-likelihood of the readings since it began, with its prior.
     pub log: f64,
-    /// That prior.
+    /// Its log-odds against nothing when it began.
     pub prior: f64,
-    bursts: [Burst; 2],
+    /// By channel.
+    pub bursts: [Burst; 2],
     /// Which readings are a sensor's fault: one bit a sample held, by channel.
     faulty: [u64; 2],
     /// Which are one if the next is.
@@ -192,12 +208,13 @@ impl Hypothesis {
         }
     }
 
-    /// Begins at the state before the first reading that is held; `dt` is the time between two samples.
-    pub fn begin(&mut self, filter: &Filter, law: &Expected, dt: f64, log: f64) {
+    /// Begins at that state before a reading, with those log-odds against nothing, which is of that log-likelihood;
+    /// `dt` is the time between two samples.
+    pub fn begin(&mut self, filter: &Filter, law: &Expected, dt: f64, nothing: f64, odds: f64) {
         let ([q, qd], [[qq, qv], [vq, vv]]) = (filter.mean, filter.covariance);
         self.mean = [q, qd, 0.0, 0.0];
         self.covariance = [[qq, qv, 0.0, 0.0], [vq, vv, 0.0, 0.0], [0.0; 4], [0.0; 4]];
-        (self.log, self.prior, self.age) = (log, log, 0);
+        (self.log, self.prior, self.age) = (nothing + odds, odds, 0);
         self.bursts = [Burst::default(); 2];
         self.forget_held();
         let [acceleration, gain] = law.switch;
@@ -210,6 +227,7 @@ impl Hypothesis {
                 (self.covariance[1][2], self.covariance[2][1]) = (square * since, square * since);
                 (self.covariance[2][2], self.covariance[3][3]) = (square, gain * gain);
             }
+            Kind::Misfit => self.covariance[2][2] = law.misfit(),
             Kind::Offset(channel) => self.covariance[2][2] = law.size[channel as usize].powi(2),
             _ => {}
         }
@@ -221,6 +239,11 @@ impl Hypothesis {
         self.bursts = [Burst::default(); 2];
         self.path.fill(State::default());
         self.forget_held();
+    }
+
+    /// Samples since it began.
+    pub fn age(&self) -> usize {
+        self.age as usize
     }
 
     /// The samples held have been let through.
@@ -297,6 +320,7 @@ impl Hypothesis {
             let gradient = law.motion.acceleration_gradient(state, middle);
             let inputs = match self.kind {
                 Kind::Law { .. } => [1.0, middle / law.motion.mass(state.q)],
+                Kind::Misfit => [1.0, 0.0],
                 _ => [0.0; 2],
             };
             let moved = law.motion.step_linear(state, part_dt, from, to);
@@ -320,6 +344,7 @@ impl Hypothesis {
                 let event = (acceleration * acceleration + (gain * inputs[1]).powi(2)) * dt;
                 [if first { event } else { 0.0 }, acceleration * acceleration * law.rate]
             }
+            Kind::Misfit => [0.0, law.misfit() * law.rate],
             Kind::Kick if first => [law.size[1] * law.size[1] / dt, 0.0],
             Kind::Glitch if first => [law.drive * law.drive * dt, 0.0],
             _ => [0.0; 2],

@@ -2,7 +2,7 @@
 
 use super::hypothesis::{Expected, Kind, Value};
 use super::repetition::Repetition;
-use super::weighing::Weighing;
+use super::weighing::{Weighing, event};
 use crate::estimation::{Channel, Filter, OUTLYING};
 use crate::identify::packed_readings;
 use crate::identify::reading::Reading;
@@ -14,9 +14,6 @@ use serde::{Deserialize, Serialize};
 /// Samples held at most: what has no name by then has the likeliest one. Three bursts of 20 fit in, and the record
 /// catches up with them in 16 steps.
 pub const ROOM: usize = 64;
-
-/// Mean time between two events of a kind, s: what nothing is known of happens as often as a false alarm is allowed.
-const SELDOM: f64 = 1e6;
 
 /// A reading is held from so many stds on: two of them in a row would make an alarm of a false-alarm interval of 1e6 s,
 /// 16 nats, and by chance one comes in 16 000 readings. Of a law of which more evidence is asked more is.
@@ -89,7 +86,7 @@ struct Arrival {
     dt: f64,
     drive: Drive,
     values: [Option<Value>; 2],
-    /// What repetitions before this one have cost by channel, nats.
+    /// What the repetitions before this one have cost by channel, nats; 0 where it is none.
     runs: [f64; 2],
 }
 
@@ -131,7 +128,10 @@ impl Quarantine {
         reading.sample.qd -= self.offset[1];
         let before = self.last.replace(reading.sample);
         self.samples += 1.0;
-        self.sensors = self.standing();
+        // what is held has no name yet
+        if self.count == 0 {
+            self.sensors = self.standing();
+        }
         let arrival = before.map(|before| {
             // what the law expects to move is asked of a channel that repeats itself alone
             let repeats = reading.sample.q == before.q || reading.sample.qd == before.qd;
@@ -211,7 +211,7 @@ impl Quarantine {
 
     /// What q and q̇ have moved by at least since the sample before, by the law.
     fn course(&self, law: &Expected, filter: Filter, before: Sample, reading: Reading) -> [f64; 2] {
-        let filter = if self.count == 0 { filter } else { self.weighing.hypothesis(0).filter() };
+        let filter = if self.stance == Stance::Calm { filter } else { self.weighing.nothing().filter() };
         let dt = reading.sample.t - before.t;
         let qdd = law.motion.acceleration(State { q: filter.mean[0], qd: filter.mean[1] }, before.excitation);
         let speed = filter.mean[1].abs() - OUTLYING * filter.covariance[1][1].sqrt();
@@ -233,13 +233,15 @@ impl Quarantine {
             Hold::Linear | Hold::BandLimited => Drive::Line(before.excitation, sample.excitation),
         };
         let dt = sample.t - before.t;
-        let event = (dt / SELDOM).min(OVER);
-        let runs = self.repetitions.map(|repetition| repetition.run());
+        let event = event(dt);
+        let mut runs = [0.0; 2];
         let values = Channel::ALL.map(|channel| {
             let index = channel as usize;
             let value = [sample.q, sample.qd][index];
             let start = event.max(self.bursts[index] / self.samples);
+            let run = self.repetitions[index].run();
             let repeats = self.repetitions[index].take(value, course[index], scatter[index]);
+            runs[index] = if repeats.is_some() { run } else { 0.0 };
             measured[index].then_some(Value { value, repeats, start })
         });
         Arrival { reading, dt, drive, values, runs }
@@ -258,6 +260,11 @@ impl Quarantine {
                 let filter = self.weighing.hypothesis(place).filter();
                 self.begin(arrival, law, filter);
             }
+            Stance::Named(place) if self.count == 0 && self.weighing.hypothesis(place).kind.is_no_event() => {
+                self.weighing.renew(law, arrival.dt, ROOM);
+                self.interval = arrival.dt;
+                self.hold(arrival, law);
+            }
             Stance::Doubt | Stance::Named(_) => self.hold(arrival, law),
         }
     }
@@ -270,7 +277,7 @@ impl Quarantine {
         {
             let named = self.weighing.hypothesis(place);
             let over = Channel::ALL.into_iter().all(|channel| named.burst(channel) < OVER);
-            let forgotten = named.kind == Kind::Readings && self.weighing.is_idle();
+            let forgotten = named.kind.is_no_event() && self.weighing.is_idle();
             if over && (forgotten || named.kind.is_kick()) {
                 self.stance = Stance::Calm;
                 self.weighing.clear();
@@ -299,7 +306,7 @@ impl Quarantine {
     }
 
     fn begin(&mut self, arrival: &Arrival, law: &Expected, filter: Filter) {
-        self.weighing.begin(&filter, law, arrival.dt, (arrival.dt / SELDOM).min(OVER), arrival.runs);
+        self.weighing.begin(&filter, law, arrival.dt, arrival.runs);
         (self.stance, self.interval) = (Stance::Doubt, arrival.dt);
         self.hold(arrival, law);
     }
@@ -320,6 +327,7 @@ impl Quarantine {
         let named = self.weighing.hypothesis(place);
         let (kind, offset) = (named.kind, named.offset());
         let first = self.stance == Stance::Doubt;
+        let begins = named.age() == self.count;
         let mut any = [false; 2];
         for number in 0..self.count {
             let mut reading = self.held[number];
@@ -329,7 +337,7 @@ impl Quarantine {
             (reading.sample.q, reading.sample.qd) =
                 (if faulty[0] { state.q } else { q }, if faulty[1] { state.qd } else { qd });
             reading.faulty = faulty;
-            if kind.is_kick() && first && number == 0 {
+            if kind.is_kick() && begins && number == 0 {
                 reading.unseen += law.kick(state.q, self.interval);
             }
             any = [any[0] || faulty[0], any[1] || faulty[1]];
@@ -347,7 +355,7 @@ impl Quarantine {
             Kind::Offset(channel) if self.weighing.odds(place) > CERTAIN => self.know_offset(channel, offset, law),
             _ => {}
         }
-        self.say(kind, any, first);
+        self.say(kind, any, first, begins);
     }
 
     /// An offset that is known well is taken off.
@@ -371,9 +379,9 @@ impl Quarantine {
     }
 
     /// What the sensors do by the hypothesis just named.
-    fn say(&mut self, kind: Kind, faulty: [bool; 2], first: bool) {
+    fn say(&mut self, kind: Kind, faulty: [bool; 2], first: bool, begins: bool) {
         for (index, faulty) in faulty.into_iter().enumerate() {
-            if kind == Kind::Readings && faulty {
+            if kind.is_no_event() && faulty {
                 self.sensors[index] = SensorState::Outlier;
                 self.bursts[index] += if first { 1.0 } else { 0.0 };
             }
@@ -383,7 +391,7 @@ impl Quarantine {
         }
         match kind {
             Kind::Offset(channel) => self.sensors[channel as usize] = SensorState::Offset,
-            Kind::Kick | Kind::Glitch if first => self.sensors[2] = SensorState::Outlier,
+            Kind::Kick | Kind::Glitch if begins => self.sensors[2] = SensorState::Outlier,
             _ => {}
         }
     }

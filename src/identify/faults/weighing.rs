@@ -5,6 +5,28 @@ use crate::estimation::{Channel, Filter, TWENTY_TO_ONE, log_sum};
 use crate::law::Drive;
 use serde::{Deserialize, Serialize};
 
+/// Mean time between two events of a kind, s: what nothing is known of happens as often as a false alarm is allowed.
+const SELDOM: f64 = 1e6;
+
+/// An event of a kind is no likelier than this to begin even in the longest interval.
+const OFTEN: f64 = 0.05;
+
+/// Probability that an event of a kind begins in an interval of `dt` s.
+pub fn event(dt: f64) -> f64 {
+    (dt / SELDOM).min(OFTEN)
+}
+
+/// Log-odds of what begins in an interval of `dt` s against either of those by which nothing happens. Those share what
+/// is likely of nothing, and the changes of a law what is of one.
+fn odds(kind: Kind, dt: f64) -> f64 {
+    let many = |of: fn(Kind) -> bool| Kind::ALL.into_iter().filter(|kind| of(*kind)).count() as f64;
+    match kind {
+        kind if kind.is_no_event() => 0.0,
+        Kind::Law { .. } => (event(dt) * many(Kind::is_no_event) / many(Kind::is_law)).ln(),
+        _ => (event(dt) * many(Kind::is_no_event)).ln(),
+    }
+}
+
 /// The hypotheses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Weighing {
@@ -22,26 +44,40 @@ impl Weighing {
         &self.hypotheses[place]
     }
 
-    /// Every hypothesis begins at the state before the first reading held, `event` the probability that a sample begins
-    /// one of them, `runs` what repetitions before it have cost by channel, nats.
-    pub fn begin(&mut self, filter: &Filter, law: &Expected, dt: f64, event: f64, runs: [f64; 2]) {
-        let changes = self.hypotheses.iter().filter(|hypothesis| hypothesis.kind.is_law()).count() as f64;
+    /// Every hypothesis begins at the state before the first reading held, `dt` s ago, `runs` being what repetitions
+    /// before it have cost by channel, nats: one that sticks has not repeated itself by chance.
+    pub fn begin(&mut self, filter: &Filter, law: &Expected, dt: f64, runs: [f64; 2]) {
         for hypothesis in &mut self.hypotheses {
-            let log = match hypothesis.kind {
-                Kind::Readings => 0.0,
-                Kind::Law { .. } => (event / changes).ln(),
-                _ => event.ln(),
-            };
-            let varies = |channel: &Channel| !hypothesis.kind.sticks(*channel);
-            let run: f64 = Channel::ALL.into_iter().filter(varies).map(|channel| runs[channel as usize]).sum();
-            hypothesis.begin(filter, law, dt, log - run);
+            let sticks = Channel::ALL.into_iter().filter(|channel| hypothesis.kind.sticks(*channel));
+            let run = sticks.map(|channel| runs[channel as usize]).sum::<f64>();
+            hypothesis.begin(filter, law, dt, 0.0, odds(hypothesis.kind, dt) + run);
         }
     }
 
-    /// Whether the readings have made nothing likelier than it was: were it to begin now, it would lose nothing.
+    /// What the readings have not made likelier than it was begins anew: it may be about to happen (Page 1954, eq. 4).
+    /// So does what they have not told in that many samples.
+    pub fn renew(&mut self, law: &Expected, dt: f64, samples: usize) {
+        let nothing = self.nothing();
+        let (own, log, filter, bursts) = (nothing.kind, nothing.log, nothing.filter(), nothing.bursts);
+        for hypothesis in self.hypotheses.iter_mut().filter(|hypothesis| hypothesis.kind != own) {
+            if hypothesis.log - log <= hypothesis.prior || hypothesis.age() >= samples {
+                hypothesis.begin(&filter, law, dt, log, odds(hypothesis.kind, dt));
+                hypothesis.bursts = bursts;
+            }
+        }
+    }
+
+    /// Whether the readings have made nothing likelier than it was.
     pub fn is_idle(&self) -> bool {
-        let gained = |hypothesis: &Hypothesis| hypothesis.log - hypothesis.prior;
-        self.hypotheses.iter().all(|other| gained(other) <= gained(&self.hypotheses[0]))
+        let log = self.nothing().log;
+        let mut events = self.hypotheses.iter().filter(|hypothesis| !hypothesis.kind.is_no_event());
+        events.all(|event| event.log - log <= event.prior)
+    }
+
+    /// The likeliest of those by which nothing has happened.
+    pub fn nothing(&self) -> &Hypothesis {
+        let of = self.hypotheses.iter().filter(|hypothesis| hypothesis.kind.is_no_event());
+        of.max_by(|a, b| a.log.total_cmp(&b.log)).unwrap_or(&self.hypotheses[0])
     }
 
     /// There is nothing to weigh any more.
@@ -77,7 +113,8 @@ impl Weighing {
         }
         let best = self.likeliest(odds > 0.0);
         let own = &self.hypotheses[best];
-        let same = |other: Kind| other == own.kind || other.is_kick() && own.kind.is_kick();
+        let alike = [Kind::is_kick, Kind::is_no_event];
+        let same = |other: Kind| other == own.kind || alike.iter().any(|is| is(other) && is(own.kind));
         let others = self.hypotheses.iter().filter(|other| !other.kind.is_law() && !same(other.kind));
         let rival = others.map(|other| other.log).fold(f64::NEG_INFINITY, log_sum);
         (odds > 0.0 || own.log - rival > TWENTY_TO_ONE).then_some(best)
