@@ -2,7 +2,7 @@
 
 use super::regime::Event;
 use super::state::{Intake, Tracker};
-use crate::estimation::{Channel, Filter, Innovation, Noise, TWENTY_TO_ONE};
+use crate::estimation::{Channel, Filter, Innovation, TWENTY_TO_ONE};
 use crate::evidence::{INERTIA_SPREAD, Suspect};
 use crate::identify::change::{Decision, LawInUse};
 use crate::identify::faults::{Expected, Returned};
@@ -24,12 +24,10 @@ pub(super) fn expected<'a>(
     scales: &MotionScales,
     size: [f64; 2],
 ) -> Expected<'a> {
-    let noise = law.noise_now();
     Expected {
         motion: problem.motion(&law.terms, &law.all),
-        // an error that lasts adds up as a louder sensor's would
-        noise: Noise { sensor: noise.sensor.map(|variance| decision.overdispersion * variance), ..noise },
-        caution: decision.caution() / decision.overdispersion,
+        noise: law.noise_now(),
+        caution: decision.caution(),
         switch: [scales.restoring_acceleration(), INERTIA_SPREAD],
         rate: scales.natural_time().recip(),
         size,
