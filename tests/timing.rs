@@ -177,6 +177,23 @@ fn a_law_known_from_few_samples_of_many_periods_is_left_as_soon_as_any() {
     }
 }
 
+/// What happened to readings seconds ago may still be open when something else does.
+#[test]
+fn a_switch_is_seen_while_earlier_readings_are_weighed() {
+    let coarse = |samples: &[Sample]| samples.iter().step_by(50).copied().collect();
+    for library in [false, true] {
+        let identifier = with_a_switch(Builtin::VanDerPolSine, library, 10_354, coarse);
+        let output = identifier.output();
+        assert!(output.switch_count == 1 && output.detection_time.unwrap() < 20.4, "{output:?}");
+    }
+    let late = |samples: &[Sample]| {
+        samples.windows(2).map(|pair| Sample { q: pair[0].q, qd: pair[0].qd, ..pair[1] }).collect()
+    };
+    let identifier = with_a_switch(Builtin::VanDerPolSine, true, 10_354, late);
+    let output = identifier.output();
+    assert!(output.switch_count == 1 && output.sensors[1] != SensorState::Offset, "{output:?}");
+}
+
 #[test]
 fn a_motion_that_comes_late_under_one_sine_is_no_switch_and_hides_none() {
     let late = |samples: &[Sample]| {
