@@ -54,7 +54,7 @@ impl Weighing {
         }
     }
 
-    /// What the readings have not made likelier than it was begins anew: it may be about to happen (Page 1954, eq. 4).
+    /// What the readings have not made likelier than it was begins anew: it may be about to happen (Page 1954).
     /// So does what they have not told in that many samples.
     pub fn renew(&mut self, law: &Expected, dt: f64, samples: usize) {
         let nothing = self.nothing();

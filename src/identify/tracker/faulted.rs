@@ -4,7 +4,7 @@ use super::regime::Event;
 use super::state::{Intake, Tracker};
 use crate::estimation::{Channel, Filter, Innovation, TWENTY_TO_ONE};
 use crate::evidence::{INERTIA_SPREAD, Suspect};
-use crate::identify::change::{Decision, LawInUse};
+use crate::identify::change::LawInUse;
 use crate::identify::faults::{Expected, Returned};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
@@ -16,18 +16,19 @@ const UNDECIDED: f64 = 3.0;
 /// … and is made before with these log-odds: the law and the offset are near each other for some tenths of a second.
 const DECISIVE: f64 = 6.0;
 
-/// What readings are held against: the law in use, with that to its credit, in a motion of these scales and this size.
+/// What readings are held against: the law in use, of which `caution` times the evidence is asked, in a motion of these
+/// scales and this size.
 pub(super) fn expected<'a>(
     problem: &'a Problem,
     law: &'a LawInUse,
-    decision: &Decision,
+    caution: f64,
     scales: &MotionScales,
     size: [f64; 2],
 ) -> Expected<'a> {
     Expected {
         motion: problem.motion(&law.terms, &law.all),
         noise: law.noise_now(),
-        caution: decision.caution(),
+        caution,
         switch: [scales.restoring_acceleration(), INERTIA_SPREAD],
         rate: scales.natural_time().recip(),
         size,

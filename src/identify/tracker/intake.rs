@@ -68,11 +68,11 @@ impl Tracker {
     fn hold_against_law(&mut self, setup: Setup, reading: Reading) {
         let Setup { problem, .. } = setup;
         let known = self.tells_readings() && problem.timing.hold != Hold::BandLimited;
-        let decision = self.decision();
+        let caution = self.decision().caution();
         let Tracker { intake, monitor, window, segment, .. } = self;
         let law = &monitor.law;
         let size = intake.quarantine.size();
-        let expected = known.then(|| (expected(problem, law, &decision, &segment.scales, size), law.run.filter));
+        let expected = known.then(|| (expected(problem, law, caution, &segment.scales, size), law.run.filter));
         let measured = problem.channels.of_motion();
         intake.quarantine.take(reading, measured, problem.timing.hold, window.pace(), expected);
         let in_doubt = intake.quarantine.is_in_doubt();
