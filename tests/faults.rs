@@ -420,6 +420,29 @@ fn without_noise_a_switch_is_no_fault_of_all_sensors() {
     }
 }
 
+/// A channel that is not measured cannot fail beside the other: the one that does has its name as soon as with both.
+#[test]
+fn the_only_sensor_that_is_stuck_is_said_to_be_soon() {
+    for (channel, channels) in
+        [(true, false), (false, true)].map(|(q, qd)| Channels { q, qd, excitation: true }).into_iter().enumerate()
+    {
+        let mut samples = samples(&plant(Builtin::DuffingSine, 72, 1e3, 10.0).with_noise(1e-3));
+        let before = samples[FIRST - 1];
+        samples[FIRST..FIRST + 1000].iter_mut().for_each(|sample| (sample.q, sample.qd) = (before.q, before.qd));
+        let model = Model::of("plant", Builtin::DuffingSine.terms().into_iter().map(|term| (term, Given::Fit)));
+        let mut identifier = Identifier::new(&model, Settings { channels, ..Settings::default() }).unwrap();
+        let mut said = None;
+        for sample in &samples {
+            identifier.step(*sample).unwrap();
+            let stuck = identifier.output().sensors[channel] == SensorState::Stuck;
+            said = said.or(stuck.then_some(sample.t));
+        }
+        assert!(said.is_some_and(|said| said < FAULT + 0.03), "{channels:?}: {said:?}");
+        let output = identifier.output();
+        assert!(output.switch_count == 0 && output.sensors[channel] == SensorState::Ok, "{channels:?}: {output:?}");
+    }
+}
+
 /// Where one channel is measured the other has no size: that must not make every switch a fault of the sensor's.
 #[test]
 fn a_switch_is_seen_in_either_channel_alone() {

@@ -59,6 +59,8 @@ pub struct Bank {
     n: usize,
     pub(super) hypotheses: Vec<Hypothesis>,
     pub(super) count: usize,
+    /// The likeliest start when the hypotheses were last forgotten although the data spoke for a switch.
+    forgotten: Option<u64>,
     /// 1/τ² by coefficient, the prior of "switch".
     spread: Vec<f64>,
     spread_log_determinant: f64,
@@ -84,6 +86,7 @@ impl Bank {
             n,
             hypotheses: vec![Hypothesis::none(erring); capacity],
             count: 0,
+            forgotten: None,
             spread: vec![1.0; n],
             spread_log_determinant: 0.0,
             shared: Shared { input: [lanes(), lanes()], rows: [lanes(), lanes()] },
@@ -96,8 +99,11 @@ impl Bank {
         }
     }
 
-    /// Forgets all hypotheses.
+    /// Forgets all hypotheses, but the start of what the data spoke for: another cause that was told does not rule a
+    /// switch out.
     pub fn clear(&mut self) {
+        let suspect = self.suspect().filter(|suspect| suspect.evidence > OUTSTANDING);
+        self.forgotten = suspect.map(|suspect| suspect.start).or(self.forgotten);
         self.count = 0;
     }
 
@@ -121,6 +127,7 @@ impl Bank {
 
     /// Drops hypotheses that start before sample `oldest`.
     pub fn forget_before(&mut self, oldest: u64) {
+        self.forgotten = self.forgotten.filter(|start| *start >= oldest);
         while self.count > 0 && self.hypotheses[0].start < oldest {
             self.remove(0);
         }
@@ -201,12 +208,13 @@ impl Bank {
         self.hypotheses[(self.latest(suspect, level) + 1).min(self.count - 1)].start
     }
 
-    /// Writes the starts with most evidence into `starts`, in their order; those that are left where few are plausible
-    /// repeat the last.
+    /// Writes the starts with most evidence into `starts`, in their order, one that was forgotten among them; those
+    /// that are left where few are plausible repeat the last.
     pub fn likeliest_starts(&self, starts: &mut [u64]) {
         let least = self.suspect().map_or(0.0, |suspect| suspect.evidence) - FAR_BELOW;
         let mut bound = (f64::INFINITY, usize::MAX);
-        for slot in starts.iter_mut() {
+        starts.iter_mut().zip(self.forgotten).for_each(|(slot, start)| *slot = start);
+        for slot in starts.iter_mut().skip(usize::from(self.forgotten.is_some())) {
             let live = self.hypotheses[..self.count].iter().map(|hypothesis| hypothesis.evidence).zip(0..);
             let below = live.filter(|next| *next < bound && next.0 > least);
             bound = below.max_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).unwrap_or(bound);
@@ -457,5 +465,23 @@ mod tests {
             bank.spawn(number, &law(&nothing, [0.0; 2]));
         }
         assert!(bank.hypotheses.iter().any(|hypothesis| hypothesis.start == start));
+    }
+
+    #[test]
+    fn a_start_that_the_data_spoke_for_stays_possible_when_all_else_is_forgotten() {
+        let mut bank = bank(400, 200, 30.0);
+        let suspect = bank.suspect().unwrap();
+        assert!(suspect.evidence > OUTSTANDING, "{suspect:?}");
+        bank.clear();
+        bank.clear();
+        let information = Information::none(9);
+        [400, 402].into_iter().for_each(|start| bank.spawn(start, &law(&information, [0.0; 2])));
+        let mut starts = [0; 4];
+        bank.likeliest_starts(&mut starts);
+        assert_eq!(starts[0], suspect.start);
+        assert!(starts[1..].iter().all(|start| *start >= 400), "{starts:?}");
+        bank.forget_before(suspect.start + 1);
+        bank.likeliest_starts(&mut starts);
+        assert!(starts.iter().all(|start| *start >= 400), "{starts:?}");
     }
 }

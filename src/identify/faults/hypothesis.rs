@@ -61,6 +61,15 @@ impl Kind {
         matches!(self, Kind::Readings | Kind::Misfit)
     }
 
+    /// Whether it can be told apart where these channels are measured: a sensor that is not there does not fail.
+    pub fn can_be_told(self, measured: [bool; 2]) -> bool {
+        match self {
+            Kind::Offset(channel) | Kind::Stuck(channel) | Kind::Louder(channel) => measured[channel as usize],
+            Kind::BothStuck | Kind::BothLouder => measured == [true; 2],
+            _ => true,
+        }
+    }
+
     /// Whether the channel repeats its value.
     pub fn sticks(self, channel: Channel) -> bool {
         self == Kind::BothStuck || self == Kind::Stuck(channel)

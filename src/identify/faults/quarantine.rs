@@ -91,10 +91,10 @@ struct Arrival {
 }
 
 impl Quarantine {
-    /// Nothing held.
-    pub fn new() -> Quarantine {
+    /// Nothing held of these channels.
+    pub fn new(measured: [bool; 2]) -> Quarantine {
         Quarantine {
-            weighing: Weighing::new(ROOM),
+            weighing: Weighing::new(ROOM, measured),
             stance: Stance::Calm,
             held: vec![Reading::default(); ROOM],
             count: 0,

@@ -34,9 +34,10 @@ pub struct Weighing {
 }
 
 impl Weighing {
-    /// Room for so many samples held.
-    pub fn new(room: usize) -> Weighing {
-        Weighing { hypotheses: Kind::ALL.map(|kind| Hypothesis::new(kind, room)).into() }
+    /// What can be told apart where these channels are measured, with room for so many samples held.
+    pub fn new(room: usize, measured: [bool; 2]) -> Weighing {
+        let kinds = Kind::ALL.into_iter().filter(|kind| kind.can_be_told(measured));
+        Weighing { hypotheses: kinds.map(|kind| Hypothesis::new(kind, room)).collect() }
     }
 
     /// The hypothesis of that place.

@@ -180,7 +180,7 @@ impl Tracker {
         Tracker {
             intake: Intake {
                 excitation: ExcitationGate::default(),
-                quarantine: Quarantine::new(),
+                quarantine: Quarantine::new(problem.channels.of_motion()),
                 after_outage: AfterOutage::default(),
                 undecided: false,
                 force: Repetition::default(),
