@@ -57,7 +57,7 @@ fn documentation() -> Result<(), Error> {
 }
 
 fn fmi_crate() -> Result<(), Error> {
-    let mut command = cargo(&["test", "--release", "--quiet", "--package", CHECK]);
+    let mut command = cargo(&["test", "--profile", "tried", "--quiet", "--package", CHECK]);
     libclang::provide(&mut command)?;
     run(&mut command, CARGO)
 }
