@@ -14,13 +14,13 @@ use std::ops::Range;
 /// A time over which one law held.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stage {
-    /// Estimated instant at which it began, s; the first sample's time where the record or a gap begins it.
+    /// Estimated instant at which it began, s; the first sample's time where no switch begins it.
     pub start: f64,
     /// Std of that instant, s; `None` where no switch began the stage.
     pub start_std: Option<f64>,
     /// Its end, s: the next stage's start, or the last sample.
     pub end: f64,
-    /// Time of the alarm that opened it, s; `None` where the record or a gap began it.
+    /// Time of the alarm that opened it, s; `None` where no switch began it.
     pub detected: Option<f64>,
     /// Time at which that alarm had its name, no sensor's fault, s.
     pub named: Option<f64>,
@@ -153,9 +153,9 @@ fn drop_beaten(rivals: &mut Vec<(Hold, Identifier)>, samples: f64) {
     rivals.retain(|(_, identifier)| identifier.likelihood().is_none_or(|own| samples * (best - own) < BEATEN));
 }
 
-/// Steps an identifier over every sample and collects the stages. Each gap of the recording starts a new identifier,
-/// since nothing may be integrated over it; laws are recognised behind it. `watch` is called after every sample with
-/// its index.
+/// Steps an identifier over every sample and collects the stages. What a gap may hide, a switch or an offset, is told as
+/// in any stream; where none is [carried over](carries_over_gaps), each gap starts a new identifier that knows the laws
+/// before it. `watch` is called after every sample with its index.
 ///
 /// # Errors
 /// [`BuildError`] when settings or model are refused.
@@ -181,14 +181,24 @@ pub fn identify_knowing(
 ) -> Result<Identification, BuildError> {
     let fresh = Identifier::new(model, settings)?;
     let mut found = Identification { known_laws: known.clone(), hold: settings.hold, ..Identification::default() };
-    for piece in recording.pieces() {
+    let pieces = match carries_over_gaps(model, &settings) {
+        true => std::iter::once(0..recording.count()).collect(),
+        false => recording.pieces(),
+    };
+    for piece in pieces {
         let identifier = fresh.clone().with_known_laws(&found.known_laws)?;
         follow(identifier, recording, piece, &mut found, &mut watch);
     }
     Ok(found)
 }
 
-/// One piece between gaps: adds its stages to `found`.
+/// Whether a law goes on over a gap of the recording. The published procedure integrates over all that its window
+/// holds, and a law that gives the force tells q̇ and q̈ from successive samples: neither may go over a gap.
+pub fn carries_over_gaps(model: &Model, settings: &Settings) -> bool {
+    settings.method == Method::Default && !model.is_force_law()
+}
+
+/// One stretch of the record: adds its stages to `found`.
 fn follow(
     mut identifier: Identifier,
     recording: &Recording,

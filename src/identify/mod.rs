@@ -34,7 +34,9 @@ mod window;
 pub use crate::estimation::Missing;
 pub use check::BuildError;
 pub use force_law::{ForceFit, fit_force_law};
-pub use identification::{Identification, SensorFault, Stage, choose_hold, identify_knowing, identify_recording};
+pub use identification::{
+    Identification, SensorFault, Stage, carries_over_gaps, choose_hold, identify_knowing, identify_recording,
+};
 pub use identifier::Identifier;
 pub use library::{SavedLaw, SavedLaws, SavedLawsError, SavedNoise};
 pub use outputs::{OutputDescription, OutputKind, OutputValue, Outputs, UNKNOWN};

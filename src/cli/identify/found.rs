@@ -14,6 +14,8 @@ pub(super) struct Run {
     pub(super) hold_from: &'static str,
     /// Whether F is what the law gives.
     pub(super) gives_force: bool,
+    /// Whether laws go on over gaps.
+    pub(super) carries_over_gaps: bool,
     /// Inner parameters that the model left open, as they suit the whole recording: `gap of dead_zone_stiffness`.
     pub(super) inner: Vec<(String, f64)>,
     pub(super) found: Identification,

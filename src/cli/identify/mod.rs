@@ -166,8 +166,9 @@ fn run_over(arguments: &Arguments, trace: Option<Target>) -> Result<(Run, Course
         false => stage_limits(&found, &opened.recording, &settings),
     });
     let gives_force = model.is_force_law();
+    let carries_over_gaps = identify::carries_over_gaps(&model, &settings);
     let file = arguments.model.display().to_string();
-    Ok((Run { opened, file, settings, hold_from, gives_force, inner, found, limits }, course))
+    Ok((Run { opened, file, settings, hold_from, gives_force, carries_over_gaps, inner, found, limits }, course))
 }
 
 /// The model with numbers for the inner parameters that it leaves open, which a stream cannot estimate: those that suit
@@ -271,21 +272,22 @@ fn settings(
     Ok((Settings { hold, ..settings }, from))
 }
 
-/// One by one where there are few.
-fn gap_warnings(source: &str, gaps: &[Gap]) -> Vec<String> {
+/// One by one where there are few; `carried` is whether the laws go on over them.
+fn gap_warnings(source: &str, gaps: &[Gap], carried: bool) -> Vec<String> {
     let hole = |gap: &Gap| format!("no samples from {} s to {} s", seconds(gap.start), seconds(gap.end));
+    let consequence = match carried {
+        true => "nothing is known of the motion there, laws go on after it",
+        false => "identified anew after it, nothing is carried over it",
+    };
     match gaps {
         [first, .., last] if gaps.len() > GAPS_TOLD => vec![format!(
-            "{source}: {} gaps, the first with {}, the last with {}: identified anew after each, nothing is carried over \
-             them; where samples are missing throughout, resample the recording",
+            "{source}: {} gaps, the first with {}, the last with {}: {consequence}; where samples are missing throughout, \
+             resample the recording",
             gaps.len(),
             hole(first),
             hole(last)
         )],
-        _ => gaps
-            .iter()
-            .map(|gap| format!("{source}: {}: identified anew after this gap, nothing is carried over it", hole(gap)))
-            .collect(),
+        _ => gaps.iter().map(|gap| format!("{source}: {}: {consequence}", hole(gap))).collect(),
     }
 }
 
@@ -293,7 +295,7 @@ fn gap_warnings(source: &str, gaps: &[Gap]) -> Vec<String> {
 fn warnings(run: &Run) -> Vec<String> {
     let recording = &run.opened.recording;
     let source = recording.source();
-    let mut warnings = gap_warnings(source, &recording.gaps());
+    let mut warnings = gap_warnings(source, &recording.gaps(), run.carries_over_gaps);
     if !recording.channels().excitation {
         warnings.push(format!("{source}: there is no excitation: taken as free motion, the inertia is fixed to 1"));
     }
