@@ -153,9 +153,9 @@ fn drop_beaten(rivals: &mut Vec<(Hold, Identifier)>, samples: f64) {
     rivals.retain(|(_, identifier)| identifier.likelihood().is_none_or(|own| samples * (best - own) < BEATEN));
 }
 
-/// Steps an identifier over every sample and collects the stages. What a gap may hide, a switch or an offset, is told as
-/// in any stream; where none is [carried over](carries_over_gaps), each gap starts a new identifier that knows the laws
-/// before it. `watch` is called after every sample with its index.
+/// Steps an identifier over every sample and collects the stages. What a gap may hide, a switch or an offset, is told
+/// as in any stream; where none is [carried over](carries_over_gaps), each gap starts a new identifier that knows the
+/// laws before it. `watch` is called after every sample with its index.
 ///
 /// # Errors
 /// [`BuildError`] when settings or model are refused.
