@@ -45,7 +45,8 @@ impl StageLimit {
     }
 }
 
-/// The limits of every stage; none of one without a law, without motion, or whose sensors show no noise.
+/// The limits of every stage; none of one without a law, without motion, with a sensor at fault, or whose sensors show
+/// no noise.
 pub(super) fn stage_limits(
     found: &Identification,
     recording: &Recording,
@@ -57,6 +58,9 @@ pub(super) fn stage_limits(
     let noise = noise(found);
     let last = found.stages.len().saturating_sub(1);
     let of = |(index, stage): (usize, &Stage)| {
+        if found.has_fault_in(stage) {
+            return None;
+        }
         let range = samples(stage, recording, index == last);
         let parts: Vec<Recording> = parts(&range).into_iter().filter_map(|part| recording.section(part).ok()).collect();
         let taken: usize = parts.iter().map(Recording::count).sum();

@@ -101,6 +101,14 @@ pub struct Identification {
     pub skipped: Vec<Skipped>,
 }
 
+impl Identification {
+    /// Whether a sensor was at fault in the stage: what its readings leave then is not the law's.
+    pub fn has_fault_in(&self, stage: &Stage) -> bool {
+        let overlaps = |start: f64, end: Option<f64>| start < stage.end && end.is_none_or(|end| end > stage.start);
+        self.sensors.iter().any(|fault| overlaps(fault.start, fault.end))
+    }
+}
+
 /// How often the list of what cannot be determined is renewed, samples: it costs a decomposition, and changes slowly.
 const RENEW_UNIDENTIFIABLE: usize = 64;
 

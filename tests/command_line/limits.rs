@@ -82,6 +82,23 @@ fn a_fault_of_a_sensor_is_not_laid_to_the_law() {
     assert!(!text.contains("switchid diagnose") && !text.contains("the law leaves more"), "{text}");
 }
 
+/// Some wild readings leave the law as it is, and would make the limit that of a worse sensor.
+#[test]
+fn wild_readings_make_no_limit() {
+    let bench = bench("limits-wild");
+    let record = std::fs::read_to_string(bench.0.join("record.csv")).unwrap();
+    let mut lines: Vec<String> = record.lines().map(String::from).take(10_001).collect();
+    for (line, by) in lines[6001..6009].iter_mut().zip([3.0, -2.0].into_iter().cycle()) {
+        let mut cells: Vec<String> = line.split(',').map(String::from).collect();
+        cells[2] = (cells[2].parse::<f64>().unwrap() + by).to_string();
+        *line = cells.join(",");
+    }
+    bench.write("wild.csv", &(lines.join("\n") + "\n"));
+    let text = String::from_utf8(bench.run(&["identify", "wild.csv", "--model", "model.toml"]).stdout).unwrap();
+    assert!(text.contains("sensor of qd: outlier from 6.0"), "{text}");
+    assert!(text.contains("a sensor's fault lies in this stage") && !text.contains("times the limit"), "{text}");
+}
+
 #[test]
 fn options_that_cannot_be_read_are_named() {
     let bench = bench("limits-options");

@@ -37,27 +37,21 @@ pub(super) fn text(run: &Run) -> String {
         let drifting = if stage.drifting { " (drifting; its last coefficients)" } else { "" };
         let again = again(&run.found.stages[..index], stage);
         let _ = write!(text, "\nstage {}{again}{drifting}: {law}", index + 1);
-        let (unexplained, faulty) = (limit.is_some_and(|limit| !limit.explained()), is_faulty(run, stage));
-        text += match (unexplained, faulty) {
-            (true, true) => "  a sensor's fault lies in this stage: no comparison with what any method could reach\n",
+        let unexplained = limit.is_some_and(|limit| !limit.explained());
+        text += match (unexplained, run.found.has_fault_in(stage)) {
+            (_, true) => "  a sensor's fault lies in this stage: no comparison with what any method could reach\n",
             (true, false) => {
                 "  the law leaves more than sensor noise: no comparison with what any method could reach\n"
             }
-            (false, _) => "",
+            (false, false) => "",
         };
         text += &match stage.missing {
             Some(missing) => lacks(missing, run, stage),
-            None if unexplained && !faulty => diagnosable(run, stage),
+            None if unexplained => diagnosable(run, stage),
             None => String::new(),
         };
     }
     text
-}
-
-/// Whether a sensor was at fault in the stage: what its readings leave then is not the law's.
-fn is_faulty(run: &Run, stage: &Stage) -> bool {
-    let overlaps = |start: f64, end: Option<f64>| start < stage.end && end.is_none_or(|end| end > stage.start);
-    run.found.sensors.iter().any(|fault| overlaps(fault.start, fault.end))
 }
 
 /// What the law lacks, and what tells more of it.
