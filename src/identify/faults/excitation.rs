@@ -16,14 +16,17 @@ const LONGEST: u32 = 20;
 /// Readings after which it is known what F usually is …
 const KNOWN: f64 = 100.0;
 
-/// No actuator exerts this many times the RMS of what it has exerted.
+/// No actuator exerts this many times the RMS of what it has exerted, but one that has rested until now.
 const ABSURD: f64 = 1e6;
 
 /// What is usual for F, and whether it has just left that.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ExcitationGate {
-    /// The last sample.
-    last: Sample,
+    /// The last sample; none before the first.
+    last: Option<Sample>,
+    /// Readings in a row that nothing can have exerted, and the last of them.
+    absurd: u32,
+    beyond: f64,
     /// Where F was before it left its course, while it is away, for how many readings that has been, and the sum of
     /// the squares that they are off by.
     course: Option<f64>,
@@ -56,31 +59,42 @@ impl ExcitationGate {
     /// Takes a sample. The reading holds the white force that is left open for the interval: where the last F was
     /// replaced, and what was `missed` of one that moved by so much over so long.
     pub fn take(&mut self, sample: Sample, missed: impl Fn(f64, f64) -> f64) -> Reading {
-        let (before, replaced) = (self.last, self.faulty && self.course.is_none());
+        let replaced = self.faulty && self.course.is_none();
+        let before = self.last.unwrap_or(Sample { excitation: 0.0, ..sample });
         let force = sample.excitation;
-        let absurd = self.count > KNOWN && (force.is_nan() || force.abs() > ABSURD * self.size());
+        let absurd = self.is_absurd(force);
         let force = if absurd { before.excitation } else { force };
         let moved = force - before.excitation;
         let scatter = if replaced { self.squares[1] } else { 0.0 };
-        self.follow_course(force);
+        self.follow_course(before.excitation, force);
         self.faulty = absurd;
         let sample = Sample { excitation: force, ..sample };
         self.learn(force, moved);
-        self.last = sample;
-        let dt = if self.count > 1.0 { sample.t - before.t } else { 0.0 };
+        self.last = Some(sample);
+        let dt = sample.t - before.t;
         Reading { unseen: scatter * dt + missed(dt, moved), ..Reading::from(sample) }
     }
 
+    /// Whether nothing can have exerted F. A sensor's burst ends, and a sensor that is stuck repeats itself: readings that
+    /// go on and vary are of an actuator that has begun to act.
+    fn is_absurd(&mut self, force: f64) -> bool {
+        let beyond = self.count > KNOWN && (force.is_nan() || force.abs() > ABSURD * self.size());
+        let varies = force != self.beyond && !force.is_nan();
+        self.absurd = if beyond { self.absurd + u32::from(varies) } else { 0 };
+        self.beyond = force;
+        beyond && self.absurd <= LONGEST
+    }
+
     /// Whether F leaves its course, is away from it, or returns to it.
-    fn follow_course(&mut self, force: f64) {
-        let (leaves, course) = (self.leaves(self.last.excitation, force, 1), self.course);
+    fn follow_course(&mut self, before: f64, force: f64) {
+        let (leaves, course) = (self.leaves(before, force, 1), self.course);
         // where its course has led meanwhile nobody has seen
         let returned = course.filter(|course| leaves && !self.leaves(*course, force, self.away + 1));
         self.ended = returned.map(|_| Stray { readings: self.away, square: self.off / f64::from(self.away) });
         (self.away, self.off) = if course.is_some() { (self.away, self.off) } else { (0, 0.0) };
         self.course = match returned {
             Some(_) => None,
-            None => course.or(leaves.then_some(self.last.excitation)).filter(|_| self.away < LONGEST),
+            None => course.or(leaves.then_some(before)).filter(|_| self.away < LONGEST),
         };
         self.since = if self.since > 0 || self.course.is_some() { (self.since + 1) % (2 * LONGEST) } else { 0 };
         self.jumps = if self.since > 0 { self.jumps + u32::from(leaves) } else { 0 };
@@ -134,8 +148,11 @@ impl ExcitationGate {
         self.count > KNOWN && off * off > JUMP * JUMP * (1.0 - kept * kept) * square
     }
 
-    /// A reading that leaves its course tells little of what is usual.
+    /// A reading that leaves its course tells little of what is usual, one of an F that rests at 0 nothing.
     fn learn(&mut self, force: f64, moved: f64) {
+        if force == 0.0 && moved == 0.0 {
+            return;
+        }
         self.count = (self.count + 1.0).min(SAMPLES_OF_A_VARIANCE);
         let moved = if self.count > 1.0 { moved * moved } else { 0.0 };
         let most = if self.count > KNOWN { JUMP * JUMP * self.squares[1] } else { f64::INFINITY };
@@ -220,6 +237,21 @@ mod tests {
             forces[300] = forces[299];
             assert_eq!(seen, forces);
         }
+    }
+
+    #[test]
+    fn an_actuator_that_has_rested_acts_when_it_begins() {
+        let rest = || std::iter::repeat_n(0.0, 50_000);
+        let forces: Vec<f64> = rest().chain(sine()).chain(rest()).chain(sine()).collect();
+        let seen: Vec<f64> = through(&forces).iter().map(|reading| reading.sample.excitation).collect();
+        assert_eq!(seen, forces);
+        // the noise of a force sensor, seven decades below what it then measures
+        let mut forces: Vec<f64> = sine().iter().map(|force| 1e-7 * force).chain(sine()).collect();
+        let seen: Vec<f64> = through(&forces).iter().map(|reading| reading.sample.excitation).collect();
+        assert_eq!(seen[600..], forces[600..]);
+        forces[500..].fill(1e100);
+        let seen: Vec<f64> = through(&forces).iter().map(|reading| reading.sample.excitation).collect();
+        assert!(seen[500..].iter().all(|force| *force == forces[499]));
     }
 
     #[test]

@@ -40,14 +40,18 @@ impl Tracker {
     /// A record that has grown long without a validated law may hold a switch that nobody saw: the weak rows begin
     /// anew, so that the next fit knows the latest record alone. How long the law needs nobody knows, nor how long it
     /// lasts: the lengths follow the universal sequence (Luby, Sinclair and Zuckerman, *Information Processing Letters*
-    /// 47 (1993), 173).
+    /// 47 (1993), 173). Rows that gave no first law at all are kept for as long as their samples are.
     pub(super) fn begin_afresh(&mut self) {
         let (end, since) = (self.window.end(), self.schedule.rows_from);
-        let due = match self.is_mixed() {
-            true => since.max(self.history.refuted_at) + self.history.convergence_length,
-            false => since + FRESH_START * universal(self.schedule.afresh + 1),
+        let due = match self.fitting {
+            Fitting::Starting => since + self.window.capacity() as u64,
+            Fitting::Refining if self.is_mixed() => {
+                since.max(self.history.refuted_at) + self.history.convergence_length
+            }
+            Fitting::Refining => since + FRESH_START * universal(self.schedule.afresh + 1),
+            Fitting::Contested => return,
         };
-        if self.fitting != Fitting::Refining || end < due {
+        if end < due {
             return;
         }
         self.start.begin(end);
