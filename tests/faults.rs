@@ -2,8 +2,9 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
 use switchid::identify::{Channels, Identifier, Sample, SensorState, Settings, Skipped};
-use switchid::law::{Given, Model};
+use switchid::law::{Given, Model, State};
 use switchid::simulate::{Builtin, Scenario, record};
 
 /// Std of the sensors' noise.
@@ -201,6 +202,25 @@ fn no_number_that_a_sensor_can_send_leaves_a_trace() {
         let calm = seen.switches == 0 && seen.valid_at_the_end && seen.worst < BEYOND;
         assert!(calm && seen.invalid_until < FAULT + 0.9, "{value}: {seen:?}");
     }
+}
+
+/// On a test bench the logger runs before the actuator does: for longer here than samples are kept.
+#[test]
+fn a_motion_that_begins_from_rest_is_identified() {
+    const REST: f64 = 31.0;
+    let mut scenario = plant(Builtin::DuffingSine, 57, 12.0, 15.0);
+    scenario.initial = State::default();
+    let moving = samples(&scenario);
+    let mut generator = ChaCha8Rng::seed_from_u64(57);
+    let mut noise = || NOISE * generator.sample::<f64, _>(StandardNormal);
+    let rest =
+        (0..(1e3 * REST) as usize).map(|k| Sample { t: 1e-3 * k as f64, q: noise(), qd: noise(), excitation: 0.0 });
+    let later = moving.into_iter().map(|sample| Sample { t: REST + sample.t, ..sample });
+    let samples: Vec<Sample> = rest.chain(later).collect();
+    scenario.stages[1].start += REST;
+    let seen = watch(&scenario, Builtin::DuffingSine, &samples);
+    assert!(seen.switches == 1 && seen.valid_at_the_end && seen.worst < BEYOND, "{seen:?}");
+    assert!(seen.sensors.iter().all(|said| *said == [SensorState::Ok]), "{seen:?}");
 }
 
 #[test]
