@@ -11,6 +11,9 @@ use std::f64::consts::TAU;
 /// A trial begins this many natural periods before the switch that an alarm found.
 const BEFORE: f64 = 2.0;
 
+/// Natural periods after which a constant law that explains them is no chance: what moves as slowly is no drift yet.
+const OUTLASTS: f64 = 3.0;
+
 /// A constant law is sought in the record from this many variations back on.
 const REST: u64 = 4;
 
@@ -124,6 +127,21 @@ impl Tracker {
         }
     }
 
+    /// Whether a constant law carries the state through its record, down to the sensors' noise and for so long that
+    /// nothing moves: weak rows know the coefficients less well.
+    pub(super) fn refutes_drift(&self, problem: &Problem) -> bool {
+        let segment = &self.segment;
+        let law = segment.settled() && segment.is_validated() && segment.is_beyond_doubt();
+        let long = OUTLASTS * self.there_and_back(f64::INFINITY) < 1.0;
+        law && long && self.is_physical(problem, segment.all[problem.inertia])
+    }
+
+    /// What was taken for a drift has been none.
+    pub(super) fn forget_drift(&mut self) {
+        self.drifted = false;
+        self.weak_row_drift.restart(self.window.end());
+    }
+
     /// Where a law of this record was validated, only coefficients that have drifted before do so again; where none
     /// was, they have to have moved for so long that a constant law would have been found, and none has been that
     /// explains the record, nor is one on trial with the effect that it lacks most: such coefficients move with the
@@ -173,5 +191,38 @@ impl Tracker {
         let drift = &self.weak_row_drift;
         let known = physical && drift.predicts() && drift.whole_error() < TRUSTED;
         self.enter(Event::DriftValidated(known));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::sample::Sample;
+    use crate::identify::settings::Settings;
+    use crate::law::Model;
+    use crate::simulate::{Builtin, record};
+
+    /// A full library's weak rows wander without end: a first law was lost to them for 130 s, and six switches with it.
+    #[test]
+    fn a_drift_that_a_constant_law_explains_is_left_and_a_switch_after_it_seen() {
+        let (model, settings) = (Model::cubic_library(), Settings::default());
+        let problem = Problem::new(&model, &settings);
+        let mut tracker = Tracker::new(&problem, &settings);
+        let mut scenario = Builtin::VanDerPolSine.random(7582).with_noise(0.001);
+        scenario.stages.truncate(2);
+        let switch = scenario.stages[1].start;
+        scenario.duration = switch + 5.0;
+        for (index, reading) in record(&scenario).unwrap().iter().enumerate() {
+            if index == 3000 {
+                tracker.drifted = true;
+                tracker.begin_drift(Follower::WeakRows);
+            }
+            let sample = Sample { t: reading.t, q: reading.q, qd: reading.qd, excitation: reading.excitation };
+            tracker.step(&problem, &settings, sample);
+            let left = tracker.regime.law().is_some();
+            assert!(left || reading.t < switch - 0.5 || reading.t > switch, "{:?}", tracker.regime);
+            let count = tracker.published.switches.count;
+            assert!(count == 0 && reading.t < switch + 0.1 || count == 1 && reading.t > switch, "{count}");
+        }
     }
 }

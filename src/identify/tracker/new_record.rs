@@ -63,7 +63,7 @@ impl Tracker {
         let on_trial = self.has_effect_on_trial() || self.segment.untried.is_some();
         let lacks = self.segment.effect_evidence() > lag.evidence || on_trial;
         let corrected = problem.timing.corrected(lag, self.record_length());
-        corrected.filter(|_| self.is_refining() && !lacks)
+        corrected.filter(|_| self.is_refining() && !lacks && !self.regime.is_moving())
     }
 
     /// F acts so many samples later than was assumed: the laws move along, and the record is fitted anew.

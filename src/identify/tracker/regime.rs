@@ -191,9 +191,15 @@ impl Regime {
         }
     }
 
-    /// Whether a constant law is sought: always but while coefficients move that have not come to rest.
+    /// Whether a constant law is sought: always but while filters that weigh one themselves follow coefficients that
+    /// have not come to rest.
     pub(super) fn seeks_constant_law(&self) -> bool {
-        self.followed().is_none_or(|drift| drift.resting)
+        !self.is_moving() || self.followed().is_some_and(|drift| drift.by == Follower::WeakRows)
+    }
+
+    /// Whether coefficients move that have not come to rest.
+    pub(super) fn is_moving(&self) -> bool {
+        self.followed().is_some_and(|drift| !drift.resting)
     }
 
     /// The number of the constant law that is validated.
@@ -346,7 +352,9 @@ mod tests {
         assert_eq!((unknown.status(), unknown.is_valid()), (Status::Acquiring, false));
         assert!(unknown.after(Event::DriftValidated(true)).is_valid());
         let rests = unknown.after(Event::DriftRests(true));
-        assert!(rests.seeks_constant_law() && !unknown.seeks_constant_law());
+        let weighed = Regime::in_use(LAW, None).after(Event::DriftFound(Follower::AugmentedFilters));
+        assert!(rests.seeks_constant_law() && unknown.seeks_constant_law() && !weighed.seeks_constant_law());
+        assert!(unknown.is_moving() && !rests.is_moving());
         assert_eq!(rests.after(Event::LawValidated(4)).law(), Some(4));
     }
 

@@ -153,6 +153,13 @@ impl Tracker {
 
     /// What the run that has just closed says is made known, and taken into use where it is worth it.
     fn heed_run(&mut self, setup: Setup) {
+        if self.regime.is_moving() {
+            if !self.refutes_drift(setup.problem) {
+                self.segment.begin_run(&self.window);
+                return;
+            }
+            self.forget_drift();
+        }
         let mixed = self.is_mixed();
         let trusted = self.segment.settled() && self.segment.stated_error() < TRUSTED && !mixed;
         // of a law of which nothing is known nobody knows what it lacks
