@@ -88,6 +88,9 @@ impl WeakRowDrift {
     /// overlap.
     pub fn step(&mut self, problem: &Problem, window: &Window, sensor: [f64; 2], thorough: bool) -> bool {
         self.oscillation.step(window.sample(window.end() - 1).q);
+        if !self.predicts() {
+            self.since = window.end();
+        }
         let due = |length: &VariationLength| length.next < window.end();
         let Some(index) = self.lengths.iter().position(due) else { return false };
         let overlap = if thorough || index == self.chosen { OVERLAP } else { 1 };

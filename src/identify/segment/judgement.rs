@@ -64,7 +64,7 @@ impl Segment {
     pub(super) fn confirm(&mut self) {
         if self.settled() {
             let own = self.all.len() - 1;
-            self.stability.check(self.length(self.run.next), &self.all[..own], self.fit.explains);
+            self.stability.check(self.samples(), &self.all[..own], self.fit.explains);
         }
     }
 
@@ -73,9 +73,9 @@ impl Segment {
         if !(self.settled() && self.fit.explains) {
             return;
         }
-        let length = self.length(self.run.next);
+        let samples = self.samples();
         let Segment { constancy, coefficients, active, solution, fit, .. } = self;
-        constancy.take(length, |free| {
+        constancy.take(samples, |free| {
             let std = if active[free] { solution.std(free, fit.overdispersion) } else { f64::INFINITY };
             (coefficients[free], std)
         });
@@ -84,7 +84,8 @@ impl Segment {
     /// How long the record has to get for the law to be known.
     pub(super) fn forecast_convergence(&mut self) {
         let squares: f64 = self.own().iter().map(|value| value * value).sum();
-        let begun = self.stability.checked_at().map_or(self.run.next, |length| self.start + length);
+        let checked = |samples: u64| self.start + samples.saturating_sub(self.known.folded);
+        let begun = self.stability.checked_at().map_or(self.run.next, checked);
         let record = Record {
             range: [self.start, self.run.next],
             information: &self.run.filter_run.information,

@@ -75,7 +75,7 @@ impl Segment {
             None => self.selection.forget(),
         }
         self.known.noise = noise.sensor;
-        self.known.weight = prior.noise_weight;
+        (self.known.weight, self.known.folded) = (prior.noise_weight, 0);
         self.known.scales.remember(prior.scales, prior.noise_weight);
         self.runs = Runs::default();
         self.stability.clear();
@@ -447,6 +447,7 @@ impl Segment {
                 effect.leave_open(self.all[self.all.len() - 1], information);
             }
             self.known.information.merge(&self.run.checkpoint.information);
+            self.known.folded += at - self.start;
             self.start = at;
         }
     }

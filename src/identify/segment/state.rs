@@ -116,6 +116,8 @@ pub(super) struct Known {
     pub(super) scales: MotionScales,
     /// Samples that these variances and scales count for.
     pub(super) weight: f64,
+    /// Samples of this stage whose information is part of the one above, the record having outgrown the window.
+    pub(super) folded: u64,
 }
 
 /// A filter run over the segment's record, and what is summed up beside it.
@@ -231,6 +233,7 @@ impl Segment {
                 noise: [0.0; 2],
                 scales: MotionScales::new(n),
                 weight: 0.0,
+                folded: 0,
             },
             run: Run {
                 filter_run: Pass::new(n).gated(),
@@ -303,6 +306,11 @@ impl Segment {
     /// Number of samples in the stage's record up to `end`.
     pub fn length(&self, end: u64) -> u64 {
         end.saturating_sub(self.start)
+    }
+
+    /// Number of samples that the estimate rests on: those of the record and those before it.
+    pub(super) fn samples(&self) -> u64 {
+        self.known.folded + self.length(self.run.next)
     }
 
     /// Number of the sample that the last pass ended with.
