@@ -29,10 +29,21 @@ fn channels(recording: &Recording, units: Units) -> Vec<Panel> {
         let symbol = unit(channel).map(|unit| unit.symbol).filter(|symbol| symbol != "1");
         let name = if channel == "qd" { "q̇" } else { channel };
         let label = symbol.map_or_else(|| name.to_string(), |symbol| format!("{name}, {symbol}"));
-        let layers = vec![Layer::line(name, recording.t(), recording.signal(channel)?)];
+        let layers = vec![broken_line(name, recording, recording.signal(channel)?)];
         Some(Panel { title: String::new(), x: Axis::of("t, s"), y: Axis::of(&label), layers })
     };
     ["q", "qd", "F"].into_iter().filter_map(panel).collect()
+}
+
+/// A signal over time; where the recording has a gap nothing is drawn, since nobody has seen what went on.
+fn broken_line(name: &str, recording: &Recording, signal: &[f64]) -> Layer {
+    let (mut t, mut values) = (Vec::new(), Vec::new());
+    for piece in recording.pieces() {
+        let after = recording.t()[piece.end - 1];
+        t.extend(recording.t()[piece.clone()].iter().copied().chain([after]));
+        values.extend(signal[piece].iter().copied().chain([f64::NAN]));
+    }
+    Layer::line(name, &t, &values)
 }
 
 /// How long series are drawn; empty where they are drawn whole.
@@ -286,4 +297,20 @@ pub(super) fn limits(bars: &[(String, f64, String)]) -> Figure {
     };
     let caption = "The Cramér–Rao bound: no unbiased method errs less, on average over records like this one.".into();
     Figure { title: "What any method could reach".into(), caption, panels: vec![panel] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_drawn_over_a_gap() {
+        let t: Vec<f64> = (0..200).map(|k| 0.01 * f64::from(k) + if k < 100 { 0.0 } else { 3.0 }).collect();
+        let q: Vec<f64> = t.iter().map(|t| t.sin()).collect();
+        let recording = Recording::new("gap", t.clone(), Some(q.clone()), None, None).unwrap();
+        let Layer::Line { points, .. } = broken_line("q", &recording, &q) else { panic!("no line") };
+        let drawn: Vec<&[[f64; 2]]> = points.split(|[_, q]| q.is_nan()).filter(|part| !part.is_empty()).collect();
+        let ends: Vec<[f64; 2]> = drawn.iter().map(|part| [part[0][0], part[part.len() - 1][0]]).collect();
+        assert_eq!(ends, [[t[0], t[99]], [t[100], t[199]]]);
+    }
 }

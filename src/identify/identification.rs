@@ -118,8 +118,9 @@ const HOLD_TRIALS: [usize; 3] = [1500, 3000, 6000];
 /// Log-likelihood, nats, by which a hold falls out before that.
 const BEATEN: f64 = 500.0;
 
-/// The hold under which the first stretch of the recording has the largest likelihood; a straight line where that does
-/// not tell them apart, which errs least where nothing is known, and of a free motion, where nothing is held. Always by our method:
+/// The hold under which the first stretch of the recording has the largest likelihood; a straight line where none gives
+/// a law, which errs least where nothing is known, and of a free motion, where nothing is held. A band-limited one has
+/// to be clearly likelier: it looks ahead, and under it neither faults nor when F acted are told. Always by our method:
 /// the publication's states no likelihood. Of a model with numbers only, all are estimated.
 pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) -> Hold {
     if !recording.channels().excitation {
@@ -149,25 +150,19 @@ pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) ->
             break;
         }
     }
-    let best = best_likelihood(&rivals);
-    let samples = (next - piece.start) as f64;
-    // laws that are refined at different times scatter by that
-    let undecided = |own: f64| best - own < samples.sqrt().recip();
+    // laws that are refined at different times scatter by so much
+    let scatter = ((next - piece.start) as f64).sqrt().recip();
+    let cost = |hold: Hold| if hold == Hold::BandLimited { scatter } else { 0.0 };
     // a rival whose hold the motion has told to be wrong goes on under the other
-    let tried = rivals.iter().filter(|(_, identifier)| identifier.likelihood().is_some_and(undecided));
-    let holds: Vec<Hold> = tried.map(|(_, identifier)| identifier.output().hold).collect();
-    if holds.is_empty() || holds.contains(&Hold::Linear) { Hold::Linear } else { holds[0] }
-}
-
-/// Log-likelihood per measurement of the likeliest law.
-fn best_likelihood(rivals: &[(Hold, Identifier)]) -> f64 {
-    let known = rivals.iter().filter_map(|(_, identifier)| identifier.likelihood());
-    known.fold(f64::NEG_INFINITY, f64::max)
+    let tried = rivals.iter().filter_map(|(_, identifier)| Some((identifier.output().hold, identifier.likelihood()?)));
+    let worth = tried.map(|(hold, likelihood)| (hold, likelihood - cost(hold)));
+    worth.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(Hold::Linear, |(hold, _)| hold)
 }
 
 /// Drops the holds whose law is far less likely after so many samples than the best one's.
 fn drop_beaten(rivals: &mut Vec<(Hold, Identifier)>, samples: f64) {
-    let best = best_likelihood(rivals);
+    let known = rivals.iter().filter_map(|(_, identifier)| identifier.likelihood());
+    let best = known.fold(f64::NEG_INFINITY, f64::max);
     rivals.retain(|(_, identifier)| identifier.likelihood().is_none_or(|own| samples * (best - own) < BEATEN));
 }
 

@@ -56,8 +56,8 @@ pub struct WeakRowDrift {
     moving: u32,
     /// Rows in a row that spoke against wandering.
     quiet: u32,
-    /// Number of the sample from which on the coefficients are known.
-    since: u64,
+    /// Number of the sample from which on the coefficients are known; none before the motion has told any.
+    since: Option<u64>,
 }
 
 impl WeakRowDrift {
@@ -73,14 +73,15 @@ impl WeakRowDrift {
             chosen: 0,
             moving: 0,
             quiet: 0,
-            since: 0,
+            since: None,
         }
     }
 
     /// Forgets the coefficients, but not which length tells most; rows begin at sample `start`.
     pub fn restart(&mut self, start: u64) {
         self.lengths.iter_mut().for_each(|length| length.restart(start));
-        (self.moving, self.quiet, self.since) = (0, 0, start);
+        (self.moving, self.quiet) = (0, 0);
+        self.since = self.since.map(|_| start);
     }
 
     /// Takes the newest sample of the window and forms at most one row, under sensor noise of these variances; returns
@@ -88,8 +89,8 @@ impl WeakRowDrift {
     /// overlap.
     pub fn step(&mut self, problem: &Problem, window: &Window, sensor: [f64; 2], thorough: bool) -> bool {
         self.oscillation.step(window.sample(window.end() - 1).q);
-        if !self.predicts() {
-            self.since = window.end();
+        if self.since.is_none() && self.predicts() {
+            self.since = Some(window.end());
         }
         let due = |length: &VariationLength| length.next < window.end();
         let Some(index) = self.lengths.iter().position(due) else { return false };
@@ -142,7 +143,8 @@ impl WeakRowDrift {
 
     /// Whether that has been so for long enough for a constant law to be found, had there been one.
     pub fn has_no_rest(&self, window: &Window) -> bool {
-        self.is_moving() && window.end() > self.since + PATIENCE * self.law().samples as u64
+        let patience = PATIENCE * self.law().samples as u64;
+        self.is_moving() && self.since.is_some_and(|since| window.end() > since + patience)
     }
 
     /// Whether the record has long spoken against coefficients that move.

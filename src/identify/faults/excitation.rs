@@ -75,8 +75,8 @@ impl ExcitationGate {
         Reading { unseen: scatter * dt + missed(dt, moved), ..Reading::from(sample) }
     }
 
-    /// Whether nothing can have exerted F. A sensor's burst ends, and a sensor that is stuck repeats itself: readings that
-    /// go on and vary are of an actuator that has begun to act.
+    /// Whether nothing can have exerted F. A sensor's burst ends, and a sensor that is stuck repeats itself: readings
+    /// that go on and vary are of an actuator that has begun to act.
     fn is_absurd(&mut self, force: f64) -> bool {
         let beyond = self.count > KNOWN && (force.is_nan() || force.abs() > ABSURD * self.size());
         let varies = force != self.beyond && !force.is_nan();
@@ -148,8 +148,8 @@ impl ExcitationGate {
         self.count > KNOWN && off * off > JUMP * JUMP * (1.0 - kept * kept) * square
     }
 
-    /// A reading that leaves its course tells little of what is usual, one of an F that stands still nothing: neither how
-    /// large F is when it acts nor how fast it goes elsewhere.
+    /// A reading that leaves its course tells little of what is usual, one of an F that stands still nothing: neither
+    /// how large F is when it acts nor how fast it goes elsewhere.
     fn learn(&mut self, force: f64, moved: f64) {
         if moved == 0.0 {
             return;

@@ -49,7 +49,7 @@ impl Tracker {
     pub(super) fn moves_again(&self) -> Option<Follower> {
         match self.augmented_drift.is_following() {
             true => Some(Follower::AugmentedFilters),
-            false => (self.drifted && self.weak_row_drift.is_moving()).then_some(Follower::WeakRows),
+            false => (self.drifted.is_some() && self.weak_row_drift.is_moving()).then_some(Follower::WeakRows),
         }
     }
 
@@ -111,7 +111,7 @@ impl Tracker {
         let drift = &self.weak_row_drift;
         let moves = drift.is_moving() && drift.predicts();
         if !self.regime.is_drifting() && moves && self.is_sure_of_drift() && drift.stated_error() < TRUSTED {
-            self.drifted = true;
+            self.drifted = self.drifted.or(Some(self.window.end()));
             self.begin_drift(Follower::WeakRows);
         }
         if self.regime.is_drifting() {
@@ -136,25 +136,28 @@ impl Tracker {
         law && long && self.is_physical(problem, segment.all[problem.inertia])
     }
 
-    /// What was taken for a drift has been none.
-    pub(super) fn forget_drift(&mut self) {
-        self.drifted = false;
-        self.weak_row_drift.restart(self.window.end());
+    /// The coefficients have come to rest; where the law explains what came before they were said to move as well, they
+    /// never did.
+    pub(super) fn leave_drift(&mut self) {
+        self.drifted = self.drifted.filter(|said| *said <= self.segment.start);
+        if self.drifted.is_none() {
+            self.weak_row_drift.restart(self.window.end());
+        }
     }
 
-    /// Where a law of this record was validated, only coefficients that have drifted before do so again; where none
-    /// was, they have to have moved for so long that a constant law would have been found, and none has been that
-    /// explains the record, nor is one on trial with the effect that it lacks most: such coefficients move with the
-    /// motion.
+    /// Coefficients that have drifted before do so again. Where they have not and a law of this record was validated,
+    /// they never do; where none was, they have to have moved for so long that a constant law would have been found,
+    /// and none has been, nor is one on trial with the effect that it lacks most: such coefficients move with the
+    /// motion. A constant law that explains the record does not move.
     fn is_sure_of_drift(&self) -> bool {
         let drift = &self.weak_row_drift;
         let had_a_law = self.regime.is_valid() || self.history.refuted_at > self.segment.start;
-        let found = self.is_refining() && self.segment.settled() && self.segment.fit.explains;
-        let explained = found || self.has_effect_on_trial();
-        match had_a_law {
-            true => self.drifted,
-            false => !self.history.explained && !explained && drift.has_no_rest(&self.window) && drift.spans_half(),
-        }
+        let explained = self.is_refining() && self.segment.settled() && self.segment.fit.explains;
+        let first = || {
+            let known = had_a_law || self.history.explained || self.has_effect_on_trial();
+            !known && drift.has_no_rest(&self.window) && drift.spans_half()
+        };
+        !explained && (self.drifted.is_some() || first())
     }
 
     /// The sensors' variances. Differences of q tell its noise by themselves; those of q̇ may hold more than that: what
@@ -214,7 +217,7 @@ mod tests {
         scenario.duration = switch + 5.0;
         for (index, reading) in record(&scenario).unwrap().iter().enumerate() {
             if index == 3000 {
-                tracker.drifted = true;
+                tracker.drifted = Some(index as u64);
                 tracker.begin_drift(Follower::WeakRows);
             }
             let sample = Sample { t: reading.t, q: reading.q, qd: reading.qd, excitation: reading.excitation };

@@ -86,7 +86,7 @@ impl Tracker {
         self.weak_row_drift.restart(self.window.end());
         self.augmented_drift.end();
         self.intake.after_outage.end();
-        (self.history, self.drifted) = (History::default(), false);
+        (self.history, self.drifted) = (History::default(), None);
     }
 
     /// A law that was validated does not explain its record any more, and no switch does: it is contested again.

@@ -60,8 +60,8 @@ pub struct Tracker {
     pub(super) library: Library,
     pub(super) weak_row_drift: WeakRowDrift,
     pub(super) augmented_drift: AugmentedDrift,
-    /// Whether coefficients have moved in this record.
-    pub(super) drifted: bool,
+    /// Since which sample coefficients have been said to move, where they have.
+    pub(super) drifted: Option<u64>,
     pub(super) history: History,
     /// The law where errors are none of the sensors'.
     pub(super) weak_form: WeakForm,
@@ -212,7 +212,7 @@ impl Tracker {
             library: Library::new(problem),
             weak_row_drift: WeakRowDrift::new(problem, capacity),
             augmented_drift: AugmentedDrift::new(problem),
-            drifted: false,
+            drifted: None,
             history: History::default(),
             weak_form: WeakForm::new(problem),
             difference_noise: DifferenceNoise::default(),

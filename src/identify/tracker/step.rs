@@ -158,7 +158,7 @@ impl Tracker {
                 self.segment.begin_run(&self.window);
                 return;
             }
-            self.forget_drift();
+            self.leave_drift();
         }
         let mixed = self.is_mixed();
         let trusted = self.segment.settled() && self.segment.stated_error() < TRUSTED && !mixed;
