@@ -119,8 +119,7 @@ const HOLD_TRIALS: [usize; 3] = [1500, 3000, 6000];
 const BEATEN: f64 = 500.0;
 
 /// The hold under which the first stretch of the recording has the largest likelihood; a straight line where none gives
-/// a law, which errs least where nothing is known, and of a free motion, where nothing is held. A band-limited one has
-/// to be clearly likelier: it looks ahead, and under it neither faults nor when F acted are told. Always by our method:
+/// a law, which errs least where nothing is known, and of a free motion, where nothing is held. Always by our method:
 /// the publication's states no likelihood. Of a model with numbers only, all are estimated.
 pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) -> Hold {
     if !recording.channels().excitation {
@@ -150,13 +149,9 @@ pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) ->
             break;
         }
     }
-    // laws that are refined at different times scatter by so much
-    let scatter = ((next - piece.start) as f64).sqrt().recip();
-    let cost = |hold: Hold| if hold == Hold::BandLimited { scatter } else { 0.0 };
     // a rival whose hold the motion has told to be wrong goes on under the other
     let tried = rivals.iter().filter_map(|(_, identifier)| Some((identifier.output().hold, identifier.likelihood()?)));
-    let worth = tried.map(|(hold, likelihood)| (hold, likelihood - cost(hold)));
-    worth.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(Hold::Linear, |(hold, _)| hold)
+    tried.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(Hold::Linear, |(hold, _)| hold)
 }
 
 /// Drops the holds whose law is far less likely after so many samples than the best one's.
