@@ -42,6 +42,9 @@ pub struct VariationLength {
     pub all: Vec<f64>,
     /// What predictions gained over knowing no law, nats.
     pub evidence: f64,
+    /// Number of the sample at which that evidence began to grow, the estimate of a change of Page's test (*Biometrika*
+    /// 41 (1954), 100): before the motion no row is predicted.
+    pub predicts_from: u64,
     rows: f64,
     walks: Vec<RandomWalk>,
     weights: Vec<f64>,
@@ -66,6 +69,7 @@ impl VariationLength {
             variances: vec![f64::INFINITY; n],
             all: problem.known.clone(),
             evidence: 0.0,
+            predicts_from: 0,
             rows: 0.0,
             walks,
             weights: vec![(count as f64).recip(); count],
@@ -80,7 +84,7 @@ impl VariationLength {
 
     /// Forgets the coefficients, but not how well they were predicted; rows begin at sample `start`.
     pub fn restart(&mut self, start: u64) {
-        self.next = start + self.samples as u64;
+        (self.next, self.predicts_from) = (start + self.samples as u64, start);
         self.walks.iter_mut().for_each(RandomWalk::clear);
         let even = (self.walks.len() as f64).recip();
         self.weights.fill(even);

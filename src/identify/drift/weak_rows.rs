@@ -36,11 +36,6 @@ const MOVING: f64 = 6.0;
 /// … for this many rows: a jump is far from every constant law for the length of a variation.
 const LASTING: u32 = 2 * OVERLAP as u32;
 
-/// Rows that must speak against wandering before it has come to an end: 16 variations. Sought as soon as wandering is
-/// unlikely, a constant law was validated in a dwell of DROPBEAR and kept when the roller moved
-/// (docs/decisions/drift-without-a-law.md).
-const QUIET: u32 = 16 * OVERLAP as u32;
-
 /// For how many variations a constant law is waited for.
 const PATIENCE: u64 = 8;
 
@@ -54,10 +49,6 @@ pub struct WeakRowDrift {
     row: Row,
     chosen: usize,
     moving: u32,
-    /// Rows in a row that spoke against wandering.
-    quiet: u32,
-    /// Number of the sample from which on the coefficients are known; none before the motion has told any.
-    since: Option<u64>,
 }
 
 impl WeakRowDrift {
@@ -72,16 +63,13 @@ impl WeakRowDrift {
             row: Row::new(problem.terms.len()),
             chosen: 0,
             moving: 0,
-            quiet: 0,
-            since: None,
         }
     }
 
     /// Forgets the coefficients, but not which length tells most; rows begin at sample `start`.
     pub fn restart(&mut self, start: u64) {
         self.lengths.iter_mut().for_each(|length| length.restart(start));
-        (self.moving, self.quiet) = (0, 0);
-        self.since = self.since.map(|_| start);
+        self.moving = 0;
     }
 
     /// Takes the newest sample of the window and forms at most one row, under sensor noise of these variances; returns
@@ -89,9 +77,6 @@ impl WeakRowDrift {
     /// overlap.
     pub fn step(&mut self, problem: &Problem, window: &Window, sensor: [f64; 2], thorough: bool) -> bool {
         self.oscillation.step(window.sample(window.end() - 1).q);
-        if self.since.is_none() && self.predicts() {
-            self.since = Some(window.end());
-        }
         let due = |length: &VariationLength| length.next < window.end();
         let Some(index) = self.lengths.iter().position(due) else { return false };
         let overlap = if thorough || index == self.chosen { OVERLAP } else { 1 };
@@ -110,6 +95,9 @@ impl WeakRowDrift {
         let section = self.section.view(problem, length.samples + 1);
         self.row.integrate(&section, VARIATION, &problem.motion(&problem.terms, &length.all));
         let memory = MEMORY * longest as f64 / length.samples as f64;
+        if length.evidence == 0.0 {
+            length.predicts_from = first;
+        }
         length.take(problem, &self.row, sensor, (overlap as f64).recip(), memory);
         true
     }
@@ -123,11 +111,10 @@ impl WeakRowDrift {
             }
         }
         if self.chosen != before {
-            (self.moving, self.quiet) = (0, 0);
+            self.moving = 0;
         } else if self.chosen == renewed {
             let wandering = self.law().wandering();
             self.moving = if wandering > MOVING { self.moving + 1 } else { 0 };
-            self.quiet = if wandering < 0.0 { self.quiet + 1 } else { 0 };
         }
         self.chosen == renewed
     }
@@ -144,12 +131,7 @@ impl WeakRowDrift {
     /// Whether that has been so for long enough for a constant law to be found, had there been one.
     pub fn has_no_rest(&self, window: &Window) -> bool {
         let patience = PATIENCE * self.law().samples as u64;
-        self.is_moving() && self.since.is_some_and(|since| window.end() > since + patience)
-    }
-
-    /// Whether the record has long spoken against coefficients that move.
-    pub fn is_at_rest(&self) -> bool {
-        self.quiet >= QUIET
+        self.is_moving() && window.end() > self.law().predicts_from + patience
     }
 
     /// Whether the law predicts anything.
@@ -197,10 +179,5 @@ impl WeakRowDrift {
     /// The value of the free coefficient at which its term alone would be as large as the right side.
     pub fn reach(&self, free: usize) -> f64 {
         self.law().reach(free)
-    }
-
-    /// One variation of samples, that of the length in use.
-    pub fn length(&self) -> u64 {
-        self.law().samples as u64
     }
 }

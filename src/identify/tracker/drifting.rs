@@ -14,9 +14,6 @@ const BEFORE: f64 = 2.0;
 /// Natural periods after which a constant law that explains them is no chance: what moves as slowly is no drift yet.
 const OUTLASTS: f64 = 3.0;
 
-/// A constant law is sought in the record from this many variations back on.
-const REST: u64 = 4;
-
 impl Tracker {
     /// Puts a drift on trial: instead of a switch at one of these samples the coefficients may have wandered.
     pub(super) fn try_drift(&mut self, problem: &Problem, switch: [u64; INSTANTS]) {
@@ -116,14 +113,6 @@ impl Tracker {
         }
         if self.regime.is_drifting() {
             self.publish_weak_rows(problem);
-            match self.is_resting() {
-                true if moves => self.enter(Event::DriftRests(false)),
-                false if self.weak_row_drift.is_at_rest() => {
-                    let latest = REST * self.weak_row_drift.length();
-                    self.seek_rest(self.window.end().saturating_sub(latest));
-                }
-                _ => {}
-            }
         }
     }
 
