@@ -122,3 +122,28 @@ fn a_record_that_a_constant_law_explains_is_no_drift() {
     }
     assert!(identifier.output().valid);
 }
+
+/// What waits for a constant law waits from when the motion begins, not from the record's beginning.
+#[test]
+fn a_motion_that_begins_after_a_rest_is_no_drift() {
+    let terms = Builtin::DuffingSine.terms().into_iter();
+    let model = Model::of("Duffing", terms.map(|term| (term, Given::Fit)));
+    for seed in [1, 2, 3] {
+        let mut scenario = Builtin::DuffingSine.random(seed).with_noise(0.01);
+        scenario.stages.truncate(1);
+        (scenario.duration, scenario.initial) = (8.0, State::default());
+        let motion = record(&scenario).unwrap();
+        let mut rest = scenario.clone().with_seed(seed + 100);
+        (rest.duration, rest.stages[0].amplitude) = (20.0, 0.0);
+        let mut identifier = Identifier::new(&model, Settings::default()).unwrap();
+        let readings = record(&rest).unwrap();
+        let begins = readings.last().unwrap().t + scenario.excitation.sample_time;
+        let moves = motion.iter().map(|reading| (begins + reading.t, reading));
+        for (t, reading) in readings.iter().map(|reading| (reading.t, reading)).chain(moves) {
+            let sample = Sample { t, q: reading.q, qd: reading.qd, excitation: reading.excitation };
+            identifier.step(sample).unwrap();
+            assert!(!identifier.output().drifting, "{seed} at {t} s");
+        }
+        assert!(identifier.output().valid, "{seed}");
+    }
+}

@@ -300,8 +300,10 @@ fn warnings(run: &Run) -> Vec<String> {
         warnings.push(format!("{source}: there is no excitation: taken as free motion, the inertia is fixed to 1"));
     }
     if let Some(first) = run.found.skipped.first() {
-        let count = run.found.skipped.len();
-        warnings.push(format!("{source}: {count} samples were not used; the first: {first}"));
+        warnings.push(match run.found.skipped.len() {
+            1 => format!("{source}: one sample was not used: {first}"),
+            count => format!("{source}: {count} samples were not used; the first: {first}"),
+        });
     }
     if is_noiseless([run.found.noise.q, run.found.noise.qd], recording).contains(&true) {
         warnings.push(format!(

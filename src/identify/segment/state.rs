@@ -309,7 +309,7 @@ impl Segment {
     }
 
     /// Number of samples that the estimate rests on: those of the record and those before it.
-    pub(super) fn samples(&self) -> u64 {
+    pub fn samples(&self) -> u64 {
         self.known.folded + self.length(self.run.next)
     }
 

@@ -41,7 +41,7 @@ impl Tracker {
         self.window.push(reading);
         self.weak_form.step(problem, sample);
         if self.window.end().is_multiple_of(REST_EVERY) {
-            self.weak_form.rest(problem, setup.first_noise(&self.difference_noise));
+            self.weak_form.rest(problem, setup.first_noise(&self.difference_noise, &self.window));
         }
         if reading.faulty == [false; 2] {
             self.measure_noise(problem);
@@ -274,6 +274,22 @@ mod tests {
         }
         walked.dedup();
         walked.into_iter().collect()
+    }
+
+    /// Half of its record was folded into what is known, and the stability check began anew.
+    #[test]
+    fn a_law_that_has_outgrown_the_window_stands_with_all_of_its_record() {
+        let model = Model::of("Duffing", Builtin::DuffingSine.terms().into_iter().map(|term| (term, Given::Fit)));
+        let settings = Settings { max_window: 8.0, ..Settings::default() };
+        let problem = Problem::new(&model, &settings);
+        let mut tracker = Tracker::new(&problem, &settings);
+        for (index, reading) in record(&scenario(&[A; 3])).unwrap().iter().enumerate() {
+            let sample = Sample { t: reading.t, q: reading.q, qd: reading.qd, excitation: reading.excitation };
+            tracker.step(&problem, &settings, sample);
+            assert!(index < 6000 || tracker.segment.stands(), "at {} s", reading.t);
+        }
+        let samples = tracker.segment.samples();
+        assert!(samples > 2 * tracker.window.capacity() as u64, "{samples}");
     }
 
     #[test]
