@@ -131,7 +131,7 @@ fn a_motion_that_begins_after_a_rest_is_no_drift() {
     for seed in [1, 2, 3] {
         let mut scenario = Builtin::DuffingSine.random(seed).with_noise(0.01);
         scenario.stages.truncate(1);
-        (scenario.duration, scenario.initial) = (8.0, State::default());
+        (scenario.duration, scenario.initial) = (15.0, State::default());
         let motion = record(&scenario).unwrap();
         let mut rest = scenario.clone().with_seed(seed + 100);
         (rest.duration, rest.stages[0].amplitude) = (20.0, 0.0);
