@@ -123,9 +123,9 @@ fn a_record_that_a_constant_law_explains_is_no_drift() {
     assert!(identifier.output().valid);
 }
 
-/// What waits for a constant law waits from when the motion begins, not from the record's beginning.
+/// A rest is record too: it makes no law uncertain for longer than its motion does.
 #[test]
-fn a_motion_that_begins_after_a_rest_is_no_drift() {
+fn a_motion_that_begins_after_a_rest_is_known_and_no_drift() {
     let terms = Builtin::DuffingSine.terms().into_iter();
     let model = Model::of("Duffing", terms.map(|term| (term, Given::Fit)));
     for seed in [1, 2, 3] {

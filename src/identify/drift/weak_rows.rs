@@ -181,3 +181,40 @@ impl WeakRowDrift {
         self.law().reach(free)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::sample::Sample;
+    use crate::identify::settings::Settings;
+    use crate::law::{Given, Hold, Model};
+    use crate::simulate::{Builtin, record};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::StandardNormal;
+
+    /// What waits for a constant law waits from when the motion begins.
+    #[test]
+    fn the_rows_predict_from_where_the_motion_begins() {
+        const REST: u64 = 6000;
+        let builtin = Builtin::DuffingSine;
+        let model = Model::of("Duffing", builtin.terms().into_iter().map(|term| (term, Given::Fit)));
+        let problem = Problem::new(&model, &Settings::default());
+        let mut scenario = builtin.random(1).with_noise(0.01);
+        scenario.duration = 14.0;
+        let mut window = Window::new(20_000, problem.channels, Hold::Zero);
+        let mut drift = WeakRowDrift::new(&problem, 20_000);
+        let mut generator = ChaCha8Rng::seed_from_u64(1);
+        let mut noise = || 0.01 * generator.sample::<f64, _>(StandardNormal);
+        for (index, reading) in record(&scenario).unwrap().iter().enumerate() {
+            let (q, qd, excitation) = match (index as u64) < REST {
+                true => (noise(), noise(), 0.0),
+                false => (reading.q, reading.qd, reading.excitation),
+            };
+            window.push(Sample { t: reading.t, q, qd, excitation });
+            drift.step(&problem, &window, [1e-4; 2], true);
+        }
+        let (from, length) = (drift.law().predicts_from, drift.law().samples as u64);
+        assert!(drift.predicts() && (REST - length..=REST + length).contains(&from), "{from}, {length}");
+    }
+}
