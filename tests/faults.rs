@@ -223,22 +223,6 @@ fn a_motion_that_begins_from_rest_is_identified() {
     assert!(seen.sensors.iter().all(|said| *said == [SensorState::Ok]), "{seen:?}");
 }
 
-/// Several readings in a row err alike: taken for as many, they invented switches, or no law was ever valid.
-#[test]
-fn channels_rounded_to_many_times_their_noise_know_their_law_and_its_switch() {
-    for (seed, steps) in [(7, [0.01, 1e-9]), (11, [0.01, 0.01]), (13, [0.02, 0.005])] {
-        let scenario = plant(Builtin::DuffingSine, seed, 15.0, 25.0).with_noise(0.001);
-        let mut samples = samples(&scenario);
-        let round = |value: &mut f64, step: f64| *value = (*value / step).round() * step;
-        for sample in &mut samples {
-            round(&mut sample.q, steps[0]);
-            round(&mut sample.qd, steps[1]);
-        }
-        let seen = watch(&scenario, Builtin::DuffingSine, &samples);
-        assert!(seen.switches == 1 && seen.valid_at_the_end && !seen.unknown, "{seed}: {seen:?}");
-    }
-}
-
 #[test]
 fn a_stuck_sensor_is_no_switch_and_is_said_to_be_stuck() {
     let (scenario, mut samples) = steady(52);

@@ -7,8 +7,7 @@
 //! becomes the maximum likelihood of the trajectory, with its initial state marginalised; as it grows, that of the
 //! equation error.
 //!
-//! - [`DifferenceNoise`]: the sensors' noise before any law, [`Rounding`]: what they round to; [`RowsOfLength`]: first
-//!   coefficients, from weak rows;
+//! - [`DifferenceNoise`]: the sensors' noise before any law; [`RowsOfLength`]: first coefficients, from weak rows;
 //! - [`Filter`]: N states and their covariance, from sample to sample, begun by [`initial_state`]; [`Rivals`]: under
 //!   other process noise; [`smooth`]: the motion as all samples tell it;
 //! - [`InnovationGate`]: readings that are no part of the motion;
@@ -42,7 +41,6 @@ mod pass;
 mod random_walk;
 mod regression;
 mod rivals;
-mod rounding;
 mod sandwich;
 mod score_test;
 mod smoother;
@@ -68,7 +66,6 @@ pub use pass::{IntervalMap, Observation, Pass, gains};
 pub use random_walk::{Equation, RandomWalk};
 pub use regression::{Blocks, FEWEST, Moments, SURPRISE, Weight, Whiteness};
 pub use rivals::{RIVALS, Rivals};
-pub use rounding::Rounding;
 pub use sandwich::SandwichFactor;
 pub use score_test::{Lacked, Missing, ScoreTest};
 pub use smoother::{Smoothable, smooth};

@@ -4,7 +4,7 @@ use super::packed_readings;
 use super::reading::Reading;
 use super::sample::Sample;
 use super::settings::Channels;
-use crate::estimation::{Filter, Noise, Observation, Rounding, SAMPLES_OF_A_VARIANCE, initial_state};
+use crate::estimation::{Filter, Noise, Observation, SAMPLES_OF_A_VARIANCE, initial_state};
 use crate::law::{BandLimited, Drive, Hold, REACH, look_ahead};
 use serde::{Deserialize, Serialize};
 
@@ -30,8 +30,6 @@ pub struct Window {
     hold: Hold,
     band_limited: BandLimited,
     pace: Pace,
-    /// Of q and of q̇.
-    rounding: [Rounding; 2],
     /// What of the excitation the next interval has unseen besides, N² s.
     unseen: f64,
 }
@@ -82,8 +80,7 @@ impl Window {
     /// Room for `capacity` samples.
     pub fn new(capacity: usize, channels: Channels, hold: Hold) -> Window {
         let ring = vec![Reading::default(); capacity];
-        let (band_limited, pace, rounding) = (BandLimited::new(), Pace::default(), [Rounding::default(); 2]);
-        Window { ring, count: 0, channels, hold, band_limited, pace, rounding, unseen: 0.0 }
+        Window { ring, count: 0, channels, hold, band_limited: BandLimited::new(), pace: Pace::default(), unseen: 0.0 }
     }
 
     /// How many samples it can hold.
@@ -99,19 +96,9 @@ impl Window {
             let before = *self.sample(self.count - 1);
             self.pace.take(&before, &reading.sample);
         }
-        for (channel, value) in [reading.sample.q, reading.sample.qd].into_iter().enumerate() {
-            if !reading.faulty[channel] {
-                self.rounding[channel].take(value);
-            }
-        }
         let slot = self.slot(self.count);
         self.ring[slot] = reading;
         self.count += 1;
-    }
-
-    /// Least variances of the sensors of q and q̇, which round their readings, (m)² and (m/s)².
-    pub fn rounding(&self) -> [f64; 2] {
-        self.rounding.map(|channel| channel.variance())
     }
 
     /// Time that is usual between two samples, s; 0 before there are two.

@@ -35,7 +35,7 @@ impl Segment {
     /// Takes the noise levels of the next run from the one that has just closed.
     pub(super) fn follow_noise(&mut self, problem: &Problem, settings: &Settings, track: &Track, window: &Window) {
         let before = self.noise;
-        self.follow_sensors(settings, track, window);
+        self.follow_sensors(settings, track);
         let factor = self.process_factor(track);
         self.noise.process = (self.noise.process * factor).max(self.process_floor(problem, settings, window));
         if self.has_come_to_rest(&before) {
@@ -56,12 +56,12 @@ impl Segment {
         self.fit.explains = !exceeds(FORGETTING) && overdispersion < UNEXPLAINED && !errs;
     }
 
-    /// Sensor variances that are not given follow the innovations; no sensor is quieter than what it rounds to.
-    fn follow_sensors(&mut self, settings: &Settings, track: &Track, window: &Window) {
-        let (given, rounding) = (settings.given_noise(), window.rounding());
+    /// Sensor variances that are not given follow the innovations.
+    fn follow_sensors(&mut self, settings: &Settings, track: &Track) {
+        let given = settings.given_noise();
         for channel in Channel::ALL {
             let index = channel as usize;
-            let floor = Noise::floor(self.run.largest[index]).max(rounding[index]);
+            let floor = Noise::floor(self.run.largest[index]);
             self.noise.sensor[index] = match given[index] {
                 None => {
                     let (count, known) = (track.count[index], self.known.weight);

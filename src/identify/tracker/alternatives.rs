@@ -101,7 +101,7 @@ impl Tracker {
     /// Sensor variances that a guess is begun with.
     fn sensor_noise(&self, setup: Setup) -> [f64; 2] {
         match self.fitting {
-            Fitting::Starting => setup.first_noise(&self.difference_noise, &self.window),
+            Fitting::Starting => setup.first_noise(&self.difference_noise),
             _ if self.follows_a_law() => self.monitor.law.noise.sensor,
             _ => self.segment.noise.sensor,
         }
@@ -118,7 +118,7 @@ impl Tracker {
             return;
         }
         self.schedule.next_sensor_fit = end + self.segment.length(end);
-        let sensor = setup.first_noise(&self.difference_noise, &self.window);
+        let sensor = setup.first_noise(&self.difference_noise);
         let noise = Noise { sensor, process: IN_THE_SENSORS * self.segment.noise.process };
         self.belief.from.copy_from_slice(&self.segment.coefficients);
         self.begin_another_fit(problem, self.segment.known_effect(), noise);

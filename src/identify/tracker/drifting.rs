@@ -152,7 +152,7 @@ impl Tracker {
     /// The sensors' variances. Differences of q tell its noise by themselves; those of q̇ may hold more than that: what
     /// the law in use says is less, where there is one.
     fn likely_noise(&self, setup: Setup) -> [f64; 2] {
-        let [q, qd] = setup.first_noise(&self.difference_noise, &self.window);
+        let [q, qd] = setup.first_noise(&self.difference_noise);
         let settled = self.is_refining() && self.segment.settled();
         [q, if settled { qd.min(self.segment.noise.sensor[1]) } else { qd }]
     }

@@ -25,7 +25,7 @@ impl Tracker {
         // a law whose innovations are white is on its way to state an std of its own
         let consistent = self.is_refining() && self.segment.fit.explains;
         if stated == 0 && !consistent {
-            let sensor = Setup { problem, settings }.first_noise(&self.difference_noise, &self.window);
+            let sensor = Setup { problem, settings }.first_noise(&self.difference_noise);
             output.explained = self.weak_form.publish(problem, sensor, shown);
         }
     }

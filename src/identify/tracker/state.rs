@@ -315,10 +315,10 @@ impl Tracker {
 }
 
 impl Setup<'_> {
-    /// Sensor variances before any law: as set, or from differences; no sensor is quieter than what it rounds to.
-    pub(super) fn first_noise(&self, differences: &DifferenceNoise, window: &Window) -> [f64; 2] {
-        let (found, least) = (differences.variance().unwrap_or([0.0; 2]), window.rounding());
+    /// Sensor variances before any law: as set, or from differences.
+    pub(super) fn first_noise(&self, differences: &DifferenceNoise) -> [f64; 2] {
+        let found = differences.variance().unwrap_or([0.0; 2]);
         let given = self.settings.given_noise();
-        [0, 1].map(|index| given[index].unwrap_or(found[index].max(least[index]) + f64::MIN_POSITIVE))
+        [0, 1].map(|index| given[index].unwrap_or(found[index] + f64::MIN_POSITIVE))
     }
 }

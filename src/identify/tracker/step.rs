@@ -41,7 +41,7 @@ impl Tracker {
         self.window.push(reading);
         self.weak_form.step(problem, sample);
         if self.window.end().is_multiple_of(REST_EVERY) {
-            self.weak_form.rest(problem, setup.first_noise(&self.difference_noise, &self.window));
+            self.weak_form.rest(problem, setup.first_noise(&self.difference_noise));
         }
         if reading.faulty == [false; 2] {
             self.measure_noise(problem);
