@@ -15,6 +15,7 @@ const LOST: f64 = 1.5;
 /// motion is.
 pub(super) const FEW: f64 = 10.0;
 
+/// What a lost sample means.
 const UNKNOWN: &str = "nothing is known of the motion there";
 
 /// Remarks on the times.
@@ -30,14 +31,12 @@ pub(super) fn remarks(recording: &Recording, period: Option<f64>) -> Vec<Remark>
     let in_all = (t[t.len() - 1] - t[0]) / usual + 1.0 - t.len() as f64;
     if let Some((first, _)) = lost.first().filter(|_| missing >= 1.0 && in_all > 0.5 * missing) {
         let share = 100.0 * missing / (missing + recording.count() as f64);
-        let (few, after) = (if missing > 1.0 { "samples are" } else { "sample is" }, seconds(*first));
+        let (samples_are, after) = (if missing > 1.0 { "samples are" } else { "sample is" }, seconds(*first));
         let sentence = match lost.len() {
-            1 => format!("{missing} {few} missing ({share:.2} %) after {after} s: {UNKNOWN}"),
-            places => {
-                format!(
-                    "{missing} {few} missing in {places} places ({share:.2} %), the first after {after} s: {UNKNOWN}"
-                )
-            }
+            1 => format!("{missing} {samples_are} missing ({share:.2} %) after {after} s: {UNKNOWN}"),
+            places => format!(
+                "{missing} {samples_are} missing in {places} places ({share:.2} %), the first after {after} s: {UNKNOWN}"
+            ),
         };
         said.push(Remark::new("t", "lost", sentence));
     }
