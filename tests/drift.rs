@@ -123,7 +123,7 @@ fn a_record_that_a_constant_law_explains_is_no_drift() {
     assert!(identifier.output().valid);
 }
 
-/// A rest before it says nothing of the law: the motion is known within its own 15 s, and drifts at no time.
+/// The rest fills the window, so that its record is folded while the motion is young: the law is known all the same.
 #[test]
 fn a_motion_that_begins_after_a_rest_is_known_and_no_drift() {
     let terms = Builtin::DuffingSine.terms().into_iter();
