@@ -60,7 +60,7 @@ pub use initial_state::{LOST, initial_state};
 pub use innovation_gate::{InnovationGate, OUTLYING};
 pub use kinematics::{FixedLagSmoother, Instant, LONGEST, MotionNoise};
 pub use lag_test::{Lag, LagTest, ToldLag};
-pub use odds::{SAMPLES_OF_A_VARIANCE, TWENTY_TO_ONE, log_sum};
+pub use odds::{BEYOND_CHANCE, SAMPLES_OF_A_VARIANCE, TWENTY_TO_ONE, UNLIKELY, log_sum};
 pub use one_more_coefficient::OwnTerms;
 pub use pass::{IntervalMap, Observation, Pass, gains};
 pub use random_walk::{Equation, RandomWalk};

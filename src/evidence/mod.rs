@@ -15,5 +15,5 @@ mod switch_size;
 
 pub use bayes_factor::{BayesFactor, GaussianPrior};
 pub use hypotheses::{Bank, Law, Suspect};
-pub use single_change::either;
+pub use single_change::{OWN, either};
 pub use switch_size::{INERTIA_SPREAD, SWITCH_SIZE};

@@ -16,7 +16,7 @@ use crate::estimation::{Information, Lane, System, WIDTH, log_sum};
 use serde::{Deserialize, Serialize};
 
 /// What a change has of its own beside the law's uncertainty, relative to all that it has; less is rounding.
-const OWN: f64 = 1e-9;
+pub const OWN: f64 = 1e-9;
 
 /// Room for the changes of n coefficients, one at a time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

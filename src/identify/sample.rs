@@ -7,6 +7,9 @@ use thiserror::Error;
 /// bridged.
 pub const GAP: f64 = 4.5;
 
+/// Share of an interval in the usual one: that follows another rate of sampling within 20 samples.
+pub const PACE_SHARE: f64 = 0.05;
+
 /// One measurement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample {

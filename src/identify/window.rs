@@ -2,7 +2,7 @@
 
 use super::packed_readings;
 use super::reading::Reading;
-use super::sample::Sample;
+use super::sample::{PACE_SHARE, Sample};
 use super::settings::Channels;
 use crate::estimation::{Filter, Noise, Observation, SAMPLES_OF_A_VARIANCE, initial_state};
 use crate::law::{BandLimited, Drive, Hold, REACH, look_ahead};
@@ -16,9 +16,6 @@ const PATIENCE: u32 = 3;
 
 /// An interval this many times as long as the usual one is an outage.
 const OUTAGE: f64 = 50.0;
-
-/// Share of a sample in the usual interval: it follows another rate of sampling within 20.
-const ADAPTION: f64 = 0.05;
 
 /// Accepted samples by number; the first of all is number 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,7 +53,7 @@ impl Pace {
         if self.is_gap(dt) {
             return;
         }
-        self.dt += ADAPTION * (dt - self.dt);
+        self.dt += PACE_SHARE * (dt - self.dt);
         self.count = (self.count + 1.0).min(SAMPLES_OF_A_VARIANCE);
         let square = 0.5 * (sample.excitation - before.excitation).powi(2);
         self.roughness += (square - self.roughness) / self.count;

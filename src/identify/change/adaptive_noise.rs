@@ -60,7 +60,7 @@ impl AdaptiveNoise {
             let innovation = said.residual * (factor * said.precision).sqrt();
             let last = std::mem::replace(&mut self.last[channel], innovation);
             let square = (0.5 * (innovation - last).powi(2)).min(MOST);
-            let wide = 0.5 * square * (1.0 - (faults::LOUDER * faults::LOUDER).recip()) - faults::LOUDER.ln();
+            let wide = 0.5 * square * (1.0 - (faults::SCATTER * faults::SCATTER).recip()) - faults::SCATTER.ln();
             self.burst[channel] = (self.burst[channel] + wide).max(0.0);
             self.now[channel] += (square - self.now[channel]) / NOW;
             self.lately[channel] += (square - self.lately[channel]) / LATELY;

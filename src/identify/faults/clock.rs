@@ -1,25 +1,18 @@
 //! Time stamps: one that is far ahead alone is none; a clock that was set back goes on from where it was.
 
-use crate::identify::sample::Skipped;
+use crate::identify::sample::{PACE_SHARE, Skipped};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// A stamp this many usual steps ahead is believed once the next one agrees.
 const AHEAD: f64 = 250.0;
 
-/// Steps after which it is known what is usual.
-const KNOWN: u32 = 10;
-
-/// Stamps in a row, each a usual step after the one before, that make up a clock which was set back.
+/// Steps of one length in a row that make up a clock: what is usual, or that it was set back.
 const STEADY: u32 = 10;
 
-/// Steps that are usual differ by this factor at most.
-const ALIKE: std::ops::Range<f64> = 0.4..2.5;
-
-/// Share of a step in the usual one.
-const ADAPTION: f64 = 0.05;
-
-/// Steps without a sample that is used after which nothing that is said holds for the present.
-const STALE: f64 = 2.5;
+/// Steps that are usual differ by this factor at most; a longer one is over without a sample that is used, and nothing
+/// that is said holds for the present.
+const ALIKE: Range<f64> = 0.4..2.5;
 
 /// The clock of a stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -55,7 +48,7 @@ impl Clock {
         if step < 0.5 * sample_time {
             return Err(Skipped::TooSoon { t: stamp });
         }
-        if self.known >= KNOWN && step > AHEAD * self.pace && !agrees {
+        if self.known >= STEADY && step > AHEAD * self.pace && !agrees {
             self.stray = Some(stamp);
             return Err(Skipped::Ahead { t: stamp, previous: last - self.shift });
         }
@@ -64,7 +57,7 @@ impl Clock {
 
     /// The time of a stamp of a clock that was set back, once that is sure.
     fn set_back(&mut self, stamp: f64, agrees: bool, last: f64) -> Option<f64> {
-        if self.known < KNOWN || self.stray == Some(stamp) {
+        if self.known < STEADY || self.stray == Some(stamp) {
             return None;
         }
         (self.first, self.steady) = if agrees { (self.first, self.steady + 1) } else { (stamp, 0) };
@@ -82,9 +75,9 @@ impl Clock {
         if let Some(last) = self.last {
             let step = t - last;
             if self.pace == 0.0 || ALIKE.contains(&(step / self.pace)) {
-                self.known = (self.known + 1).min(KNOWN);
-                self.pace += if self.pace == 0.0 { step } else { ADAPTION * (step - self.pace) };
-            } else if self.known < KNOWN {
+                self.known = (self.known + 1).min(STEADY);
+                self.pace += if self.pace == 0.0 { step } else { PACE_SHARE * (step - self.pace) };
+            } else if self.known < STEADY {
                 (self.pace, self.known) = (step, 0);
             }
         }
@@ -95,7 +88,7 @@ impl Clock {
     /// next sample can be, or one of several that came before the last.
     pub fn is_stale(&self, stamp: f64) -> bool {
         let step = self.last.map_or(0.0, |last| stamp + self.shift - last);
-        self.known >= KNOWN && (step > STALE * self.pace || self.steady >= 2)
+        self.known >= STEADY && (step > ALIKE.end * self.pace || self.steady >= 2)
     }
 }
 

@@ -1,14 +1,10 @@
 //! Readings of F that leave its course and return may be a burst of its sensor's or have acted; one that nothing can
 //! have exerted is replaced.
 
-use crate::estimation::SAMPLES_OF_A_VARIANCE;
+use crate::estimation::{BEYOND_CHANCE, SAMPLES_OF_A_VARIANCE};
 use crate::identify::reading::Reading;
 use crate::identify::sample::Sample;
 use serde::{Deserialize, Serialize};
-
-/// A reading of F leaves its course where it is so many stds from what the last one lets expect: Gaussian excitation
-/// does so once in a million readings.
-const JUMP: f64 = 5.0;
 
 /// Readings of a burst at most: an F that has been elsewhere for longer is there.
 const LONGEST: u32 = 20;
@@ -145,7 +141,7 @@ impl ExcitationGate {
         let [square, moved] = self.squares;
         let kept = (1.0 - 0.5 * f64::from(samples).powi(2) * moved / square).max(0.0);
         let off = (to - kept * from).abs().max((from - kept * to).abs());
-        self.count > KNOWN && off * off > JUMP * JUMP * (1.0 - kept * kept) * square
+        self.count > KNOWN && off * off > BEYOND_CHANCE * BEYOND_CHANCE * (1.0 - kept * kept) * square
     }
 
     /// A reading that leaves its course tells little of what is usual, one of an F that stands still nothing: neither
@@ -156,7 +152,7 @@ impl ExcitationGate {
         }
         self.count = (self.count + 1.0).min(SAMPLES_OF_A_VARIANCE);
         let moved = if self.count > 1.0 { moved * moved } else { 0.0 };
-        let most = if self.count > KNOWN { JUMP * JUMP * self.squares[1] } else { f64::INFINITY };
+        let most = if self.count > KNOWN { BEYOND_CHANCE * BEYOND_CHANCE * self.squares[1] } else { f64::INFINITY };
         for (square, value) in self.squares.iter_mut().zip([force * force, moved.min(most)]) {
             *square += (value - *square) / self.count;
         }

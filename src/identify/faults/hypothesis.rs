@@ -4,7 +4,7 @@
 //! change of any coefficient is one of these two; u₀ then moves as the motion does, as a random walk that is as large
 //! as it is after a radian of the motion. Under "a channel has an offset" u₀ is the offset.
 
-use super::price::{Burst, faulty, working};
+use super::price::{Burst, SCATTER, faulty, working};
 use crate::estimation::{Channel, Filter, Matrix, Noise, times, white_acceleration};
 use crate::law::{Drive, Motion, State};
 use crate::limits::SETTLED_ERROR;
@@ -171,9 +171,6 @@ fn transition([by_q, by_qd]: [f64; 2], dt: f64) -> Matrix<2> {
 
 /// Probability that what befalls one channel begins in the other too: a loose plug, a logger that fails.
 const SHARED: f64 = 0.05;
-
-/// A sensor that has become louder has this many times the std: three times as much is what is told from a burst.
-pub const LOUDER: f64 = 3.0;
 
 /// A stuck sensor that varies is none, nats.
 const VARIES: f64 = -40.0;
@@ -392,7 +389,7 @@ impl Hypothesis {
         let offset = if self.kind == Kind::Offset(channel) { 1.0 } else { 0.0 };
         let column: [f64; 4] =
             std::array::from_fn(|row| self.covariance[row][index] + offset * self.covariance[row][2]);
-        let louder = if self.kind.is_louder(channel) { LOUDER * LOUDER } else { 1.0 };
+        let louder = if self.kind.is_louder(channel) { SCATTER * SCATTER } else { 1.0 };
         let variance = column[index] + offset * column[2] + louder * law.noise.sensor[index];
         let residual = value.value - self.mean[index] - offset * self.mean[2];
         let std = law.noise.sensor[index].sqrt();

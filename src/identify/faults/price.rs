@@ -4,8 +4,8 @@ use crate::estimation::log_sum;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
-/// A faulty reading's scale in std of a working one: what is nearer costs about the same as a working one.
-const SCALE: f64 = 3.0;
+/// Scatter of a faulty sensor in stds of a working one: what is nearer costs about the same under either.
+pub const SCATTER: f64 = 3.0;
 
 /// A reading this many std off is as far as any.
 const FAR: f64 = 1e100;
@@ -19,7 +19,7 @@ pub fn working(residual: f64, variance: f64) -> f64 {
 /// integrates to one and has no scale of its own beyond s. `std` is the working sensor's, whatever the hypothesis: one
 /// that expects little would else pay less for every reading.
 pub fn faulty(residual: f64, std: f64) -> f64 {
-    let scale = SCALE * std;
+    let scale = SCATTER * std;
     let beyond = (residual.abs() / scale).min(f64::MAX).ln_1p();
     -(2.0 * scale).ln() - beyond - 2.0 * beyond.ln_1p()
 }
@@ -97,7 +97,7 @@ mod tests {
             sum += 2.0 * (to - from) * faulty(0.5 * (from + to), 1.0).exp();
             from = to;
         }
-        let beyond = 1.0 / (1.0 + (from / SCALE).ln_1p());
+        let beyond = 1.0 / (1.0 + (from / SCATTER).ln_1p());
         assert!((sum + beyond - 1.0).abs() < 1e-3, "{sum} and {beyond}");
     }
 

@@ -3,7 +3,7 @@
 use super::hypothesis::{Expected, Kind, Value};
 use super::repetition::Repetition;
 use super::weighing::{Weighing, event};
-use crate::estimation::{Channel, Filter, OUTLYING};
+use crate::estimation::{Channel, Filter, OUTLYING, UNLIKELY};
 use crate::identify::packed_readings;
 use crate::identify::reading::Reading;
 use crate::identify::report::SensorState;
@@ -18,9 +18,6 @@ pub const ROOM: usize = 64;
 /// A reading is held from so many stds on: two of them in a row would make an alarm of a false-alarm interval of 1e6 s,
 /// 16 nats, and by chance one comes in 16 000 readings. Of a law of which more evidence is asked more is.
 const HELD: f64 = 4.0;
-
-/// A channel is in no burst any more below this probability of one.
-const OVER: f64 = 0.05;
 
 /// Samples for which nothing is held after the law was named: the evidence of a switch decides, which in the
 /// standard scenarios takes 8 to 28 samples (medians at σ = 0.01).
@@ -276,7 +273,7 @@ impl Quarantine {
             && self.behind() == 0
         {
             let named = self.weighing.hypothesis(place);
-            let over = Channel::ALL.into_iter().all(|channel| named.burst(channel) < OVER);
+            let over = Channel::ALL.into_iter().all(|channel| named.burst(channel) < UNLIKELY);
             let forgotten = named.kind.is_no_event() && self.weighing.is_idle();
             if over && (forgotten || named.kind.is_kick()) {
                 self.stance = Stance::Calm;
@@ -407,7 +404,7 @@ impl Quarantine {
                 match named.kind {
                     kind if kind.sticks(channel) => sensors[index] = SensorState::Stuck,
                     Kind::Offset(off) if off == channel => sensors[index] = SensorState::Offset,
-                    _ if named.burst(channel) > OVER => sensors[index] = SensorState::Outlier,
+                    _ if named.burst(channel) > UNLIKELY => sensors[index] = SensorState::Outlier,
                     _ => {}
                 }
             }

@@ -1,6 +1,6 @@
 //! How often a channel repeats its last value exactly, and what one more repetition says of a stuck sensor.
 
-use crate::estimation::SAMPLES_OF_A_VARIANCE;
+use crate::estimation::{BEYOND_CHANCE, SAMPLES_OF_A_VARIANCE};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -10,9 +10,6 @@ const RARE: f64 = 0.01;
 
 /// Variance of the second difference of white noise, in its own.
 const BENDS: f64 = 6.0;
-
-/// A change further off than so many times what is usual is an outlier.
-const FAR: f64 = 5.0;
 
 /// Repetitions of one channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -68,7 +65,9 @@ impl Repetition {
     /// What a law leaves may be its own error; no channel scatters by more than its steps change by.
     fn follow_scatter(&mut self, step: f64) {
         let bend = step - std::mem::replace(&mut self.step, step);
-        let most = FAR * FAR * self.bends.max(self.resolution.map_or(0.0, |resolution| resolution * resolution));
+        let most = BEYOND_CHANCE
+            * BEYOND_CHANCE
+            * self.bends.max(self.resolution.map_or(0.0, |resolution| resolution * resolution));
         self.bends += ((bend * bend).min(most) - self.bends) / self.readings.min(SAMPLES_OF_A_VARIANCE);
     }
 

@@ -10,7 +10,7 @@
 
 use super::segment::ROUNDING;
 use crate::estimation::{Lane, Moments, System, WIDTH, log_sum};
-use crate::evidence::SWITCH_SIZE;
+use crate::evidence::{OWN, SWITCH_SIZE};
 use serde::{Deserialize, Serialize};
 
 /// Most hypotheses: twice those of the tracker of motion, since each costs a regression and no filter.
@@ -22,9 +22,6 @@ const LOOKS: usize = 4;
 /// Share of the posterior by which an instant is too late to be the switch: one chance in a thousand that it came
 /// later.
 const TOO_LATE: f64 = 0.999;
-
-/// What a change has of its own beside the law's uncertainty, relative to all that it has; less is rounding.
-const OWN: f64 = 1e-9;
 
 /// One hypothesis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -2,8 +2,8 @@
 
 use super::features::{Expected, expect};
 use crate::estimation::{
-    Blocks, Instant, LONGEST, Moments, OUTLYING, SAMPLES_OF_A_VARIANCE, SURPRISE, System, Weight, Whiteness, dot,
-    price_of_a_term,
+    BEYOND_CHANCE, Blocks, Instant, LONGEST, Moments, OUTLYING, SAMPLES_OF_A_VARIANCE, SURPRISE, System, Weight,
+    Whiteness, dot, price_of_a_term,
 };
 use crate::identify::problem::Problem;
 use crate::identify::report::Coefficient;
@@ -22,9 +22,6 @@ const MOST_ALIKE: f64 = 1.0 - 1e-6;
 
 /// Samples over which the motion's error is one and the same: as far as the smoother looks.
 pub const COHERENT: f64 = LONGEST as f64;
-
-/// Std of a mean deviation by which it is out of the ordinary: by chance one in two million is.
-const UNUSUAL: f64 = 5.0;
 
 /// Samples per unknown, at least, of a law in which a switch can be seen.
 const RECORD: f64 = 8.0;
@@ -361,6 +358,6 @@ impl Segment {
         let std = (self.variance() + of_motion).sqrt();
         let samples = (settings.deviation_interval / settings.sample_time / self.inflation()).max(1.0);
         let [mean, spread] = [std::f64::consts::FRAC_2_PI.sqrt(), (1.0 - std::f64::consts::FRAC_2_PI).sqrt()];
-        std * (mean + UNUSUAL * spread / samples.sqrt())
+        std * (mean + BEYOND_CHANCE * spread / samples.sqrt())
     }
 }

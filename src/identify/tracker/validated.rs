@@ -2,8 +2,9 @@
 
 use super::regime::Event;
 use super::state::{Setup, Tracker};
+use crate::estimation::UNLIKELY;
 use crate::identify::problem::Problem;
-use crate::identify::validation::{DOUBTFUL, SURE, VALIDATED};
+use crate::identify::validation::{SURE, VALIDATED};
 
 impl Tracker {
     /// Makes the segment's law known; it is validated where it states that it is known well enough, and stands.
@@ -34,7 +35,7 @@ impl Tracker {
     /// chance has left a longer record takes away, and is waited for; an error that lasts it does not.
     fn is_sure(&self, problem: &Problem) -> bool {
         let bound = if self.segment.fit.overdispersion > 1.0 { VALIDATED } else { SURE };
-        self.segment.doubt() < DOUBTFUL && self.published.stated_error() + self.segment.untold_error(problem) < bound
+        self.segment.doubt() < UNLIKELY && self.published.stated_error() + self.segment.untold_error(problem) < bound
     }
 
     /// What the segment says of each coefficient.

@@ -9,15 +9,10 @@ pub const VALIDATED: f64 = 0.5 * SETTLED_ERROR;
 /// It is called valid when it states e below this: chance leaves a coefficient within three of its std.
 pub const SURE: f64 = SETTLED_ERROR / 9.0;
 
-/// It is not called valid while an effect that it lacks makes its e too large with more than this probability …
-pub const DOUBTFUL: f64 = 0.05;
-
-/// … and not any more from this on. In between it stays what it was called, as between the two thresholds of a
-/// sequential test (Wald, *Ann. Math. Statist.* 16, 1945): each new run is one more look at the same record.
+/// It is called valid once it is unlikely that an effect which it lacks makes its e too large, and not any more from
+/// this probability on. In between it stays what it was called, as between the two thresholds of a sequential test
+/// (Wald, *Ann. Math. Statist.* 16, 1945): each new run is one more look at the same record.
 pub const DOUBTED: f64 = 0.25;
-
-/// A law that stands moves by less than the bound while its record grows.
-pub(super) const STOOD: f64 = SETTLED_ERROR;
 
 /// A law that states e below this is good enough to weigh switches against: coefficients within 20 % of their size
 /// together.

@@ -8,6 +8,6 @@ mod bounds;
 mod constancy;
 mod stability;
 
-pub use bounds::{DOUBTED, DOUBTFUL, SURE, TRUSTED, VALIDATED};
+pub use bounds::{DOUBTED, SURE, TRUSTED, VALIDATED};
 pub use constancy::Constancy;
 pub use stability::{Stability, is_one_law};

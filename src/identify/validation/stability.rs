@@ -1,6 +1,7 @@
 //! The stability check of a law: what a wrong structure or a wrong minimum makes up does not survive more data.
 
-use super::bounds::{STOOD, TRUSTED, relative_error};
+use super::bounds::{TRUSTED, relative_error};
+use crate::limits::SETTLED_ERROR;
 use serde::{Deserialize, Serialize};
 
 /// A law that explains its record is confirmed when the record has grown by this factor …
@@ -71,5 +72,5 @@ impl Stability {
 
 /// Whether two estimates are nearer to each other than a known law is to the truth.
 pub fn is_one_law(new: &[f64], old: &[f64]) -> bool {
-    relative_error(new, old) < STOOD
+    relative_error(new, old) < SETTLED_ERROR
 }
