@@ -79,8 +79,8 @@ pub fn compare() -> Result<(), Error> {
     Ok(())
 }
 
-/// The same of the identifier under Wine alone, built with little optimisation, which changes no number: three minutes,
-/// not ten. The Linux one is that of `cargo xtask fmu`. Without Wine nothing is done, unless in CI.
+/// The same of the identifier under Wine alone, built without optimisation, which changes no number: a minute, not ten.
+/// The Linux one is that of `cargo xtask fmu`. Without Wine nothing is done, unless in CI.
 ///
 /// # Errors
 /// As [`compare`].

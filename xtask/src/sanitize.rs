@@ -36,12 +36,12 @@ pub fn sanitize(arguments: &[String]) -> Result<(), Error> {
         return Ok(());
     }
     for package in BINARIES {
-        run(&mut sanitized(&["build", "--quiet", "--profile", "tried", "--lib", "--package", package]), CARGO)?;
+        run(&mut sanitized(&["build", "--quiet", "--lib", "--package", package]), CARGO)?;
     }
-    let program = ["rustc", "--quiet", "--profile", "tried", "--package", "switchid-measure", "--bin", "fuzz", "--"];
+    let program = ["rustc", "--quiet", "--package", "switchid-measure", "--bin", "fuzz", "--"];
     // the libraries find the sanitizer's functions in the program that loads them
     run(sanitized(&program).args(["-C", "link-arg=-Wl,--export-dynamic"]), CARGO)?;
-    let built = directory().join(TARGET).join("tried");
+    let built = directory().join(TARGET).join("debug");
     let mut fuzz = Command::new(built.join("fuzz"));
     fuzz.arg("--libraries").arg(&built).args(arguments).current_dir(root());
     run(fuzz.env("ASAN_OPTIONS", OPTIONS), CARGO)
