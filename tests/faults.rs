@@ -517,6 +517,21 @@ fn a_force_that_is_stuck_where_it_turns_is_no_switch() {
     }
 }
 
+/// By chance the motion first went its own way within the noise, and was then far off at once: q̇ was in a burst, had an
+/// offset, and was in a burst again, all under a name each, so that the force was not asked for.
+#[test]
+fn a_rough_excitation_that_is_zero_is_no_burst_of_the_velocity() {
+    for builtin in [Builtin::DuffingWhite, Builtin::VanDerPolWhite] {
+        let scenario = plant(builtin, 10_432, 1e3, 14.0);
+        let mut samples = samples(&scenario);
+        samples[10_000..11_000].iter_mut().for_each(|sample| sample.excitation = 0.0);
+        let seen = watch(&scenario, builtin, &samples);
+        assert!(seen.switches == 0 && seen.invalid_until < 11.3, "{builtin:?}: {seen:?}");
+        assert!(seen.said(2).contains(&SensorState::Stuck) && seen.worst < BEYOND, "{builtin:?}: {seen:?}");
+        assert!(!seen.said(1).contains(&SensorState::Offset), "{builtin:?}: {seen:?}");
+    }
+}
+
 #[test]
 fn wild_forces_in_a_row_are_no_switch() {
     for (builtin, seed, noise) in [

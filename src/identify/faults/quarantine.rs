@@ -176,9 +176,14 @@ impl Quarantine {
         count - own as u64
     }
 
-    /// Whether readings are held of which nothing is known yet.
+    /// Whether the motion goes its own way: readings are held of which nothing is known yet, or those of a channel are
+    /// off that varies.
     pub fn is_in_doubt(&self) -> bool {
-        self.stance == Stance::Doubt
+        match self.stance {
+            Stance::Calm => false,
+            Stance::Doubt => true,
+            Stance::Named(place) => !self.is_over(place),
+        }
     }
 
     /// Whether what is held speaks for another law more than for any fault.
@@ -272,14 +277,20 @@ impl Quarantine {
         if let Stance::Named(place) = self.stance
             && self.behind() == 0
         {
-            let named = self.weighing.hypothesis(place);
-            let over = Channel::ALL.into_iter().all(|channel| named.burst(channel) < UNLIKELY);
-            let forgotten = named.kind.is_no_event() && self.weighing.is_idle();
-            if over && (forgotten || named.kind.is_kick()) {
+            let kind = self.weighing.hypothesis(place).kind;
+            let forgotten = kind.is_no_event() && self.weighing.is_idle();
+            if self.is_over(place) && (forgotten || kind.is_kick()) {
                 self.stance = Stance::Calm;
                 self.weighing.clear();
             }
         }
+    }
+
+    /// Whether no burst goes on, and there is no offset.
+    fn is_over(&self, place: usize) -> bool {
+        let named = self.weighing.hypothesis(place);
+        let over = Channel::ALL.into_iter().all(|channel| named.burst(channel) < UNLIKELY);
+        over && !matches!(named.kind, Kind::Offset(_))
     }
 
     fn is_expected(&self, arrival: &Arrival, law: &Expected, filter: &Filter) -> bool {
