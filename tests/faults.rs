@@ -517,8 +517,8 @@ fn a_force_that_is_stuck_where_it_turns_is_no_switch() {
     }
 }
 
-/// By chance the motion first went its own way within the noise, and was then far off at once: q̇ was in a burst, had an
-/// offset, and was in a burst again, all under a name each, so that the force was not asked for.
+/// By chance the motion first went its own way within the noise, and was then far off at once: q̇ was in a burst, had
+/// an offset, and was in a burst again, all under a name each, so that the force was not asked for.
 #[test]
 fn a_rough_excitation_that_is_zero_is_no_burst_of_the_velocity() {
     for builtin in [Builtin::DuffingWhite, Builtin::VanDerPolWhite] {
