@@ -10,8 +10,8 @@ const AHEAD: f64 = 250.0;
 /// Steps of one length in a row that make up a clock: what is usual, or that it was set back.
 const STEADY: u32 = 10;
 
-/// Steps that are usual differ by this factor at most; a longer one is over without a sample that is used, and nothing
-/// that is said holds for the present.
+/// Steps that are usual differ by this factor at most. Once a longer one has gone by without a sample that is used,
+/// nothing that is said holds for the present.
 const ALIKE: Range<f64> = 0.4..2.5;
 
 /// The clock of a stream.

@@ -65,9 +65,8 @@ impl Repetition {
     /// What a law leaves may be its own error; no channel scatters by more than its steps change by.
     fn follow_scatter(&mut self, step: f64) {
         let bend = step - std::mem::replace(&mut self.step, step);
-        let most = BEYOND_CHANCE
-            * BEYOND_CHANCE
-            * self.bends.max(self.resolution.map_or(0.0, |resolution| resolution * resolution));
+        let usual = self.bends.max(self.resolution.map_or(0.0, |resolution| resolution * resolution));
+        let most = BEYOND_CHANCE * BEYOND_CHANCE * usual;
         self.bends += ((bend * bend).min(most) - self.bends) / self.readings.min(SAMPLES_OF_A_VARIANCE);
     }
 
