@@ -614,3 +614,25 @@ fn a_drive_that_is_switched_off_hides_neither_an_outlier_nor_a_switch() {
         assert!(seen.said(1).contains(&SensorState::Outlier), "{builtin:?} {seed}: {seen:?}");
     }
 }
+
+/// A bad reading soon after the drive has stopped makes F, which repeats itself, look stuck: until the motion has
+/// followed it as it is read.
+#[test]
+fn a_drive_that_is_switched_off_before_a_bad_reading_is_not_stuck_for_good() {
+    for (builtin, seed) in [Builtin::DuffingSine, Builtin::VanDerPolSine].into_iter().zip([73, 74]) {
+        for (first, count) in [(10_005, 3), (10_060, 20), (10_200, 5)] {
+            let mut scenario = plant(builtin, seed, 18.0, 22.0);
+            scenario.stages.insert(1, scenario.stages[0].clone());
+            (scenario.stages[1].start, scenario.stages[1].amplitude, scenario.stages[2].amplitude) = (10.0, 0.0, 0.0);
+            let mut samples = samples(&scenario);
+            burst(&mut samples[first..first + count], 30.0, &mut ChaCha8Rng::seed_from_u64(seed));
+            let seen = watch(&scenario, builtin, &samples);
+            assert_eq!(seen.switches, 1, "{builtin:?} {seed} {count} from {first}: {seen:?}");
+            assert_eq!(
+                seen.said(2).last(),
+                Some(&SensorState::Ok),
+                "{builtin:?} {seed} {count} from {first}: {seen:?}"
+            );
+        }
+    }
+}

@@ -24,6 +24,8 @@ pub enum Kind {
     Kick,
     /// What was read of F is not what acted: that was any force of its usual size.
     Glitch,
+    /// F, which stands still, is not what acts: that goes on as F did before.
+    ForceStuck,
     /// A channel has an offset.
     Offset(Channel),
     /// A channel repeats its value.
@@ -38,7 +40,7 @@ pub enum Kind {
 
 impl Kind {
     /// Every one of them, the least first.
-    pub const ALL: [Kind; 15] = [
+    pub const ALL: [Kind; 16] = [
         Kind::Readings,
         Kind::Misfit,
         Kind::Law { before: 0, times: 1 },
@@ -46,6 +48,7 @@ impl Kind {
         Kind::Law { before: 3, times: 1 },
         Kind::Kick,
         Kind::Glitch,
+        Kind::ForceStuck,
         Kind::Offset(Channel::Q),
         Kind::Offset(Channel::Qd),
         Kind::Stuck(Channel::Q),
@@ -113,8 +116,26 @@ pub struct Expected<'a> {
     pub size: [f64; 2],
     /// RMS of F ÷ m.
     pub drive: f64,
+    /// F, where it may be stuck.
+    pub stuck: Option<Standing>,
     /// Parts of an interval between two samples.
     pub parts: usize,
+}
+
+/// An F that stands still.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Standing {
+    /// For how long, s.
+    pub since: f64,
+    /// Time in which F, when it moves, goes as far as it is from 0, s.
+    pub pace: f64,
+}
+
+impl Standing {
+    /// What is left of a force, as its correlation, after so long, s.
+    fn kept(&self, time: f64) -> f64 {
+        (-time / self.pace).exp()
+    }
 }
 
 impl Expected<'_> {
@@ -172,7 +193,7 @@ fn transition([by_q, by_qd]: [f64; 2], dt: f64) -> Matrix<2> {
 /// Probability that what befalls one channel begins in the other too: a loose plug, a logger that fails.
 const SHARED: f64 = 0.05;
 
-/// A stuck sensor that varies is none, nats.
+/// A stuck channel that varies is none, nats.
 const VARIES: f64 = -40.0;
 
 /// The filter of a hypothesis.
@@ -234,9 +255,19 @@ impl Hypothesis {
                 (self.covariance[2][2], self.covariance[3][3]) = (square, gain * gain);
             }
             Kind::Misfit => self.covariance[2][2] = law.misfit(),
+            Kind::ForceStuck => self.suppose_stuck(law),
             Kind::Offset(channel) => self.covariance[2][2] = law.size[channel as usize].powi(2),
             _ => {}
         }
+    }
+
+    /// What acts has left F as it is read for as long as that stands still; what that did within the noise went unseen.
+    fn suppose_stuck(&mut self, law: &Expected) {
+        let Some(standing) = law.stuck else { return self.log += VARIES };
+        for (channel, variance) in law.noise.sensor.into_iter().enumerate() {
+            self.covariance[channel][channel] = self.covariance[channel][channel].max(variance);
+        }
+        self.covariance[2][2] = law.drive * law.drive * (1.0 - standing.kept(standing.since).powi(2));
     }
 
     /// Forgets all of it: what says nothing any more takes no room in a saved state.
@@ -326,7 +357,7 @@ impl Hypothesis {
             let gradient = law.motion.acceleration_gradient(state, middle);
             let inputs = match self.kind {
                 Kind::Law { .. } => [1.0, middle / law.motion.mass(state.q)],
-                Kind::Misfit => [1.0, 0.0],
+                Kind::Misfit | Kind::ForceStuck => [1.0, 0.0],
                 _ => [0.0; 2],
             };
             let moved = law.motion.step_linear(state, part_dt, from, to);
@@ -337,6 +368,21 @@ impl Hypothesis {
             self.carry(part_dt, gradient, inputs, law.noise.process + process);
             self.covariance[2][2] += wander * part_dt;
         }
+        if self.kind == Kind::ForceStuck {
+            self.follow_force(law, dt);
+        }
+    }
+
+    /// What acts goes on as F did before it stood still.
+    fn follow_force(&mut self, law: &Expected, dt: f64) {
+        let Some(standing) = law.stuck else { return self.log += VARIES };
+        let kept = standing.kept(dt);
+        self.mean[2] *= kept;
+        for place in 0..4 {
+            self.covariance[2][place] *= kept;
+            self.covariance[place][2] *= kept;
+        }
+        self.covariance[2][2] += law.drive * law.drive * (1.0 - kept * kept);
     }
 
     /// Intensity of the white acceleration that an event adds in its own interval, for when in it that was nobody

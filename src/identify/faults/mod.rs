@@ -14,6 +14,7 @@
 //! - `weighing`: all of them on the same readings;
 //! - `quarantine`: readings held, and what is let through;
 //! - `excitation`: a reading of F that leaves its course and returns;
+//! - `standing_force`: whether an F that was lost acts as it is read again;
 //! - `after_outage`: whether a sensor came back from an outage with an offset;
 //! - `clock`: time stamps that are none;
 //! - `sender`: samples that nobody has read, sent again or interpolated.
@@ -26,13 +27,15 @@ mod price;
 mod quarantine;
 mod repetition;
 mod sender;
+mod standing_force;
 mod weighing;
 
 pub use after_outage::{AfterOutage, Returned};
 pub use clock::Clock;
 pub use excitation::{ExcitationGate, Stray};
-pub use hypothesis::Expected;
+pub use hypothesis::{Expected, Standing};
 pub use price::SCATTER;
 pub use quarantine::Quarantine;
 pub use repetition::Repetition;
 pub use sender::Sender;
+pub use standing_force::StandingForce;

@@ -74,6 +74,8 @@ pub struct Quarantine {
     offset: [f64; 2],
     /// The channel of one that has just been found, and the variance that is left of it.
     found: Option<(Channel, f64)>,
+    /// Whether F has just been found stuck.
+    force_stuck: bool,
     sensors: [SensorState; 3],
 }
 
@@ -107,6 +109,7 @@ impl Quarantine {
             decided: 0,
             offset: [0.0; 2],
             found: None,
+            force_stuck: false,
             sensors: [SensorState::Ok; 3],
         }
     }
@@ -176,14 +179,9 @@ impl Quarantine {
         count - own as u64
     }
 
-    /// Whether the motion goes its own way: readings are held of which nothing is known yet, or those of a channel are
-    /// off that varies.
+    /// Whether readings are held of which nothing is known yet.
     pub fn is_in_doubt(&self) -> bool {
-        match self.stance {
-            Stance::Calm => false,
-            Stance::Doubt => true,
-            Stance::Named(place) => !self.is_over(place),
-        }
+        self.stance == Stance::Doubt
     }
 
     /// Whether what is held speaks for another law more than for any fault.
@@ -360,6 +358,7 @@ impl Quarantine {
             Kind::Law { .. } | Kind::Louder(_) | Kind::BothLouder => {
                 (self.stance, self.decided) = (Stance::Calm, DECIDED)
             }
+            Kind::ForceStuck => (self.stance, self.force_stuck) = (Stance::Calm, true),
             Kind::Offset(channel) if self.weighing.odds(place) > CERTAIN => self.know_offset(channel, offset, law),
             _ => {}
         }
@@ -384,6 +383,11 @@ impl Quarantine {
     /// The channel of an offset that has just been taken off, and the variance that is left of it.
     pub fn found_offset(&mut self) -> Option<(Channel, f64)> {
         self.found.take()
+    }
+
+    /// Whether F has just been found stuck.
+    pub fn found_stuck_force(&mut self) -> bool {
+        std::mem::take(&mut self.force_stuck)
     }
 
     /// What the sensors do by the hypothesis just named.

@@ -2,10 +2,10 @@
 
 use super::regime::Event;
 use super::state::{Intake, Tracker};
-use crate::estimation::{Channel, Filter, Innovation, TWENTY_TO_ONE};
+use crate::estimation::{Channel, Filter, Innovation, Observation, TWENTY_TO_ONE};
 use crate::evidence::{INERTIA_SPREAD, Suspect};
 use crate::identify::change::LawInUse;
-use crate::identify::faults::{Expected, Returned};
+use crate::identify::faults::{Expected, Returned, Standing, StandingForce};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::segment::MotionScales;
@@ -33,6 +33,7 @@ pub(super) fn expected<'a>(
         rate: scales.natural_time().recip(),
         size,
         drive: scales.acceleration(),
+        stuck: None,
         parts: law.run.parts,
     }
 }
@@ -61,6 +62,26 @@ impl Tracker {
         if intake.after_outage.is_due() {
             self.take_off_the_rest();
         }
+    }
+
+    /// An F that stands still, and is held for lost, acts as it is read where the motion has followed it for a radian,
+    /// after the time in which what acts would have gone elsewhere: the drive is off.
+    pub(super) fn weigh_standing_force(
+        &mut self,
+        problem: &Problem,
+        observation: &Observation,
+        innovations: &[Option<Innovation>; 2],
+    ) {
+        let caution = self.decision().caution();
+        let Tracker { intake, monitor, segment, .. } = self;
+        let law = &monitor.law;
+        if !intake.force_lost || (intake.force.length() as f64) < intake.excitation.pace() {
+            intake.standing_force = StandingForce::begin(law.run.filter);
+            return;
+        }
+        let expected = expected(problem, law, caution, &segment.scales, intake.quarantine.size());
+        intake.standing_force.take(&expected, observation, &law.run.filter, innovations);
+        intake.force_lost = !intake.standing_force.has_been_followed(segment.scales.natural_time());
     }
 
     /// What is left of an offset that was found is taken off.
@@ -95,15 +116,20 @@ impl Tracker {
     }
 
     /// For how many readings F is not what acts, where the motion goes its own way as well, so that a fault is as
-    /// likely as a switch: F repeats exactly where it varied, or it has just left its course. A motion that has
-    /// followed an F that stands still for a radian, after the time in which what acts would have gone elsewhere, says
-    /// that it is what acts: the drive is off.
-    pub(super) fn misread_excitation(&self) -> Option<u64> {
+    /// likely as a switch: F stands still, or it has just left its course.
+    fn misread_excitation(&self) -> Option<u64> {
         let Intake { force, force_lost, excitation, .. } = &self.intake;
-        let elsewhere = (force.length() as f64 - excitation.pace()) * self.window.pace();
-        let is_stuck = force.run() > TWENTY_TO_ONE && elsewhere < self.segment.scales.natural_time();
-        let readings = if is_stuck { Some(force.length()) } else { excitation.left().map(u64::from) };
-        readings.filter(|_| !force_lost)
+        let stuck = self.standing_force().map(|_| force.length());
+        stuck.or_else(|| excitation.left().map(u64::from)).filter(|_| !force_lost)
+    }
+
+    /// F, where it repeats exactly and varied before. A motion that has followed an F that stands still for a radian,
+    /// after the time in which what acts would have gone elsewhere, says that it is what acts: the drive is off.
+    pub(super) fn standing_force(&self) -> Option<Standing> {
+        let Intake { force, excitation, .. } = &self.intake;
+        let [since, pace] = [force.length() as f64, excitation.pace()].map(|samples| samples * self.window.pace());
+        let may_be_stuck = force.run() > TWENTY_TO_ONE && since - pace < self.segment.scales.natural_time();
+        may_be_stuck.then_some(Standing { since, pace })
     }
 
     /// F has not been what acts for so many readings, so that it is not known.

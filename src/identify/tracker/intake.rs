@@ -3,7 +3,7 @@
 use super::faulted::expected;
 use super::state::{Intake, Setup, Tracker};
 use crate::estimation::OUTLYING;
-use crate::identify::faults::Stray;
+use crate::identify::faults::{Expected, Stray};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::report::{SensorState, Status};
@@ -55,6 +55,10 @@ impl Tracker {
         if self.intake.force_lost && problem.channels.excitation {
             reading.unseen += self.unknown_excitation();
             self.intake.force_lost = !varies || self.intake.excitation.is_away();
+            // nothing else says then that it is not what acts
+            if !self.monitor.law.running && self.standing_force().is_none() {
+                self.intake.force_lost = false;
+            }
         }
     }
 
@@ -68,17 +72,22 @@ impl Tracker {
     fn hold_against_law(&mut self, setup: Setup, reading: Reading) {
         let Setup { problem, .. } = setup;
         let known = self.tells_readings() && problem.timing.hold != Hold::BandLimited;
-        let caution = self.decision().caution();
+        let caution = known.then(|| self.decision().caution());
+        let stuck = self.standing_force().filter(|_| !self.intake.force_lost);
         let Tracker { intake, monitor, window, segment, .. } = self;
         let law = &monitor.law;
         let size = intake.quarantine.size();
-        let expected = known.then(|| (expected(problem, law, caution, &segment.scales, size), law.run.filter));
+        let held = |caution| Expected { stuck, ..expected(problem, law, caution, &segment.scales, size) };
+        let expected = caution.map(|caution| (held(caution), law.run.filter));
         let measured = problem.channels.of_motion();
         intake.quarantine.take(reading, measured, problem.timing.hold, window.pace(), expected);
         let in_doubt = intake.quarantine.is_in_doubt();
-        if let Some(readings) = self.misread_excitation().filter(|_| in_doubt) {
+        let left = self.intake.excitation.left().filter(|_| in_doubt && !self.intake.force_lost);
+        if let Some(readings) = left {
             self.intake.quarantine.settle();
-            self.lose_excitation(readings);
+            self.lose_excitation(u64::from(readings));
+        } else if self.intake.quarantine.found_stuck_force() {
+            self.lose_excitation(self.intake.force.length());
         }
     }
 

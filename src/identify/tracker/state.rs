@@ -7,7 +7,7 @@ use crate::estimation::{DifferenceNoise, KnownEffect};
 use crate::evidence::{Bank, INERTIA_SPREAD, SWITCH_SIZE};
 use crate::identify::change::{LawInUse, Prediction, false_alarm_level};
 use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
-use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition};
+use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition, StandingForce};
 use crate::identify::functional::WeakForm;
 use crate::identify::problem::Problem;
 use crate::identify::segment::{MotionScales, Prior, Segment, WeakStart};
@@ -81,6 +81,8 @@ pub(super) struct Intake {
     pub(super) force: Repetition,
     /// Whether F has been found stuck and has not varied since.
     pub(super) force_lost: bool,
+    /// Whether it acts as it is read again all the same.
+    pub(super) standing_force: StandingForce,
 }
 
 /// How far the fit of the record has come.
@@ -185,6 +187,7 @@ impl Tracker {
                 undecided: false,
                 force: Repetition::default(),
                 force_lost: false,
+                standing_force: StandingForce::default(),
             },
             window: Window::new(capacity, problem.channels, problem.timing.hold),
             regime: Regime::Acquiring,
