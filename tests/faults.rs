@@ -132,7 +132,6 @@ fn a_burst_in_which_no_reading_is_far_off_is_no_switch() {
     }
 }
 
-/// What a loud second explained is no reason against the switch that follows it.
 /// The first readings of a burst near the noise are what louder sensors would read.
 #[test]
 fn a_burst_near_the_noise_is_not_louder_sensors() {
@@ -149,6 +148,7 @@ fn a_burst_near_the_noise_is_not_louder_sensors() {
     }
 }
 
+/// What a loud second explained is no reason against the switch that follows it.
 #[test]
 fn a_switch_after_a_loud_second_is_seen_soon() {
     for seed in 10..14 {
@@ -612,6 +612,32 @@ fn a_drive_that_is_switched_off_hides_neither_an_outlier_nor_a_switch() {
         assert_eq!(seen.switches, 1, "{builtin:?} {seed}: {seen:?}");
         assert_eq!(seen.said(2), [SensorState::Ok], "{builtin:?} {seed}: {seen:?}");
         assert!(seen.said(1).contains(&SensorState::Outlier), "{builtin:?} {seed}: {seen:?}");
+    }
+}
+
+/// Its first readings are let through one by one, or are set aside before the burst is known.
+#[test]
+fn a_burst_that_is_not_held_from_its_first_reading_on_is_no_switch() {
+    for (builtin, seed, count, size) in [(Builtin::DuffingSine, 377, 7, 6.0), (Builtin::DuffingWhite, 351, 5, 3.5)] {
+        let scenario = plant(builtin, seed, 1e3, 9.5);
+        let mut samples = samples(&scenario);
+        burst(&mut samples[FIRST..FIRST + count], size, &mut ChaCha8Rng::seed_from_u64(seed));
+        let seen = watch(&scenario, builtin, &samples);
+        assert!(seen.switches == 0 && seen.valid_at_the_end, "{builtin:?} {seed}: {seen:?}");
+    }
+}
+
+/// Only an acceleration far beyond what a switch usually brings explains two readings far off on one side.
+#[test]
+fn two_readings_far_off_under_a_rough_excitation_are_no_switch() {
+    for (builtin, seed) in [(Builtin::DuffingWhite, 10_443), (Builtin::DuffingWhite, 70), (Builtin::VanDerPolWhite, 71)]
+    {
+        let scenario = plant(builtin, seed, 1e3, 9.5);
+        let mut samples = samples(&scenario);
+        samples[FIRST].qd -= 27.0 * NOISE;
+        samples[FIRST + 1].qd -= 42.0 * NOISE;
+        let seen = watch(&scenario, builtin, &samples);
+        assert!(seen.switches == 0 && seen.valid_at_the_end, "{builtin:?} {seed}: {seen:?}");
     }
 }
 

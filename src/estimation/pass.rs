@@ -233,9 +233,9 @@ impl Pass {
 
     #[inline(always)]
     fn correct(&mut self, channel: Channel, noise: &Noise, observation: &Observation) -> Option<Innovation> {
+        self.set_aside[channel as usize] = None;
         let measured = observation.measured[channel as usize]?;
         let variance = noise.sensor[channel as usize];
-        self.set_aside[channel as usize] = None;
         if let Some(gate) = &mut self.gate {
             let (residual, total) = self.filter.residual(channel, measured, variance);
             if !gate.admits(channel, residual, total) {
@@ -319,5 +319,20 @@ mod tests {
         };
         let [first, second] = [squares(), squares()];
         assert!(second < 10.0 && first < second + 10.0, "{first}, then {second}");
+    }
+
+    /// What a reading said that did not count is said once, also where the channel is not measured after it.
+    #[test]
+    fn a_reading_set_aside_speaks_once() {
+        let motion = Motion::new(&[Term::Inertia], &[1.0]);
+        let noise = Noise { sensor: [1e-4; 2], process: 1e-6 };
+        let mut pass = Pass::new(0).gated();
+        pass.begin(Filter::begin([0.0; 2], [1e-6; 2]));
+        let aside = [Some(0.2), None].map(|qd| {
+            let observation = Observation { dt: 1e-3, drive: Drive::Held(0.0), measured: [Some(0.0), qd], unseen: 0.0 };
+            pass.step(&motion, &[], &noise, &observation);
+            pass.set_aside[1].is_some()
+        });
+        assert_eq!(aside, [true, false]);
     }
 }

@@ -187,6 +187,13 @@ impl Window {
         }
     }
 
+    /// A sample's readings of these channels are a sensor's fault.
+    pub fn blame(&mut self, number: u64, channels: [bool; 2]) {
+        let slot = self.slot(number);
+        let faulty = &mut self.ring[slot].faulty;
+        faulty.iter_mut().zip(channels).for_each(|(faulty, blamed)| *faulty |= blamed);
+    }
+
     /// Sample `number` and the excitation since the one before it; both must be in the window.
     #[inline]
     pub fn observation(&self, number: u64) -> Observation {

@@ -5,7 +5,6 @@
 //! differences (von Neumann, *Ann. Math. Stat.* 12 (1941), 367) hears the one and hardly the other.
 
 use crate::estimation::{Innovation, Noise};
-use crate::identify::faults;
 use serde::{Deserialize, Serialize};
 
 /// Samples that count for what is weighed now: their variance is known to an eighth, √(2 ÷ 150).
@@ -35,13 +34,11 @@ pub struct AdaptiveNoise {
     last: [f64; 2],
     now: [f64; 2],
     lately: [f64; 2],
-    /// Cumulative sums of what a burst of readings explains better than none does, nats.
-    burst: [f64; 2],
 }
 
 impl AdaptiveNoise {
     /// Nothing but what the record knows.
-    pub const USUAL: AdaptiveNoise = AdaptiveNoise { last: [0.0; 2], now: [1.0; 2], lately: [1.0; 2], burst: [0.0; 2] };
+    pub const USUAL: AdaptiveNoise = AdaptiveNoise { last: [0.0; 2], now: [1.0; 2], lately: [1.0; 2] };
 
     /// What is published is what the record knows.
     pub fn forget_lately(&mut self) {
@@ -60,22 +57,9 @@ impl AdaptiveNoise {
             let innovation = said.residual * (factor * said.precision).sqrt();
             let last = std::mem::replace(&mut self.last[channel], innovation);
             let square = (0.5 * (innovation - last).powi(2)).min(MOST);
-            let wide = 0.5 * square * (1.0 - (faults::SCATTER * faults::SCATTER).recip()) - faults::SCATTER.ln();
-            self.burst[channel] = (self.burst[channel] + wide).max(0.0);
             self.now[channel] += (square - self.now[channel]) / NOW;
             self.lately[channel] += (square - self.lately[channel]) / LATELY;
         }
-    }
-
-    /// Log-likelihood ratio of a burst that goes on, in which no single reading need be far off, to none, nats (Page,
-    /// *Biometrika* 41 (1954), 100). What a switch adds to the innovations lasts: their differences do not show it.
-    pub fn burst(&self) -> f64 {
-        self.burst[0] + self.burst[1]
-    }
-
-    /// What it explained is no reason against a switch that comes later.
-    pub fn forget_burst(&mut self) {
-        self.burst = [0.0; 2];
     }
 
     /// By how much the channel's variance is larger now.

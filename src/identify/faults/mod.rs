@@ -13,6 +13,7 @@
 //! - `hypothesis`: the filter of one hypothesis;
 //! - `weighing`: all of them on the same readings;
 //! - `quarantine`: readings held, and what is let through;
+//! - `hindsight`: whether what speaks for a switch is a burst of readings that were not held;
 //! - `excitation`: a reading of F that leaves its course and returns;
 //! - `standing_force`: whether an F that was lost acts as it is read again;
 //! - `after_outage`: whether a sensor came back from an outage with an offset;
@@ -22,6 +23,7 @@
 mod after_outage;
 mod clock;
 mod excitation;
+mod hindsight;
 mod hypothesis;
 mod price;
 mod quarantine;
@@ -33,8 +35,8 @@ mod weighing;
 pub use after_outage::{AfterOutage, Returned};
 pub use clock::Clock;
 pub use excitation::{ExcitationGate, Stray};
+pub use hindsight::Hindsight;
 pub use hypothesis::{Expected, Standing};
-pub use price::SCATTER;
 pub use quarantine::Quarantine;
 pub use repetition::Repetition;
 pub use sender::Sender;

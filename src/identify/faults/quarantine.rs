@@ -408,6 +408,13 @@ impl Quarantine {
         }
     }
 
+    /// Readings of these channels that were let through have been found a burst.
+    pub fn blame(&mut self, channels: [bool; 2]) {
+        for (index, _) in channels.into_iter().enumerate().filter(|(_, of_burst)| *of_burst) {
+            (self.sensors[index], self.bursts[index]) = (SensorState::Outlier, self.bursts[index] + 1.0);
+        }
+    }
+
     /// What lasts of what the sensors do.
     fn standing(&self) -> [SensorState; 3] {
         let offset = self.offset.map(|offset| if offset == 0.0 { SensorState::Ok } else { SensorState::Offset });

@@ -92,7 +92,7 @@ impl Tracker {
     }
 
     /// Whether what speaks for a switch is a sensor's fault, or may be.
-    pub(super) fn is_fault(&mut self, suspect: &Suspect, threshold: f64) -> bool {
+    pub(super) fn is_fault(&mut self, problem: &Problem, suspect: &Suspect, threshold: f64) -> bool {
         if !self.monitor.law.explains {
             return false;
         }
@@ -100,19 +100,39 @@ impl Tracker {
             self.lose_excitation(readings);
             return true;
         }
-        self.is_burst(suspect, threshold) || self.is_offset(suspect, threshold)
+        self.is_burst(problem, suspect) || self.is_offset(suspect, threshold)
     }
 
-    /// Whether a burst that began when it is most likely, as rare as a switch, is likelier than that, or cannot be told
-    /// from it yet.
-    fn is_burst(&mut self, suspect: &Suspect, threshold: f64) -> bool {
-        let burst = self.monitor.law.adaptive.burst();
-        if burst > suspect.evidence {
-            self.monitor.law.adaptive.forget_burst();
-            self.restart_law(None);
-            return true;
+    /// Whether a burst of readings that were not far enough off to be held is as likely as what speaks for a switch, as
+    /// rare as that: what is a burst's does not count, and what cannot be told from one yet waits.
+    fn is_burst(&mut self, problem: &Problem, suspect: &Suspect) -> bool {
+        self.monitor.bank.look_at_all();
+        let suspect = self.monitor.bank.suspect().unwrap_or(*suspect);
+        let caution = self.decision().caution();
+        let Tracker { intake, window, monitor, segment, .. } = self;
+        let law = &monitor.law;
+        let expected = expected(problem, law, caution, &segment.scales, intake.quarantine.size());
+        let odds = intake.hindsight.weigh(&expected, window, suspect.start, suspect.evidence / caution);
+        let Some(odds) = odds else { return false };
+        if odds > TWENTY_TO_ONE {
+            self.leave_out_burst();
         }
-        burst > threshold && suspect.evidence - burst < TWENTY_TO_ONE
+        self.intake.hindsight.clear();
+        odds > -TWENTY_TO_ONE
+    }
+
+    fn leave_out_burst(&mut self) {
+        let Tracker { intake, window, monitor, .. } = self;
+        let mut channels = [false; 2];
+        for number in intake.hindsight.first()..window.ready() {
+            let of_burst = intake.hindsight.is_of_burst(number);
+            window.blame(number, of_burst);
+            channels = [channels[0] || of_burst[0], channels[1] || of_burst[1]];
+        }
+        intake.quarantine.blame(channels);
+        monitor.law.run.filter = intake.hindsight.filter();
+        self.segment.begin_run(&self.window);
+        self.restart_law(None);
     }
 
     /// For how many readings F is not what acts, where the motion goes its own way as well, so that a fault is as

@@ -7,7 +7,7 @@ use crate::estimation::{DifferenceNoise, KnownEffect};
 use crate::evidence::{Bank, INERTIA_SPREAD, SWITCH_SIZE};
 use crate::identify::change::{LawInUse, Prediction, false_alarm_level};
 use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
-use crate::identify::faults::{AfterOutage, ExcitationGate, Quarantine, Repetition, StandingForce};
+use crate::identify::faults::{AfterOutage, ExcitationGate, Hindsight, Quarantine, Repetition, StandingForce};
 use crate::identify::functional::WeakForm;
 use crate::identify::problem::Problem;
 use crate::identify::segment::{MotionScales, Prior, Segment, WeakStart};
@@ -75,6 +75,7 @@ pub(super) struct Intake {
     pub(super) excitation: ExcitationGate,
     pub(super) quarantine: Quarantine,
     pub(super) after_outage: AfterOutage,
+    pub(super) hindsight: Hindsight,
     /// Whether an alarm waits for the decision between another law and an offset.
     pub(super) undecided: bool,
     /// How often F repeats its value.
@@ -184,6 +185,7 @@ impl Tracker {
                 excitation: ExcitationGate::default(),
                 quarantine: Quarantine::new(problem.channels.of_motion()),
                 after_outage: AfterOutage::default(),
+                hindsight: Hindsight::new(),
                 undecided: false,
                 force: Repetition::default(),
                 force_lost: false,

@@ -26,8 +26,8 @@ impl Tracker {
         self.intake.undecided &= alarms;
         // in nats of a law that is known for sure, as those are of an effect or a lag
         let excess = (suspect.evidence - threshold) / decision.caution();
-        if alarms && (self.is_fault(suspect, threshold) || self.is_lag(setup.problem, excess) || self.is_effect(excess))
-        {
+        let is_fault = alarms && self.is_fault(setup.problem, suspect, threshold);
+        if is_fault || alarms && (self.is_lag(setup.problem, excess) || self.is_effect(excess)) {
             return;
         }
         if alarms {

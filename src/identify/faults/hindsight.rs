@@ -1,0 +1,204 @@
+//! Whether what speaks for a switch is a burst of readings none of which was far enough off to be held.
+//!
+//! At an alarm the readings since shortly before the suspected instant are weighed once more: by the hypothesis of
+//! those that are held, under which any of them may be a wide draw, and by the law in use without any. What the first
+//! gains on the second is the evidence of a burst, on the samples that speak for a switch.
+
+use super::hypothesis::{Expected, Hypothesis, Kind, Value};
+use super::price::working;
+use super::weighing::event;
+use crate::estimation::{Channel, Filter, Observation};
+use crate::identify::window::Window;
+use serde::{Deserialize, Serialize};
+
+/// Samples that a burst is looked for in.
+const ROOM: usize = 64;
+
+/// Samples before the suspected instant of a switch in which a burst may have begun that looks like one.
+const BEFORE: u64 = 8;
+
+/// Samples from which the state before them is known as well as its noise allows, but for a tenth.
+const SETTLE: u64 = 3 * ROOM as u64;
+
+/// Another law, to which a switch of the usual size led, or of ten times that: what linear evidence sets aside as far
+/// off speaks for these.
+const LAWS: [Kind; 2] = [Kind::Law { before: 0, times: 1 }, Kind::Law { before: 0, times: 10 }];
+
+/// The readings since a suspected switch, once more.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Hindsight {
+    burst: Hypothesis,
+    laws: [Hypothesis; 2],
+    first: u64,
+}
+
+impl Hindsight {
+    /// With nothing weighed.
+    pub fn new() -> Hindsight {
+        let [burst, first, second] = [Kind::Readings, LAWS[0], LAWS[1]].map(|kind| Hypothesis::new(kind, ROOM));
+        Hindsight { burst, laws: [first, second], first: 0 }
+    }
+
+    /// Log-odds of a burst against another law since sample `switch`, which has `evidence` nats, by the window's
+    /// samples; `None` where they are more than there is room for.
+    pub fn weigh(&mut self, law: &Expected, window: &Window, switch: u64, evidence: f64) -> Option<f64> {
+        self.first = switch.saturating_sub(BEFORE).max(window.oldest() + 2);
+        if window.ready() > self.first + ROOM as u64 {
+            return None;
+        }
+        let start = event(window.pace());
+        let begins = (switch + 1).clamp(self.first, window.ready() - 1);
+        let mut nothing = settled(law, window, self.first);
+        let mut log = 0.0;
+        self.burst.begin(&nothing, law, 0.0, 0.0, 0.0);
+        for (place, number) in (self.first..window.ready()).enumerate() {
+            let observation = window.observation(number);
+            let law = Expected { noise: law.noise_with(observation.unseen, nothing.mean[0]), ..*law };
+            let values =
+                observation.measured.map(|measured| measured.map(|value| Value { value, repeats: None, start }));
+            let Observation { dt, drive, .. } = observation;
+            if number == begins {
+                self.laws.iter_mut().for_each(|other| other.begin(&nothing, &law, dt, log, start.ln()));
+            }
+            log += take(&law, &observation, &mut nothing);
+            self.burst.take(&law, dt, &drive, values, place);
+            if number >= begins {
+                self.laws.iter_mut().for_each(|other| other.take(&law, dt, &drive, values, place));
+            }
+        }
+        // less the share of what has no burst
+        let burst = self.burst.log + (-(log - self.burst.log).min(0.0).exp()).ln_1p();
+        let laws = self.laws.iter().map(|other| other.log);
+        Some(burst - laws.fold(log + evidence + start.ln(), f64::max))
+    }
+
+    /// Number of the first sample weighed.
+    pub fn first(&self) -> u64 {
+        self.first
+    }
+
+    /// Which readings of a sample that was weighed are of the burst.
+    pub fn is_of_burst(&self, number: u64) -> [bool; 2] {
+        Channel::ALL.map(|channel| !self.burst.counts(channel, (number - self.first) as usize))
+    }
+
+    /// The state after the last sample, and what is known of it.
+    pub fn filter(&self) -> Filter {
+        self.burst.filter()
+    }
+
+    /// Forgets all of it.
+    pub fn clear(&mut self) {
+        self.burst.clear();
+        self.laws.iter_mut().for_each(Hypothesis::clear);
+    }
+}
+
+/// The state before sample `first`.
+fn settled(law: &Expected, window: &Window, first: u64) -> Filter {
+    let begin = first.saturating_sub(SETTLE).max(window.oldest());
+    let sample = window.sample(begin);
+    let known = window.observation(begin + 1).measured;
+    // as far as the restoring acceleration takes it in a radian
+    let velocity = law.switch[0] / law.rate;
+    let (mut mean, mut variances) = ([0.0; 2], [velocity / law.rate, velocity].map(|size| size * size));
+    for (channel, value) in [sample.q, sample.qd].into_iter().enumerate() {
+        if known[channel].is_some() {
+            (mean[channel], variances[channel]) = (value, law.noise.sensor[channel]);
+        }
+    }
+    let mut filter = Filter::begin(mean, variances);
+    for number in begin + 1..first {
+        let observation = window.observation(number);
+        let law = Expected { noise: law.noise_with(observation.unseen, filter.mean[0]), ..*law };
+        take(&law, &observation, &mut filter);
+    }
+    filter
+}
+
+/// Goes on to a sample; returns the log-density of its readings.
+fn take(law: &Expected, observation: &Observation, filter: &mut Filter) -> f64 {
+    *filter = law.carry(filter, observation.dt, &observation.drive);
+    let mut log = 0.0;
+    for channel in Channel::ALL {
+        let index = channel as usize;
+        if let Some(measured) = observation.measured[index] {
+            let innovation = filter.update(channel, measured, law.noise.sensor[index]);
+            log += working(innovation.residual, innovation.variance);
+        }
+    }
+    log
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimation::Noise;
+    use crate::identify::sample::Sample;
+    use crate::identify::settings::Channels;
+    use crate::law::{Hold, Motion, State, Term};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::StandardNormal;
+
+    const NOISE: f64 = 0.01;
+
+    /// Number of the last sample before it happens.
+    const BEFORE_IT: u64 = 299;
+
+    const TERMS: [Term; 3] = [Term::Inertia, Term::power(0, 1), Term::power(1, 0)];
+
+    /// A free oscillator at 1 kHz, whose stiffness becomes this, and to the readings of whose velocity those are added.
+    fn window(stiffness: f64, added: &[f64]) -> Window {
+        let mut window = Window::new(1000, Channels::ALL, Hold::Zero);
+        let mut generator = ChaCha8Rng::seed_from_u64(18);
+        let mut state = State { q: 1.0, qd: 0.0 };
+        for number in 0..BEFORE_IT + 21 {
+            let own = if number > BEFORE_IT { [1.0, 0.3, stiffness] } else { [1.0, 0.3, 4.0] };
+            state = Motion::new(&TERMS, &own).step_linear(state, 1e-3, 0.0, 0.0);
+            let place = number.checked_sub(BEFORE_IT + 1);
+            let added = place.and_then(|place| added.get(place as usize)).unwrap_or(&0.0);
+            let mut noise = || NOISE * generator.sample::<f64, _>(StandardNormal);
+            let (q, qd) = (state.q + noise(), state.qd + noise() + NOISE * added);
+            window.push(Sample { t: 1e-3 * number as f64, q, qd, ..Sample::default() });
+        }
+        window
+    }
+
+    fn odds(hindsight: &mut Hindsight, window: &Window, evidence: f64) -> f64 {
+        let law = Expected {
+            motion: Motion::new(&TERMS, &[1.0, 0.3, 4.0]),
+            noise: Noise { sensor: [NOISE * NOISE; 2], process: 1e-9 },
+            caution: 1.0,
+            switch: [4.0, 0.5],
+            rate: 2.0,
+            size: [1.0, 2.0],
+            drive: 1.0,
+            stuck: None,
+            parts: 1,
+        };
+        hindsight.weigh(&law, window, BEFORE_IT, evidence).unwrap()
+    }
+
+    #[test]
+    fn readings_of_which_none_is_far_off_are_a_burst_and_are_left_out() {
+        let burst: Vec<f64> = (0..20).map(|k| [3.4, -3.2, -3.6][k % 3]).collect();
+        let mut hindsight = Hindsight::new();
+        assert!(odds(&mut hindsight, &window(4.0, &burst), 17.0) > 3.0);
+        let of_burst: Vec<u64> =
+            (hindsight.first()..BEFORE_IT + 21).filter(|number| hindsight.is_of_burst(*number)[1]).collect();
+        assert!(of_burst.len() > 12 && of_burst[0] > BEFORE_IT, "{of_burst:?}");
+    }
+
+    #[test]
+    fn a_switch_of_law_is_no_burst_whatever_linear_evidence_says() {
+        let mut hindsight = Hindsight::new();
+        assert!(odds(&mut hindsight, &window(16.0, &[]), 0.0) < -3.0);
+    }
+
+    #[test]
+    fn what_nothing_speaks_for_is_none() {
+        let mut hindsight = Hindsight::new();
+        assert!(odds(&mut hindsight, &window(4.0, &[]), 17.0) < -3.0);
+    }
+}
