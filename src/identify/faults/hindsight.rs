@@ -6,13 +6,11 @@
 
 use super::hypothesis::{Expected, Hypothesis, Kind, Value};
 use super::price::working;
+use super::quarantine::ROOM;
 use super::weighing::event;
 use crate::estimation::{Channel, Filter, Observation};
 use crate::identify::window::Window;
 use serde::{Deserialize, Serialize};
-
-/// Samples that a burst is looked for in.
-const ROOM: usize = 64;
 
 /// Samples before the suspected instant of a switch in which a burst may have begun that looks like one.
 const BEFORE: u64 = 8;
