@@ -2,7 +2,8 @@
 //!
 //! x = (q, q̇, u₀, u₁). Under "the law changed" q̈ is the law's + u₀ + u₁ F ÷ m: over the few readings that decide, a
 //! change of any coefficient is one of these two; u₀ then moves as the motion does, as a random walk that is as large
-//! as it is after a radian of the motion. Under "a channel has an offset" u₀ is the offset.
+//! as it is after a radian of the motion. Under "F is stuck" u₀ is what acts less what is read, ÷ m, and forgets where
+//! it was as F did. Under "a channel has an offset" u₀ is the offset.
 
 use super::price::{Burst, SCATTER, faulty, working};
 use crate::estimation::{Channel, Filter, Matrix, Noise, times, white_acceleration};

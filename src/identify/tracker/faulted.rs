@@ -72,13 +72,14 @@ impl Tracker {
         observation: &Observation,
         innovations: &[Option<Innovation>; 2],
     ) {
+        let Intake { force, force_lost, excitation, .. } = &self.intake;
+        if !force_lost || (force.length() as f64) < excitation.pace() {
+            self.intake.standing_force = StandingForce::begin(self.monitor.law.run.filter);
+            return;
+        }
         let caution = self.decision().caution();
         let Tracker { intake, monitor, segment, .. } = self;
         let law = &monitor.law;
-        if !intake.force_lost || (intake.force.length() as f64) < intake.excitation.pace() {
-            intake.standing_force = StandingForce::begin(law.run.filter);
-            return;
-        }
         let expected = expected(problem, law, caution, &segment.scales, intake.quarantine.size());
         intake.standing_force.take(&expected, observation, &law.run.filter, innovations);
         intake.force_lost = !intake.standing_force.has_been_followed(segment.scales.natural_time());

@@ -81,12 +81,12 @@ impl Tracker {
         let expected = caution.map(|caution| (held(caution), law.run.filter));
         let measured = problem.channels.of_motion();
         intake.quarantine.take(reading, measured, problem.timing.hold, window.pace(), expected);
-        let in_doubt = intake.quarantine.is_in_doubt();
-        let left = self.intake.excitation.left().filter(|_| in_doubt && !self.intake.force_lost);
+        let (in_doubt, is_stuck) = (intake.quarantine.is_in_doubt(), intake.quarantine.found_stuck_force());
+        let left = intake.excitation.left().filter(|_| in_doubt && !intake.force_lost);
         if let Some(readings) = left {
-            self.intake.quarantine.settle();
+            intake.quarantine.settle();
             self.lose_excitation(u64::from(readings));
-        } else if self.intake.quarantine.found_stuck_force() {
+        } else if is_stuck {
             self.lose_excitation(self.intake.force.length());
         }
     }
