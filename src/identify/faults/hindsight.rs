@@ -18,56 +18,82 @@ const BEFORE: u64 = 8;
 /// Samples from which the state before them is known as well as its noise allows, but for a tenth.
 const SETTLE: u64 = 3 * ROOM as u64;
 
-/// Another law, to which a switch of the usual size led, or of ten times that: what linear evidence sets aside as far
-/// off speaks for these.
-const LAWS: [Kind; 2] = [Kind::Law { before: 0, times: 1 }, Kind::Law { before: 0, times: 10 }];
+/// What else may have begun then: another law, to which a switch of the usual size led or one of ten times that (what
+/// linear evidence sets aside as far off speaks for these), or louder sensors.
+const EVENTS: [Kind; 5] = [
+    Kind::Law { before: 0, times: 1 },
+    Kind::Law { before: 0, times: 10 },
+    Kind::Louder(Channel::Q),
+    Kind::Louder(Channel::Qd),
+    Kind::BothLouder,
+];
 
 /// The readings since a suspected switch, once more.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hindsight {
     burst: Hypothesis,
-    laws: [Hypothesis; 2],
+    events: [Hypothesis; EVENTS.len()],
     first: u64,
+}
+
+/// A fault of the sensors in the readings since a suspected switch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// Its log-odds against another law.
+    pub odds: f64,
+    /// Whether it is a burst, whose readings do not count, or louder sensors.
+    pub is_burst: bool,
 }
 
 impl Hindsight {
     /// With nothing weighed.
     pub fn new() -> Hindsight {
-        let [burst, first, second] = [Kind::Readings, LAWS[0], LAWS[1]].map(|kind| Hypothesis::new(kind, ROOM));
-        Hindsight { burst, laws: [first, second], first: 0 }
+        let new = |kind| Hypothesis::new(kind, ROOM);
+        Hindsight { burst: new(Kind::Readings), events: EVENTS.map(new), first: 0 }
     }
 
-    /// Log-odds of a burst against another law since sample `switch`, which has `evidence` nats, by the window's
-    /// samples; `None` where they are more than there is room for.
-    pub fn weigh(&mut self, law: &Expected, window: &Window, switch: u64, evidence: f64) -> Option<f64> {
-        self.first = switch.saturating_sub(BEFORE).max(window.oldest() + 2);
-        if window.ready() > self.first + ROOM as u64 {
-            return None;
-        }
-        let start = event(window.pace());
-        let begins = (switch + 1).clamp(self.first, window.ready() - 1);
+    /// The likeliest fault, bursts beginning with a reading at these probabilities by channel, against another law since
+    /// sample `switch`, which has `evidence` nats, by the window's samples, the last of them where there is
+    /// no room for all.
+    pub fn weigh(
+        &mut self,
+        law: &Expected,
+        window: &Window,
+        begins: [f64; 2],
+        (switch, evidence): (u64, f64),
+    ) -> Found {
+        let oldest = (window.oldest() + 2).max(window.ready().saturating_sub(ROOM as u64));
+        self.first = switch.saturating_sub(BEFORE).max(oldest);
+        let rare = event(window.pace()).ln();
+        let after = (switch + 1).clamp(self.first, window.ready() - 1);
         let mut nothing = settled(law, window, self.first);
         let mut log = 0.0;
         self.burst.begin(&nothing, law, 0.0, 0.0, 0.0);
         for (place, number) in (self.first..window.ready()).enumerate() {
             let observation = window.observation(number);
             let law = Expected { noise: law.noise_with(observation.unseen, nothing.mean[0]), ..*law };
-            let values =
-                observation.measured.map(|measured| measured.map(|value| Value { value, repeats: None, start }));
+            let values = Channel::ALL.map(|channel| {
+                let start = begins[channel as usize];
+                observation.measured[channel as usize].map(|value| Value { value, repeats: None, start })
+            });
             let Observation { dt, drive, .. } = observation;
-            if number == begins {
-                self.laws.iter_mut().for_each(|other| other.begin(&nothing, &law, dt, log, start.ln()));
+            if number == after {
+                self.events.iter_mut().for_each(|other| other.begin(&nothing, &law, dt, log, rare));
             }
             log += take(&law, &observation, &mut nothing);
             self.burst.take(&law, dt, &drive, values, place);
-            if number >= begins {
-                self.laws.iter_mut().for_each(|other| other.take(&law, dt, &drive, values, place));
+            if number >= after {
+                self.events.iter_mut().for_each(|other| other.take(&law, dt, &drive, values, place));
             }
         }
         // less the share of what has no burst
         let burst = self.burst.log + (-(log - self.burst.log).min(0.0).exp()).ln_1p();
-        let laws = self.laws.iter().map(|other| other.log);
-        Some(burst - laws.fold(log + evidence + start.ln(), f64::max))
+        let likeliest = |is_law: bool| {
+            let of = self.events.iter().filter(|other| other.kind.is_law() == is_law);
+            of.map(|other| other.log).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let (law, louder) = (likeliest(true).max(log + evidence + rare), likeliest(false));
+        Found { odds: burst.max(louder) - law, is_burst: burst > louder }
     }
 
     /// Number of the first sample weighed.
@@ -88,7 +114,7 @@ impl Hindsight {
     /// Forgets all of it.
     pub fn clear(&mut self) {
         self.burst.clear();
-        self.laws.iter_mut().for_each(Hypothesis::clear);
+        self.events.iter_mut().for_each(Hypothesis::clear);
     }
 }
 
@@ -175,7 +201,7 @@ mod tests {
             stuck: None,
             parts: 1,
         };
-        hindsight.weigh(&law, window, BEFORE_IT, evidence).unwrap()
+        hindsight.weigh(&law, window, [1e-9; 2], (BEFORE_IT, evidence)).odds
     }
 
     #[test]

@@ -35,7 +35,7 @@ mod weighing;
 pub use after_outage::{AfterOutage, Returned};
 pub use clock::Clock;
 pub use excitation::{ExcitationGate, Stray};
-pub use hindsight::Hindsight;
+pub use hindsight::{Found, Hindsight};
 pub use hypothesis::{Expected, Standing};
 pub use quarantine::Quarantine;
 pub use repetition::Repetition;

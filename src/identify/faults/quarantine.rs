@@ -209,6 +209,11 @@ impl Quarantine {
         self.sensors
     }
 
+    /// Probability by channel that a burst begins with a reading, `dt` s after the last.
+    pub fn bursts_begin(&self, dt: f64) -> [f64; 2] {
+        self.bursts.map(|bursts| event(dt).max(bursts / self.samples))
+    }
+
     /// What q and q̇ have moved by at least since the sample before, by the law.
     fn course(&self, law: &Expected, filter: Filter, before: Sample, reading: Reading) -> [f64; 2] {
         let filter = if self.stance == Stance::Calm { filter } else { self.weighing.nothing().filter() };
@@ -233,16 +238,15 @@ impl Quarantine {
             Hold::Linear | Hold::BandLimited => Drive::Line(before.excitation, sample.excitation),
         };
         let dt = sample.t - before.t;
-        let event = event(dt);
+        let starts = self.bursts_begin(dt);
         let mut runs = [0.0; 2];
         let values = Channel::ALL.map(|channel| {
             let index = channel as usize;
             let value = [sample.q, sample.qd][index];
-            let start = event.max(self.bursts[index] / self.samples);
             let run = self.repetitions[index].run();
             let repeats = self.repetitions[index].take(value, course[index], scatter[index]);
             runs[index] = if repeats.is_some() { run } else { 0.0 };
-            measured[index].then_some(Value { value, repeats, start })
+            measured[index].then_some(Value { value, repeats, start: starts[index] })
         });
         Arrival { reading, dt, drive, values, runs }
     }

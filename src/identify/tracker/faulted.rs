@@ -5,7 +5,7 @@ use super::state::{Intake, Tracker};
 use crate::estimation::{Channel, Filter, Innovation, Observation, TWENTY_TO_ONE};
 use crate::evidence::{INERTIA_SPREAD, Suspect};
 use crate::identify::change::LawInUse;
-use crate::identify::faults::{Expected, Returned, Standing, StandingForce};
+use crate::identify::faults::{Expected, Found, Returned, Standing, StandingForce};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::segment::MotionScales;
@@ -113,10 +113,14 @@ impl Tracker {
         let Tracker { intake, window, monitor, segment, .. } = self;
         let law = &monitor.law;
         let expected = expected(problem, law, caution, &segment.scales, intake.quarantine.size());
-        let odds = intake.hindsight.weigh(&expected, window, suspect.start, suspect.evidence / caution);
-        let Some(odds) = odds else { return false };
+        let begins = intake.quarantine.bursts_begin(window.pace());
+        let switch = (suspect.start, suspect.evidence / caution);
+        let Found { odds, is_burst } = intake.hindsight.weigh(&expected, window, begins, switch);
         if odds > TWENTY_TO_ONE {
-            self.leave_out_burst();
+            if is_burst {
+                self.leave_out_burst();
+            }
+            self.restart_law(None);
         }
         self.intake.hindsight.clear();
         odds > -TWENTY_TO_ONE
@@ -133,7 +137,6 @@ impl Tracker {
         intake.quarantine.blame(channels);
         monitor.law.run.filter = intake.hindsight.filter();
         self.segment.begin_run(&self.window);
-        self.restart_law(None);
     }
 
     /// For how many readings F is not what acts, where the motion goes its own way as well, so that a fault is as
