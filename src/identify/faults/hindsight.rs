@@ -1,8 +1,8 @@
 //! Whether what speaks for a switch is a burst of readings none of which was far enough off to be held.
 //!
 //! At an alarm the readings since shortly before the suspected instant are weighed once more: by the hypothesis of
-//! those that are held, under which any of them may be a wide draw, and by the law in use without any. What the first
-//! gains on the second is the evidence of a burst, on the samples that speak for a switch.
+//! those that are held, under which any of them may be a wide draw, and by louder sensors. What the likelier gains on the
+//! law in use alone is set against the evidence of a switch, on the samples that speak for one.
 
 use super::hypothesis::{Expected, Hypothesis, Kind, Value};
 use super::price::working;

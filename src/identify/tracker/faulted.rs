@@ -104,8 +104,8 @@ impl Tracker {
         self.is_burst(problem, suspect) || self.is_offset(suspect, threshold)
     }
 
-    /// Whether a burst of readings that were not far enough off to be held is as likely as what speaks for a switch, as
-    /// rare as that: what is a burst's does not count, and what cannot be told from one yet waits.
+    /// Whether a burst of readings that were not far enough off to be held, or louder sensors, are as likely as what
+    /// speaks for a switch, as rare as that: what is a burst's does not count, and what cannot be told yet waits.
     fn is_burst(&mut self, problem: &Problem, suspect: &Suspect) -> bool {
         self.monitor.bank.look_at_all();
         let suspect = self.monitor.bank.suspect().unwrap_or(*suspect);
