@@ -34,13 +34,12 @@ pub fn test() -> Result<(), Error> {
     });
     steps.check("random FMI calls", binaries::bounded);
     steps.check("slave under AddressSanitizer", sanitize::slave);
-    let interpreter = steps.run("Python environment", python::environment);
-    let importer = steps.begin("FMUs through the fmi crate", fmi_crate);
+    steps.check("FMUs through the fmi crate", fmi_crate);
     steps.check("command line of the cross-check", fmu::build_command);
+    let interpreter = steps.run("Python environment", python::environment);
     let harness = steps.begin("harness tests", || pytest(&interpreter?));
     steps.check("commands of the documents", readme::commands);
     steps.wait(harness);
-    steps.wait(importer);
     steps.wait(wine);
     steps.finish()
 }
