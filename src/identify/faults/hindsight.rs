@@ -1,8 +1,8 @@
 //! Whether what speaks for a switch is a burst of readings none of which was far enough off to be held.
 //!
 //! At an alarm the readings since shortly before the suspected instant are weighed once more: by the hypothesis of
-//! those that are held, under which any of them may be a wide draw, and by louder sensors. What the likelier gains on the
-//! law in use alone is set against the evidence of a switch, on the samples that speak for one.
+//! those that are held, under which any of them may be a wide draw, and by louder sensors. What the likelier gains on
+//! the law in use alone is set against the evidence of a switch, on the samples that speak for one.
 
 use super::hypothesis::{Expected, Hypothesis, Kind, Value};
 use super::price::working;
@@ -52,9 +52,9 @@ impl Hindsight {
         Hindsight { burst: new(Kind::Readings), events: EVENTS.map(new), first: 0 }
     }
 
-    /// The likeliest fault, bursts beginning with a reading at these probabilities by channel, against another law since
-    /// sample `switch`, which has `evidence` nats, by the window's samples, the last of them where there is
-    /// no room for all.
+    /// The likeliest fault, bursts beginning with a reading at these probabilities by channel, against another law
+    /// since sample `switch`, which has `evidence` nats, by the window's samples, the last of them where there is no
+    /// room for all.
     pub fn weigh(
         &mut self,
         law: &Expected,
