@@ -134,6 +134,7 @@ fn a_law_of_few_samples_is_not_valid_before_it_is_right() {
             }
         }
         assert!(valid > 12_000 / every, "{seed}: valid for {valid} samples");
+        assert_eq!(identifier.output().switch_count, 0, "{seed}");
     }
 }
 

@@ -167,12 +167,14 @@ impl LawInUse {
     pub fn as_law<'a>(&'a mut self, every: Option<&'a [bool]>, explains: bool) -> Law<'a> {
         let value = self.effect();
         let LawInUse { run, beside, whole, active: own, .. } = self;
+        // what went beside the run of an effect that was dropped at its end is nobody's
+        let effect = if value == 0.0 { [0.0; 2] } else { beside.sensitivity() };
         match value {
             0.0 => run.information.widen(whole),
             _ => beside.widen(value, &run.information, whole),
         }
-        let (sensitivity, effect) = (&run.sensitivity, beside.sensitivity());
-        Law { information: whole, sensitivity, effect, open: every.unwrap_or(own), own, explains }
+        let open = every.unwrap_or(own);
+        Law { information: whole, sensitivity: &run.sensitivity, effect, open, own, explains }
     }
 
     /// Tells when F acted, by all of its record up to now.

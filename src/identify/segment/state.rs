@@ -280,9 +280,12 @@ impl Segment {
         self.all[self.all.len() - 1]
     }
 
-    /// Whether a law of those terms, whose effect has that coefficient, has no other effect than this one.
+    /// Whether a law of those terms, whose effect has that coefficient, has the same effect as this one, or none too.
     pub fn has_terms_of(&self, terms: &[Term], effect: f64) -> bool {
-        self.terms == terms || self.effect() == 0.0 && effect == 0.0
+        match [self.effect(), effect].map(|coefficient| coefficient != 0.0) {
+            [true, true] => self.terms == terms,
+            [own, other] => own == other,
+        }
     }
 
     /// That effect as the next record takes it: known from as many samples as the sensors' noise is.
