@@ -219,6 +219,7 @@ impl Segment {
         self.follow_noise(problem, settings, &track, window);
         self.timing.open = problem.timing.left_open(&self.timing.told.lag);
         self.runs.calm = if self.is_calm() { self.runs.calm + 1 } else { 0 };
+        self.runs.restless = if self.settled() { 0 } else { self.runs.restless + 1 };
         self.confirm();
         self.compare();
         self.forecast_convergence();

@@ -101,6 +101,8 @@ pub struct Runs {
     pub(super) astray: u32,
     /// In a row that changed little.
     pub(super) calm: u32,
+    /// In a row after which the estimate had not settled.
+    pub restless: u32,
 }
 
 /// What is known beside the record.

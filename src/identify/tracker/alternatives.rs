@@ -1,7 +1,7 @@
 //! Other fits of the record: from the weak rows of it or of its later part, and with all error in the sensors.
 
 use super::new_record::PRIOR_WIDTH;
-use super::state::{FRESH_START, Fitting, NOTHING_KNOWN, Setup, Tracker};
+use super::state::{FRESH_START, Fitting, LASTS, NOTHING_KNOWN, Setup, Tracker};
 use crate::estimation::{KnownEffect, Noise, TWENTY_TO_ONE};
 use crate::identify::change::LONGEST_ERROR;
 use crate::identify::problem::Problem;
@@ -189,9 +189,10 @@ impl Tracker {
             return;
         }
         let promising = !self.regime.is_valid() && self.explains_what_the_segment_does_not();
-        // of two effects each is judged at its own best
-        let comparable = self.alternative.settled()
-            && (self.segment.settled() || self.segment.effect() == 0.0 || !self.tries_effect());
+        // of two effects each is judged at its own best, which a fit that does not settle any more has been at
+        let at_best = self.segment.runs.restless == 0 || self.segment.runs.restless > LASTS;
+        let comparable =
+            self.alternative.settled() && (at_best || self.segment.effect() == 0.0 || !self.tries_effect());
         let goes_on = if self.alternative.is_lost() {
             false
         } else if comparable {

@@ -27,6 +27,10 @@ pub(super) const YOUNG: u64 = 5000;
 /// take.
 pub(super) const FRESH_START: u64 = 12_000;
 
+/// After so many runs in a row what a law leaves unexplained is no matter of a fit that has not settled, nor is one
+/// that had settled before on its way to anything better.
+pub(super) const LASTS: u32 = 3;
+
 /// Std, in the coefficient's own unit, of one of which nothing is known.
 pub(super) const NOTHING_KNOWN: f64 = 1e9;
 

@@ -1,7 +1,7 @@
 //! What a sample does: the law in use is followed, the segment refined, coefficients that move are tracked.
 
 use super::recognition::TRIAL_BUDGET;
-use super::state::{Monitor, Setup, Tracker, YOUNG};
+use super::state::{LASTS, Monitor, Setup, Tracker, YOUNG};
 use crate::identify::change::{LONGEST_ERROR, SUSPENSE};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
@@ -22,9 +22,6 @@ const BUDGET: [usize; 2] = [6, TRIAL_BUDGET];
 
 /// Once in so many samples it is asked which lengths of variation are too short for the motion.
 const REST_EVERY: u64 = 256;
-
-/// After so many runs in a row what a law leaves unexplained is no matter of a fit that has not settled.
-const LASTS: u32 = 3;
 
 /// Samples from which on differences tell the sensors' noise to a tenth.
 const ROUGHLY: u64 = 500;
