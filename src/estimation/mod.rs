@@ -14,8 +14,8 @@
 //! - [`Pass`]: one run over a record: likelihood, score and Fisher information of the coefficients;
 //! - [`AugmentedFilter`]: the state together with coefficients that may wander;
 //! - [`ScoreTest`]: effects that the law does not have, tested in the stream, and [`LagTest`]: whether F acted
-//!   later, both beside its [`OwnTerms`]; [`AddedEffect`]: one of the effects, added; [`EffectPosterior`]: whether that
-//!   is the right one;
+//!   later, both beside its [`OwnTerms`]; [`TermsAnew`]: with terms chosen anew; [`AddedEffect`]: one of the effects,
+//!   added; [`EffectPosterior`]: whether that is the right one;
 //! - [`TermSelection`]: which of the terms that it may have the law has;
 //! - [`SandwichFactor`]: whether innovations are as independent as the filter says;
 //! - [`RandomWalk`]: coefficients that wander, known from equations; `regression`: moments of equations, by blocks of
@@ -46,6 +46,7 @@ mod score_test;
 mod smoother;
 mod symmetric;
 mod term_selection;
+mod terms_anew;
 mod track;
 mod weak_start;
 
@@ -71,5 +72,6 @@ pub use score_test::{Lacked, Missing, ScoreTest};
 pub use smoother::{Smoothable, smooth};
 pub use symmetric::{Lane, System, WIDTH, dot};
 pub use term_selection::{TermSelection, price_of_a_term};
+pub use terms_anew::{FreeTerms, TermsAnew};
 pub use track::Track;
 pub use weak_start::{OVERLAP, RowsOfLength, VARIATION};

@@ -45,6 +45,8 @@ pub struct TermSelection {
     present: Present,
     /// Relative error of eq. (8) that the last solution with all terms states, and what it has of the dropped ones.
     pub full_error: f64,
+    /// What the law that was selected adds to twice the log-likelihood, less what its terms cost.
+    pub worth: f64,
     /// That solution's values.
     full: Vec<f64>,
     /// What elimination leaves, the likeliest structure so far, and room for the step to the values of one.
@@ -74,6 +76,7 @@ impl TermSelection {
             surcharge: vec![0.0; n],
             present: Present(vec![true; n]),
             full_error: f64::INFINITY,
+            worth: 0.0,
             full: vec![0.0; n],
             greedy: vec![true; n],
             best: vec![true; n],
@@ -122,6 +125,7 @@ impl TermSelection {
         // a term may be large and yet too uncertain for its price: without it the law would be another one
         let dropped = self.full.iter().zip(active.iter()).filter(|(_, active)| !**active);
         self.full_error += dropped.map(|(value, _)| value * value).sum::<f64>() / sum_of_squares(&self.full);
+        self.worth = self.worth(&record, active);
         coefficients.copy_from_slice(&self.values);
     }
 

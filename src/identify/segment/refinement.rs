@@ -12,8 +12,8 @@ use super::noise_covariance::UNEXPLAINED;
 use super::prior::{InertiaPrior, Prior};
 use super::state::{Checkpoint, InTheSensors, MissingEffects, NOISE_MEMORY, Runs, Segment};
 use crate::estimation::{
-    AddedEffect, EffectPosterior, Filter, Lag, LagTest, LawWithEffect, Missing, Noise, Observation, Pass, ScoreTest,
-    TWENTY_TO_ONE,
+    AddedEffect, EffectPosterior, Filter, FreeTerms, Lacked, Lag, LagTest, LawWithEffect, Missing, Noise, Observation,
+    Pass, ScoreTest, TWENTY_TO_ONE,
 };
 use crate::identify::library::KnownLaw;
 use crate::identify::problem::Problem;
@@ -202,7 +202,7 @@ impl Segment {
     fn close(&mut self, problem: &Problem, settings: &Settings, window: &Window) {
         let track = self.run.filter_run.track;
         self.run.closed_at = self.run.next;
-        self.end_score_test();
+        self.end_score_test(problem);
         std::mem::swap(&mut self.scales, &mut self.run.scales);
         self.scales.merge(&self.known.scales, 1.0);
         self.runs.closed += 1;
@@ -228,13 +228,13 @@ impl Segment {
         self.drop_effect(problem);
     }
 
-    fn end_score_test(&mut self) {
+    fn end_score_test(&mut self, problem: &Problem) {
         let settled = self.settled();
         // where the error lasts no candidate's evidence is in nats, and what was known before stands
         if settled && self.fit.overdispersion < UNEXPLAINED {
             self.weigh_effects();
         }
-        self.ask_for_effect(settled);
+        self.ask_for_effect(problem, settled);
         if self.score_test.in_the_sensors.running {
             self.score_test.next_look = looks_again(self.length(self.run.next));
         }
@@ -245,26 +245,60 @@ impl Segment {
     }
 
     /// Which effect the law lacks most, by the run that has ended; one that it names is to be tried, in the place of
-    /// that which the law may have.
-    fn ask_for_effect(&mut self, settled: bool) {
+    /// that which the law may have. A run that has not settled does not follow the motion yet.
+    fn ask_for_effect(&mut self, problem: &Problem, settled: bool) {
         let (length, has_effect) = (self.length(self.run.next), self.effect() != 0.0);
-        let Segment { score_test, run, active, fit, untried, untried_step, step, .. } = self;
-        let MissingEffects { candidates, own, likeliest, posterior, next_try, .. } = score_test;
-        own.solve(&run.filter_run.information, active, has_effect.then_some(&run.effect));
-        // a run that has not settled does not follow the motion yet
-        *likeliest = candidates.likeliest(own, fit.overdispersion).filter(|_| settled);
-        let asked = match has_effect {
-            true => posterior.likelier.filter(|likelier| settled && likelier.missing.evidence > TWENTY_TO_ONE),
-            false => likeliest.filter(|lacked| lacked.missing.is_named()),
-        };
-        if let Some(lacked) = asked.filter(|_| length >= *next_try) {
-            match has_effect {
-                true => untried_step.copy_from_slice(step),
-                false => candidates.moved(own, &lacked, untried_step),
-            }
-            *next_try = looks_again(length);
-            *untried = Some(lacked);
+        let lacked = self.lacked_beside_own().filter(|_| settled);
+        self.score_test.likeliest = lacked;
+        if !settled || length < self.score_test.next_try {
+            return;
         }
+        let named = |lacked: &Lacked| lacked.missing.is_named();
+        let asked = match has_effect {
+            true => self.likelier_effect(),
+            false => lacked.filter(named).or_else(|| self.lacked_with_other_terms(problem).filter(named)),
+        };
+        if asked.is_some() {
+            self.score_test.next_try = looks_again(length);
+            self.untried = asked;
+        }
+    }
+
+    /// The effect of most evidence beside the terms that the law has; `untried_step` becomes by how much its
+    /// coefficients are others with it.
+    fn lacked_beside_own(&mut self) -> Option<Lacked> {
+        let has_effect = self.effect() != 0.0;
+        let Segment { score_test: MissingEffects { candidates, own, .. }, run, active, fit, .. } = self;
+        own.solve(&run.filter_run.information, active, has_effect.then_some(&run.effect));
+        let lacked = candidates.likeliest(own, fit.overdispersion)?;
+        candidates.moved(own, &lacked, &mut self.untried_step);
+        Some(lacked)
+    }
+
+    /// That of a law which does not explain its record, and whose terms may be the wrong ones.
+    fn lacked_with_other_terms(&mut self, problem: &Problem) -> Option<Lacked> {
+        let terms_may_go = problem.maybe.contains(&true);
+        let squares = self.own().iter().map(|value| value * value).sum();
+        let Segment { score_test: MissingEffects { candidates, anew, .. }, run, fit, coefficients, all, .. } = self;
+        let law = FreeTerms {
+            information: &run.filter_run.information,
+            coefficients,
+            maybe: &problem.maybe,
+            squares,
+            inertia: (all[problem.inertia], problem.free_inertia()),
+            largest: run.largest[0],
+            measurements: run.filter_run.track.total(),
+            overdispersion: fit.overdispersion,
+        };
+        let asked = terms_may_go && !fit.explains;
+        asked.then(|| candidates.likeliest_anew(&law, anew, &mut self.untried_step)).flatten()
+    }
+
+    /// The one that is likelier than the law's own by twenty to one; `step` holds what it makes of the coefficients.
+    fn likelier_effect(&mut self) -> Option<Lacked> {
+        let likelier = self.score_test.posterior.likelier;
+        let likelier = likelier.filter(|likelier| likelier.missing.evidence > TWENTY_TO_ONE);
+        likelier.inspect(|_| self.untried_step.copy_from_slice(&self.step))
     }
 
     /// Whether the law has the right effect; `step` becomes what a likelier one makes of the coefficients.
@@ -422,9 +456,10 @@ impl Segment {
         (self.effect() != 0.0).then_some(0.5 * self.effect() * self.effect() / variance)
     }
 
-    /// An effect that the record does not speak for any more is none.
+    /// An effect that the record does not speak for any more is none; where the error lasts nothing is in nats.
     fn drop_effect(&mut self, problem: &Problem) {
-        if !(self.settled() && self.effect_gain().is_some_and(|gain| gain < TWENTY_TO_ONE)) {
+        let in_nats = self.settled() && self.fit.overdispersion < UNEXPLAINED;
+        if !(in_nats && self.effect_gain().is_some_and(|gain| gain < TWENTY_TO_ONE)) {
             return;
         }
         self.run.effect.likeness(&self.solution, &self.active, &mut self.step);

@@ -5,7 +5,7 @@ use super::motion_scales::MotionScales;
 use super::prior::InertiaPrior;
 use crate::estimation::{
     AddedEffect, EffectPosterior, Information, KnownEffect, Lacked, LagTest, Missing, Noise, OwnTerms, Pass,
-    SandwichFactor, ScoreTest, Solution, TermSelection, ToldLag, WithAndWithout,
+    SandwichFactor, ScoreTest, Solution, TermSelection, TermsAnew, ToldLag, WithAndWithout,
 };
 use crate::identify::library::Estimate;
 use crate::identify::problem::Problem;
@@ -161,6 +161,8 @@ pub(super) struct MissingEffects {
     /// What the last run that had settled says of the law's effect, and where it is asked.
     pub(super) posterior: EffectPosterior,
     pub(super) laws: WithAndWithout,
+    /// Room for the choice of terms with an effect.
+    pub(super) anew: TermsAnew,
     /// Length of the record from which on the law is tried with an effect …
     pub(super) next_try: u64,
     /// … and, where it does not explain the record, with all error in the sensors.
@@ -254,6 +256,7 @@ impl Segment {
                 likeliest: None,
                 posterior: EffectPosterior::default(),
                 laws: WithAndWithout::none(n),
+                anew: TermsAnew::new(n),
                 next_try: 0,
                 next_look: 0,
                 in_the_sensors: InTheSensors {
