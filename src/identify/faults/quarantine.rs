@@ -209,9 +209,11 @@ impl Quarantine {
         self.sensors
     }
 
-    /// Probability by channel that a burst begins with a reading, `dt` s after the last.
+    /// Probability by channel that a burst begins with a reading, `dt` s after the last: of what has happened n times
+    /// in T samples n − 1 in T, the unbiased rate where it is asked for at the n-th (Haldane, *Biometrika* 33 (1945),
+    /// 222).
     pub fn bursts_begin(&self, dt: f64) -> [f64; 2] {
-        self.bursts.map(|bursts| event(dt).max(bursts / self.samples))
+        self.bursts.map(|bursts| event(dt).max((bursts - 1.0) / self.samples))
     }
 
     /// What q and q̇ have moved by at least since the sample before, by the law.
