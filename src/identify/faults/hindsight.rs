@@ -5,9 +5,8 @@
 //! the law in use alone is set against the evidence of a switch, on the samples that speak for one.
 
 use super::hypothesis::{Expected, Hypothesis, Kind, Value};
-use super::price::working;
+use super::price::{event, working};
 use super::quarantine::ROOM;
-use super::weighing::event;
 use crate::estimation::{Channel, Filter, Observation};
 use crate::identify::window::Window;
 use serde::{Deserialize, Serialize};
@@ -54,16 +53,9 @@ impl Hindsight {
         Hindsight { burst: new(Kind::Readings), events: EVENTS.map(new), first: 0 }
     }
 
-    /// The likeliest fault, bursts beginning with a reading at these probabilities by channel, against another law
-    /// since sample `switch`, which has `evidence` nats, by the window's samples, the last of them where there is no
-    /// room for all.
-    pub fn weigh(
-        &mut self,
-        law: &Expected,
-        window: &Window,
-        begins: [f64; 2],
-        (switch, evidence): (u64, f64),
-    ) -> Found {
+    /// The likeliest fault against another law since sample `switch`, which has `evidence` nats, by the window's
+    /// samples, the last of them where there is no room for all.
+    pub fn weigh(&mut self, law: &Expected, window: &Window, (switch, evidence): (u64, f64)) -> Found {
         let oldest = (window.oldest() + 2).max(window.ready().saturating_sub(ROOM as u64));
         self.first = switch.saturating_sub(BEFORE).max(oldest);
         let rare = event(window.pace()).ln();
@@ -74,10 +66,7 @@ impl Hindsight {
         for (place, number) in (self.first..window.ready()).enumerate() {
             let observation = window.observation(number);
             let law = Expected { noise: law.noise_with(observation.unseen, nothing.mean[0]), ..*law };
-            let values = Channel::ALL.map(|channel| {
-                let start = begins[channel as usize];
-                observation.measured[channel as usize].map(|value| Value { value, repeats: None, start })
-            });
+            let values = observation.measured.map(|value| value.map(|value| Value { value, repeats: None }));
             let Observation { dt, drive, .. } = observation;
             if number == after {
                 self.events.iter_mut().for_each(|other| other.begin(&nothing, &law, dt, log, rare));
@@ -203,7 +192,7 @@ mod tests {
             stuck: None,
             parts: 1,
         };
-        hindsight.weigh(&law, window, [1e-9; 2], (BEFORE_IT, evidence)).odds
+        hindsight.weigh(&law, window, (BEFORE_IT, evidence)).odds
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! as it is after a radian of the motion. Under "F is stuck" u₀ is what acts less what is read, ÷ m, and forgets where
 //! it was as F did. Under "a channel has an offset" u₀ is the offset.
 
-use super::price::{Burst, SCATTER, faulty, working};
+use super::price::{Burst, SCATTER, event, faulty, working};
 use crate::estimation::{Channel, Filter, Matrix, Noise, times, white_acceleration};
 use crate::law::{Drive, Motion, State};
 use crate::limits::SETTLED_ERROR;
@@ -181,8 +181,6 @@ pub struct Value {
     pub value: f64,
     /// −ln of how often the channel repeats a value, where it does and that is rare.
     pub repeats: Option<f64>,
-    /// Probability that a burst begins.
-    pub start: f64,
 }
 
 /// What an interval makes of a small change of (q, q̇), where q̈ changes so by them.
@@ -294,8 +292,8 @@ impl Hypothesis {
         self.predict(law, dt, drive);
         for channel in Channel::ALL {
             if let Some(value) = values[channel as usize] {
-                let counts = self.read(channel, &value, law);
-                self.mark(channel, counts, value.start, place);
+                let counts = self.read(channel, &value, law, event(dt));
+                self.mark(channel, counts, event(dt), place);
             }
         }
         self.path[place] = self.state();
@@ -430,8 +428,8 @@ impl Hypothesis {
         self.covariance[1][1] += process * dt;
     }
 
-    /// Takes a reading; returns whether it is no fault of the sensor's.
-    fn read(&mut self, channel: Channel, value: &Value, law: &Expected) -> bool {
+    /// Takes a reading, with which a burst begins at that probability; returns whether it is no fault of the sensor's.
+    fn read(&mut self, channel: Channel, value: &Value, law: &Expected, start: f64) -> bool {
         let index = channel as usize;
         let offset = if self.kind == Kind::Offset(channel) { 1.0 } else { 0.0 };
         let column: [f64; 4] =
@@ -450,7 +448,7 @@ impl Hypothesis {
             return false;
         }
         let repeats = value.repeats.unwrap_or(0.0);
-        let start = value.start.max(SHARED * self.bursts[1 - index].begun());
+        let start = start.max(SHARED * self.bursts[1 - index].begun());
         self.log += self.bursts[index].take(working(residual, variance), residual, std, start) - repeats;
         if self.bursts[index].is_on() {
             return false;

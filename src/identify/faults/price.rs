@@ -1,6 +1,7 @@
-//! What a reading costs under a working and under a faulty sensor, as logarithms of densities.
+//! What a reading costs under a working and under a faulty sensor, as logarithms of densities, and how often an event
+//! of a kind begins.
 
-use crate::estimation::log_sum;
+use crate::estimation::{UNLIKELY, log_sum};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -9,6 +10,14 @@ pub const SCATTER: f64 = 3.0;
 
 /// A reading this many std off is as far as any.
 const FAR: f64 = 1e100;
+
+/// Mean time between two events of a kind, s: what nothing is known of happens as often as a false alarm is allowed.
+const SELDOM: f64 = 1e6;
+
+/// Probability that an event of a kind begins in an interval of `dt` s: unlikely even in the longest.
+pub fn event(dt: f64) -> f64 {
+    (dt / SELDOM).min(UNLIKELY)
+}
 
 /// Log-density of a Gaussian residual.
 pub fn working(residual: f64, variance: f64) -> f64 {

@@ -2,7 +2,7 @@
 
 use super::hypothesis::{Expected, Kind, Value};
 use super::repetition::Repetition;
-use super::weighing::{Weighing, event};
+use super::weighing::Weighing;
 use crate::estimation::{Channel, Filter, OUTLYING, UNLIKELY};
 use crate::identify::packed_readings;
 use crate::identify::reading::Reading;
@@ -63,8 +63,6 @@ pub struct Quarantine {
     waiting: usize,
     last: Option<Sample>,
     repetitions: [Repetition; 2],
-    /// Bursts so far by channel, and samples.
-    bursts: [f64; 2],
     samples: f64,
     /// Mean squares of q and q̇ let through.
     squares: [f64; 2],
@@ -103,7 +101,6 @@ impl Quarantine {
             waiting: 0,
             last: None,
             repetitions: [Repetition::default(); 2],
-            bursts: [0.0; 2],
             samples: 0.0,
             squares: [0.0; 2],
             decided: 0,
@@ -209,13 +206,6 @@ impl Quarantine {
         self.sensors
     }
 
-    /// Probability by channel that a burst begins with a reading, `dt` s after the last: of what has happened n times
-    /// in T samples n − 1 in T, the unbiased rate where it is asked for at the n-th (Haldane, *Biometrika* 33 (1945),
-    /// 222).
-    pub fn bursts_begin(&self, dt: f64) -> [f64; 2] {
-        self.bursts.map(|bursts| event(dt).max((bursts - 1.0) / self.samples))
-    }
-
     /// What q and q̇ have moved by at least since the sample before, by the law.
     fn course(&self, law: &Expected, filter: Filter, before: Sample, reading: Reading) -> [f64; 2] {
         let filter = if self.stance == Stance::Calm { filter } else { self.weighing.nothing().filter() };
@@ -240,7 +230,6 @@ impl Quarantine {
             Hold::Linear | Hold::BandLimited => Drive::Line(before.excitation, sample.excitation),
         };
         let dt = sample.t - before.t;
-        let starts = self.bursts_begin(dt);
         let mut runs = [0.0; 2];
         let values = Channel::ALL.map(|channel| {
             let index = channel as usize;
@@ -248,7 +237,7 @@ impl Quarantine {
             let run = self.repetitions[index].run();
             let repeats = self.repetitions[index].take(value, course[index], scatter[index]);
             runs[index] = if repeats.is_some() { run } else { 0.0 };
-            measured[index].then_some(Value { value, repeats, start: starts[index] })
+            measured[index].then_some(Value { value, repeats })
         });
         Arrival { reading, dt, drive, values, runs }
     }
@@ -338,7 +327,6 @@ impl Quarantine {
     fn name(&mut self, place: usize, law: &Expected) {
         let named = self.weighing.hypothesis(place);
         let (kind, offset) = (named.kind, named.offset());
-        let first = self.stance == Stance::Doubt;
         let begins = named.age() == self.count;
         let mut any = [false; 2];
         for number in 0..self.count {
@@ -368,7 +356,7 @@ impl Quarantine {
             Kind::Offset(channel) if self.weighing.odds(place) > CERTAIN => self.know_offset(channel, offset, law),
             _ => {}
         }
-        self.say(kind, any, first, begins);
+        self.say(kind, any, begins);
     }
 
     /// An offset that is known well is taken off.
@@ -397,11 +385,10 @@ impl Quarantine {
     }
 
     /// What the sensors do by the hypothesis just named.
-    fn say(&mut self, kind: Kind, faulty: [bool; 2], first: bool, begins: bool) {
+    fn say(&mut self, kind: Kind, faulty: [bool; 2], begins: bool) {
         for (index, faulty) in faulty.into_iter().enumerate() {
             if kind.is_no_event() && faulty {
                 self.sensors[index] = SensorState::Outlier;
-                self.bursts[index] += if first { 1.0 } else { 0.0 };
             }
         }
         for channel in Channel::ALL.into_iter().filter(|channel| kind.sticks(*channel)) {
@@ -416,8 +403,8 @@ impl Quarantine {
 
     /// Readings of these channels that were let through have been found a burst.
     pub fn blame(&mut self, channels: [bool; 2]) {
-        for (index, _) in channels.into_iter().enumerate().filter(|(_, of_burst)| *of_burst) {
-            (self.sensors[index], self.bursts[index]) = (SensorState::Outlier, self.bursts[index] + 1.0);
+        for (sensor, _) in self.sensors.iter_mut().zip(channels).filter(|(_, of_burst)| *of_burst) {
+            *sensor = SensorState::Outlier;
         }
     }
 

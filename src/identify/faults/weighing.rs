@@ -1,17 +1,10 @@
 //! All hypotheses on the same readings: whether the law or a sensor is the likelier, and by how much.
 
 use super::hypothesis::{Expected, Hypothesis, Kind, Value};
-use crate::estimation::{Channel, Filter, TWENTY_TO_ONE, UNLIKELY, log_sum};
+use super::price::event;
+use crate::estimation::{Channel, Filter, TWENTY_TO_ONE, log_sum};
 use crate::law::Drive;
 use serde::{Deserialize, Serialize};
-
-/// Mean time between two events of a kind, s: what nothing is known of happens as often as a false alarm is allowed.
-const SELDOM: f64 = 1e6;
-
-/// Probability that an event of a kind begins in an interval of `dt` s: unlikely even in the longest.
-pub fn event(dt: f64) -> f64 {
-    (dt / SELDOM).min(UNLIKELY)
-}
 
 /// Log-odds of what begins in an interval of `dt` s against either of those by which nothing happens. Those share what
 /// is likely of nothing, and the changes of a law what is of one.

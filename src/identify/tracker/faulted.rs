@@ -113,9 +113,8 @@ impl Tracker {
         let Tracker { intake, window, monitor, segment, .. } = self;
         let law = &monitor.law;
         let expected = expected(problem, law, caution, &segment.scales, intake.quarantine.size());
-        let begins = intake.quarantine.bursts_begin(window.pace());
         let switch = (suspect.start, suspect.evidence / caution);
-        let Found { odds, is_burst } = intake.hindsight.weigh(&expected, window, begins, switch);
+        let Found { odds, is_burst } = intake.hindsight.weigh(&expected, window, switch);
         if odds > TWENTY_TO_ONE {
             if is_burst {
                 self.leave_out_burst();
