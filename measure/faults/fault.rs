@@ -18,6 +18,9 @@ const OFFSET: f64 = 0.05;
 /// A glitch of F, in amplitudes.
 const GLITCH: f64 = 2.5;
 
+/// Share of a flaky sensor's readings that are wide draws.
+const FLAKY: f64 = 0.01;
+
 /// A channel, both of the motion, or every one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Of {
@@ -37,6 +40,8 @@ pub enum Fault {
     Burst(Of),
     /// 50 readings of both channels are.
     LongBurst,
+    /// One reading in a hundred of either channel is, to the record's end.
+    Flaky,
     /// The reading stays as it is for 1 s.
     Stuck(Of),
     /// The reading is 0 for 1 s.
@@ -69,12 +74,13 @@ pub enum Fault {
 
 impl Fault {
     /// All of them, in the order of the table.
-    pub const ALL: [Fault; 33] = [
+    pub const ALL: [Fault; 34] = [
         Fault::Clean,
         Fault::Burst(Of::Q),
         Fault::Burst(Of::Qd),
         Fault::Burst(Of::Both),
         Fault::LongBurst,
+        Fault::Flaky,
         Fault::Stuck(Of::Q),
         Fault::Stuck(Of::Qd),
         Fault::Stuck(Of::F),
@@ -111,6 +117,7 @@ impl Fault {
             Fault::Clean => "clean".into(),
             Fault::Burst(of) => format!("burst of 2 to 20, {}", of.id()),
             Fault::LongBurst => "burst of 50, q and qd".into(),
+            Fault::Flaky => "one in 100 of q and qd".into(),
             Fault::Stuck(of) => format!("stuck 1 s, {}", of.id()),
             Fault::Zero(of) => format!("zero 1 s, {}", of.id()),
             Fault::Glitch => "glitch of F".into(),
@@ -160,6 +167,15 @@ impl Fault {
                 end = first + 50;
                 burst(&mut readings[first..end], Of::Both, &mut generator);
             }
+            Fault::Flaky => {
+                for reading in &mut readings[first..] {
+                    for of in [Of::Q, Of::Qd] {
+                        if generator.random_bool(FLAKY) {
+                            burst(std::slice::from_mut(reading), of, &mut generator);
+                        }
+                    }
+                }
+            }
             Fault::Stuck(of) => {
                 let before = readings[first - 1];
                 readings[first..last].iter_mut().for_each(|reading| of.set(reading, &before));
@@ -197,7 +213,7 @@ impl Fault {
         }
         match self {
             Fault::Stamp => COURSE[0],
-            Fault::Late | Fault::Coarse(_) | Fault::Lacks(_) => COURSE[0],
+            Fault::Flaky | Fault::Late | Fault::Coarse(_) | Fault::Lacks(_) => COURSE[0],
             _ => readings[end.clamp(first + 1, readings.len()) - 1].t.min(COURSE[0] + self.lasts().max(0.05)),
         }
     }
