@@ -4,7 +4,7 @@
 //! those that are held, under which any of them may be a wide draw, and by louder sensors. What the likelier gains on
 //! the law in use alone is set against the evidence of a switch, on the samples that speak for one.
 
-use super::hypothesis::{Expected, Hypothesis, Kind, Value};
+use super::hypothesis::{Expected, Hypothesis, Kind, Value, under_law};
 use super::price::{event, working};
 use super::quarantine::ROOM;
 use crate::estimation::{Channel, Filter, Observation};
@@ -62,14 +62,15 @@ impl Hindsight {
         let after = (switch + 1).clamp(self.first, window.ready() - 1);
         let mut nothing = settled(law, window, self.first);
         let mut log = 0.0;
-        self.burst.begin(&nothing, law, 0.0, 0.0, 0.0);
+        self.burst.begin(&under_law(&nothing), law, 0.0, 0.0, 0.0);
         for (place, number) in (self.first..window.ready()).enumerate() {
             let observation = window.observation(number);
             let law = Expected { noise: law.noise_with(observation.unseen, nothing.mean[0]), ..*law };
             let values = observation.measured.map(|value| value.map(|value| Value { value, repeats: None }));
             let Observation { dt, drive, .. } = observation;
             if number == after {
-                self.events.iter_mut().for_each(|other| other.begin(&nothing, &law, dt, log, rare));
+                let start = under_law(&nothing);
+                self.events.iter_mut().for_each(|other| other.begin(&start, &law, dt, log, rare));
             }
             log += take(&law, &observation, &mut nothing);
             self.burst.take(&law, dt, &drive, values, place);
@@ -191,6 +192,7 @@ mod tests {
             drive: 1.0,
             stuck: None,
             parts: 1,
+            alone: None,
         };
         hindsight.weigh(&law, window, (BEFORE_IT, evidence)).odds
     }

@@ -3,7 +3,8 @@
 //! x = (q, q̇, u₀, u₁). Under "the law changed" q̈ is the law's + u₀ + u₁ F ÷ m: over the few readings that decide, a
 //! change of any coefficient is one of these two; u₀ then moves as the motion does, as a random walk that is as large
 //! as it is after a radian of the motion. Under "F is stuck" u₀ is what acts less what is read, ÷ m, and forgets where
-//! it was as F did. Under "a channel has an offset" u₀ is the offset.
+//! it was as F did. Under "a channel has an offset" u₀ is the offset. Where no law is known q̈ is u₀ + u₁ F under all of
+//! them (`motion_alone`).
 
 use super::price::{Burst, SCATTER, event, faulty, working};
 use crate::estimation::{Channel, Filter, Matrix, Noise, times, white_acceleration};
@@ -65,6 +66,12 @@ impl Kind {
         matches!(self, Kind::Readings | Kind::Misfit)
     }
 
+    /// Whether it can be told where no law is known: a change of law is one of q̈ there. An offset moves slowly in one
+    /// channel, as its own course may, and a rest repeats both.
+    pub fn can_be_told_by_motion(self) -> bool {
+        !matches!(self, Kind::Misfit | Kind::ForceStuck | Kind::Offset(_) | Kind::BothStuck)
+    }
+
     /// Whether it can be told apart where these channels are measured: a sensor that is not there does not fail.
     pub fn can_be_told(self, measured: [bool; 2]) -> bool {
         match self {
@@ -94,6 +101,23 @@ impl Kind {
         matches!(self, Kind::Kick | Kind::Glitch)
     }
 
+    /// Intensity of the white acceleration that it adds in its own interval, the `first`, for when in it that was
+    /// nobody knows, and what u₀ moves by in a second, as a variance.
+    fn unknown(self, law: &Expected, inputs: [f64; 2], dt: f64, first: bool) -> [f64; 2] {
+        let [acceleration, gain] = law.switch;
+        match self {
+            Kind::Law { times, .. } => {
+                let acceleration = f64::from(times) * acceleration;
+                let event = (acceleration * acceleration + (gain * inputs[1]).powi(2)) * dt;
+                [if first { event } else { 0.0 }, acceleration * acceleration * law.rate]
+            }
+            Kind::Misfit => [0.0, law.misfit() * law.rate],
+            Kind::Kick if first => [law.size[1] * law.size[1] / dt, 0.0],
+            Kind::Glitch if first => [law.drive * law.drive * dt, 0.0],
+            _ => [0.0; 2],
+        }
+    }
+
     /// Whether the law is another one.
     pub fn is_law(self) -> bool {
         matches!(self, Kind::Law { .. })
@@ -121,6 +145,19 @@ pub struct Expected<'a> {
     pub stuck: Option<Standing>,
     /// Parts of an interval between two samples.
     pub parts: usize,
+    /// Where no law is known: `motion` is a free mass of 1 kg then, whose acceleration the unknowns are.
+    pub alone: Option<Roughness>,
+}
+
+/// How rough a motion is of which no law is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Roughness {
+    /// Variance that q̈ gains in a second, (m/s²)²/s.
+    pub acceleration: f64,
+    /// Variance of what q gains in a second beside the integral of q̇, m²/s.
+    pub slip: f64,
+    /// What F moves, kg, where that is known.
+    pub inertia: Option<f64>,
 }
 
 /// An F that stands still.
@@ -145,6 +182,11 @@ impl Expected<'_> {
         (self.size[1] * self.motion.mass(q)).powi(2) / dt
     }
 
+    /// What F moves at q, kg; infinite where F is not known to move anything.
+    fn mass(&self, q: f64) -> f64 {
+        self.alone.map_or_else(|| self.motion.mass(q), |alone| alone.inertia.unwrap_or(f64::INFINITY))
+    }
+
     /// Variance of what a valid law may leave out of q̈.
     fn misfit(&self) -> f64 {
         let [acceleration, _] = self.switch;
@@ -167,9 +209,57 @@ impl Expected<'_> {
         filter
     }
 
+    /// Goes over an interval in which q̈ is the law's, u₀ and u₁ F ÷ m as far as they act. `added`, by what multiplies
+    /// them, is the intensity of a white acceleration and what u₀ gains in a second, as variances.
+    pub fn advance(
+        &self,
+        filter: &mut Filter<4>,
+        dt: f64,
+        drive: &Drive,
+        act: [bool; 2],
+        added: impl Fn([f64; 2]) -> [f64; 2],
+    ) {
+        let parts = drive.parts(self.parts);
+        let part_dt = dt / parts as f64;
+        let half = 0.5 * part_dt * part_dt;
+        let [rough, slip] = self.alone.map_or([0.0; 2], |alone| [alone.acceleration, alone.slip]);
+        for part in 0..parts {
+            let [from, middle, to] = drive.part(part, parts);
+            let state = filter.state();
+            let gradient = self.motion.acceleration_gradient(state, middle);
+            let [first, second] = act.map(|acts| if acts { 1.0 } else { 0.0 });
+            let inputs = [first, second * middle / self.motion.mass(state.q)];
+            let moved = self.motion.step_linear(state, part_dt, from, to);
+            let extra = inputs[0] * filter.mean[2] + inputs[1] * filter.mean[3];
+            filter.set_state(State { q: moved.q + half * extra, qd: moved.qd + part_dt * extra });
+            let [process, wander] = added(inputs);
+            let [[qq, qv], [_, vv]] = white_acceleration(self.noise.process + process, part_dt);
+            let noise = [
+                [qq + slip * part_dt, qv, 0.0, 0.0],
+                [qv, vv, 0.0, 0.0],
+                [0.0, 0.0, (wander + rough) * part_dt, 0.0],
+                [0.0; 4],
+            ];
+            let [by_q, by_qd] = transition(gradient, part_dt);
+            let map = |[q, qd, acceleration, gain]: [f64; 4]| {
+                let input = inputs[0] * acceleration + inputs[1] * gain;
+                let [moved, faster] = times(&[by_q, by_qd], [q, qd]);
+                [moved + half * input, faster + part_dt * input, acceleration, gain]
+            };
+            filter.predict(map, &noise);
+        }
+    }
+
+    /// What is expected of (q, q̇) after an interval of a motion of which no law is known.
+    pub fn foresee(&self, filter: &Filter<4>, dt: f64, drive: &Drive) -> Filter<4> {
+        let mut filter = *filter;
+        self.advance(&mut filter, dt, drive, [true; 2], |_| [0.0; 2]);
+        filter
+    }
+
     /// The noise, and a white force of intensity `unseen`, N² s, that acts on the mass at `q`.
     pub fn noise_with(&self, unseen: f64, q: f64) -> Noise {
-        let mass = self.motion.mass(q);
+        let mass = self.mass(q);
         Noise { process: self.noise.process + unseen / (mass * mass), ..self.noise }
     }
 }
@@ -181,6 +271,12 @@ pub struct Value {
     pub value: f64,
     /// −ln of how often the channel repeats a value, where it does and that is rare.
     pub repeats: Option<f64>,
+}
+
+/// (q, q̇) as a law leaves them, with nothing unknown beside it.
+pub fn under_law(filter: &Filter) -> Filter<4> {
+    let ([q, qd], [[qq, qv], [vq, vv]]) = (filter.mean, filter.covariance);
+    Filter { mean: [q, qd, 0.0, 0.0], covariance: [[qq, qv, 0.0, 0.0], [vq, vv, 0.0, 0.0], [0.0; 4], [0.0; 4]] }
 }
 
 /// What an interval makes of a small change of (q, q̇), where q̈ changes so by them.
@@ -199,8 +295,8 @@ const VARIES: f64 = -40.0;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hypothesis {
     pub kind: Kind,
-    mean: [f64; 4],
-    covariance: [[f64; 4]; 4],
+    /// Of x.
+    believed: Filter<4>,
     /// Log-likelihood of the readings since it began, with its prior.
     pub log: f64,
     /// Its log-odds against nothing when it began.
@@ -222,8 +318,7 @@ impl Hypothesis {
     pub fn new(kind: Kind, room: usize) -> Hypothesis {
         Hypothesis {
             kind,
-            mean: [0.0; 4],
-            covariance: [[0.0; 4]; 4],
+            believed: Filter::default(),
             log: 0.0,
             prior: 0.0,
             bursts: [Burst::default(); 2],
@@ -236,26 +331,28 @@ impl Hypothesis {
 
     /// Begins at that state before a reading, with those log-odds against nothing, which is of that log-likelihood;
     /// `dt` is the time between two samples.
-    pub fn begin(&mut self, filter: &Filter, law: &Expected, dt: f64, nothing: f64, odds: f64) {
-        let ([q, qd], [[qq, qv], [vq, vv]]) = (filter.mean, filter.covariance);
-        self.mean = [q, qd, 0.0, 0.0];
-        self.covariance = [[qq, qv, 0.0, 0.0], [vq, vv, 0.0, 0.0], [0.0; 4], [0.0; 4]];
+    pub fn begin(&mut self, believed: &Filter<4>, law: &Expected, dt: f64, nothing: f64, odds: f64) {
+        self.believed = *believed;
         (self.log, self.prior, self.age) = (nothing + odds, odds, 0);
         self.bursts = [Burst::default(); 2];
         self.forget_held();
+        let covariance = &mut self.believed.covariance;
         let [acceleration, gain] = law.switch;
         match self.kind {
+            kind if law.alone.is_some() && !kind.can_be_told_by_motion() => self.log = f64::NEG_INFINITY,
             Kind::Law { before, times } => {
                 let acceleration = f64::from(times) * acceleration;
                 let since = f64::from(before) * dt;
                 let square = acceleration * acceleration;
-                self.covariance[1][1] += square * since * since;
-                (self.covariance[1][2], self.covariance[2][1]) = (square * since, square * since);
-                (self.covariance[2][2], self.covariance[3][3]) = (square, gain * gain);
+                covariance[1][1] += square * since * since;
+                covariance[1][2] += square * since;
+                covariance[2][1] += square * since;
+                covariance[2][2] += square;
+                covariance[3][3] += gain * gain;
             }
-            Kind::Misfit => self.covariance[2][2] = law.misfit(),
+            Kind::Misfit => covariance[2][2] = law.misfit(),
             Kind::ForceStuck => self.suppose_stuck(law),
-            Kind::Offset(channel) => self.covariance[2][2] = law.size[channel as usize].powi(2),
+            Kind::Offset(channel) => covariance[2][2] = law.size[channel as usize].powi(2),
             _ => {}
         }
     }
@@ -263,15 +360,16 @@ impl Hypothesis {
     /// What acts has left F as it is read for as long as that stands still; what that did within the noise went unseen.
     fn suppose_stuck(&mut self, law: &Expected) {
         let Some(standing) = law.stuck else { return self.log += VARIES };
+        let covariance = &mut self.believed.covariance;
         for (channel, variance) in law.noise.sensor.into_iter().enumerate() {
-            self.covariance[channel][channel] = self.covariance[channel][channel].max(variance);
+            covariance[channel][channel] = covariance[channel][channel].max(variance);
         }
-        self.covariance[2][2] = law.drive * law.drive * (1.0 - standing.kept(standing.since).powi(2));
+        covariance[2][2] = law.drive * law.drive * (1.0 - standing.kept(standing.since).powi(2));
     }
 
     /// Forgets all of it: what says nothing any more takes no room in a saved state.
     pub fn clear(&mut self) {
-        (self.mean, self.covariance, self.log, self.prior, self.age) = ([0.0; 4], [[0.0; 4]; 4], 0.0, 0.0, 0);
+        (self.believed, self.log, self.prior, self.age) = (Filter::default(), 0.0, 0.0, 0);
         self.bursts = [Burst::default(); 2];
         self.path.fill(State::default());
         self.forget_held();
@@ -316,13 +414,18 @@ impl Hypothesis {
 
     /// The state after the last reading.
     pub fn state(&self) -> State {
-        State { q: self.mean[0], qd: self.mean[1] }
+        self.believed.state()
     }
 
     /// The filter of (q, q̇) after the last reading.
     pub fn filter(&self) -> Filter {
-        let ([q, qd, ..], [first, second, ..]) = (self.mean, self.covariance);
+        let ([q, qd, ..], [first, second, ..]) = (self.believed.mean, self.believed.covariance);
         Filter { mean: [q, qd], covariance: [[first[0], first[1]], [second[0], second[1]]] }
+    }
+
+    /// What others begin from: of a law the unknowns are the hypothesis's own, of a motion without one they are q̈.
+    pub fn start(&self, law: &Expected) -> Filter<4> {
+        if law.alone.is_some() { self.believed } else { under_law(&self.filter()) }
     }
 
     /// The state at a sample held.
@@ -342,31 +445,20 @@ impl Hypothesis {
 
     /// The offset and its std.
     pub fn offset(&self) -> (f64, f64) {
-        (self.mean[2], self.covariance[2][2].max(0.0).sqrt())
+        (self.believed.mean[2], self.believed.covariance[2][2].max(0.0).sqrt())
     }
 
     /// Goes over an interval.
     pub fn predict(&mut self, law: &Expected, dt: f64, drive: &Drive) {
         let drive = if self.kind == Kind::Glitch && self.age == 0 { &Drive::Held(0.0) } else { drive };
-        let parts = drive.parts(law.parts);
-        let part_dt = dt / parts as f64;
-        for part in 0..parts {
-            let [from, middle, to] = drive.part(part, parts);
-            let state = self.state();
-            let gradient = law.motion.acceleration_gradient(state, middle);
-            let inputs = match self.kind {
-                Kind::Law { .. } => [1.0, middle / law.motion.mass(state.q)],
-                Kind::Misfit | Kind::ForceStuck => [1.0, 0.0],
-                _ => [0.0; 2],
-            };
-            let moved = law.motion.step_linear(state, part_dt, from, to);
-            let extra = inputs[0] * self.mean[2] + inputs[1] * self.mean[3];
-            self.mean[0] = moved.q + 0.5 * part_dt * part_dt * extra;
-            self.mean[1] = moved.qd + part_dt * extra;
-            let [process, wander] = self.unknown(law, inputs, dt);
-            self.carry(part_dt, gradient, inputs, law.noise.process + process);
-            self.covariance[2][2] += wander * part_dt;
-        }
+        let act = match self.kind {
+            _ if law.alone.is_some() => [true; 2],
+            Kind::Law { .. } => [true; 2],
+            Kind::Misfit | Kind::ForceStuck => [true, false],
+            _ => [false; 2],
+        };
+        let (kind, first) = (self.kind, self.age == 0);
+        law.advance(&mut self.believed, dt, drive, act, |inputs| kind.unknown(law, inputs, dt, first));
         if self.kind == Kind::ForceStuck {
             self.follow_force(law, dt);
         }
@@ -376,67 +468,24 @@ impl Hypothesis {
     fn follow_force(&mut self, law: &Expected, dt: f64) {
         let Some(standing) = law.stuck else { return self.log += VARIES };
         let kept = standing.kept(dt);
-        self.mean[2] *= kept;
+        let Filter { mean, covariance } = &mut self.believed;
+        mean[2] *= kept;
         for place in 0..4 {
-            self.covariance[2][place] *= kept;
-            self.covariance[place][2] *= kept;
+            covariance[2][place] *= kept;
+            covariance[place][2] *= kept;
         }
-        self.covariance[2][2] += law.drive * law.drive * (1.0 - kept * kept);
-    }
-
-    /// Intensity of the white acceleration that an event adds in its own interval, for when in it that was nobody
-    /// knows, and what u₀ moves by in a second, as a variance.
-    fn unknown(&self, law: &Expected, inputs: [f64; 2], dt: f64) -> [f64; 2] {
-        let [acceleration, gain] = law.switch;
-        let first = self.age == 0;
-        match self.kind {
-            Kind::Law { times, .. } => {
-                let acceleration = f64::from(times) * acceleration;
-                let event = (acceleration * acceleration + (gain * inputs[1]).powi(2)) * dt;
-                [if first { event } else { 0.0 }, acceleration * acceleration * law.rate]
-            }
-            Kind::Misfit => [0.0, law.misfit() * law.rate],
-            Kind::Kick if first => [law.size[1] * law.size[1] / dt, 0.0],
-            Kind::Glitch if first => [law.drive * law.drive * dt, 0.0],
-            _ => [0.0; 2],
-        }
-    }
-
-    /// Carries the covariance over a part of an interval.
-    fn carry(&mut self, dt: f64, gradient: [f64; 2], inputs: [f64; 2], process: f64) {
-        let half = 0.5 * dt * dt;
-        let [of_q, of_qd] = transition(gradient, dt);
-        let rows = [
-            [of_q[0], of_q[1], half * inputs[0], half * inputs[1]],
-            [of_qd[0], of_qd[1], dt * inputs[0], dt * inputs[1]],
-        ];
-        let before = self.covariance;
-        let carried = |row: &[f64; 4], column: usize| (0..4).map(|k| row[k] * before[k][column]).sum::<f64>();
-        let mut first = before;
-        for (target, row) in first.iter_mut().zip(&rows) {
-            *target = std::array::from_fn(|column| carried(row, column));
-        }
-        for (row, entries) in self.covariance.iter_mut().zip(first) {
-            for (entry, coefficients) in row.iter_mut().zip(&rows) {
-                *entry = entries.iter().zip(coefficients).map(|(a, b)| a * b).sum();
-            }
-            (row[2], row[3]) = (entries[2], entries[3]);
-        }
-        self.covariance[0][0] += process * dt * dt * dt / 3.0;
-        self.covariance[0][1] += process * dt * dt / 2.0;
-        self.covariance[1][0] = self.covariance[0][1];
-        self.covariance[1][1] += process * dt;
+        covariance[2][2] += law.drive * law.drive * (1.0 - kept * kept);
     }
 
     /// Takes a reading, with which a burst begins at that probability; returns whether it is no fault of the sensor's.
     fn read(&mut self, channel: Channel, value: &Value, law: &Expected, start: f64) -> bool {
         let index = channel as usize;
         let offset = if self.kind == Kind::Offset(channel) { 1.0 } else { 0.0 };
-        let column: [f64; 4] =
-            std::array::from_fn(|row| self.covariance[row][index] + offset * self.covariance[row][2]);
+        let Filter { mean, covariance } = &self.believed;
+        let column: [f64; 4] = std::array::from_fn(|row| covariance[row][index] + offset * covariance[row][2]);
         let louder = if self.kind.is_louder(channel) { SCATTER * SCATTER } else { 1.0 };
         let variance = column[index] + offset * column[2] + louder * law.noise.sensor[index];
-        let residual = value.value - self.mean[index] - offset * self.mean[2];
+        let residual = value.value - mean[index] - offset * mean[2];
         let std = law.noise.sensor[index].sqrt();
         if self.kind.sticks(channel) {
             let faulty = faulty(residual, std);
@@ -460,7 +509,8 @@ impl Hypothesis {
 
     fn update(&mut self, column: [f64; 4], residual: f64, variance: f64) {
         let gain = column.map(|entry| entry / variance);
-        for ((mean, row), gain) in self.mean.iter_mut().zip(&mut self.covariance).zip(gain) {
+        let Filter { mean, covariance } = &mut self.believed;
+        for ((mean, row), gain) in mean.iter_mut().zip(covariance).zip(gain) {
             *mean += gain * residual;
             row.iter_mut().zip(&column).for_each(|(entry, other)| *entry -= gain * other);
         }

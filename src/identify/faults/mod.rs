@@ -1,6 +1,6 @@
 //! What may have happened to the sensors instead of to the law: one posterior over both.
 //!
-//! A reading far from what the law in use expects is not used at once. It is held, with those after it, until what
+//! A reading far from what the law in use expects, or where there is none the motion itself, is not used at once. It is held, with those after it, until what
 //! happened has a name: the law changed, or a sensor failed. Every hypothesis is a filter of the state from the last
 //! reading that was as expected, scored on the same readings; physics prices them. A switch leaves q and q̇ continuous
 //! and changes q̈ alone; readings of a burst are independent wide draws, priced one by one; an offset moves one
@@ -12,6 +12,8 @@
 //! - `repetition`: how often a channel repeats a value exactly;
 //! - `hypothesis`: the filter of one hypothesis;
 //! - `weighing`: all of them on the same readings;
+//! - `motion_alone`: what is expected where no law is known;
+//! - `queue`: readings on their way into the record;
 //! - `quarantine`: readings held, and what is let through;
 //! - `hindsight`: whether what speaks for a switch is a burst of readings that were not held;
 //! - `excitation`: a reading of F that leaves its course and returns;
@@ -25,8 +27,10 @@ mod clock;
 mod excitation;
 mod hindsight;
 mod hypothesis;
+mod motion_alone;
 mod price;
 mod quarantine;
+mod queue;
 mod repetition;
 mod sender;
 mod standing_force;
@@ -37,7 +41,7 @@ pub use clock::Clock;
 pub use excitation::{ExcitationGate, Stray};
 pub use hindsight::{Found, Hindsight};
 pub use hypothesis::{Expected, Standing};
-pub use quarantine::Quarantine;
+pub use quarantine::{Against, Quarantine};
 pub use repetition::Repetition;
 pub use sender::Sender;
 pub use standing_force::StandingForce;

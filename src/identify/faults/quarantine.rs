@@ -1,6 +1,8 @@
 //! Readings held until what happened has a name, and those that are let through.
 
-use super::hypothesis::{Expected, Kind, Value};
+use super::hypothesis::{Expected, Kind, Value, under_law};
+use super::motion_alone::{MotionAlone, Surroundings};
+use super::queue::Queue;
 use super::repetition::Repetition;
 use super::weighing::Weighing;
 use crate::estimation::{Channel, Filter, OUTLYING, UNLIKELY};
@@ -56,11 +58,11 @@ pub struct Quarantine {
     count: usize,
     /// Time from the last sample that was as expected to the first one held, s.
     interval: f64,
-    /// Readings let through and not taken yet: a ring, its first place and its length.
-    #[serde(with = "packed_readings")]
-    through: Vec<Reading>,
-    first: usize,
-    waiting: usize,
+    /// Readings let through and not taken yet.
+    through: Queue,
+    /// What is expected without a law, and whether that is what readings are held against.
+    motion: MotionAlone,
+    is_alone: bool,
     last: Option<Sample>,
     repetitions: [Repetition; 2],
     samples: f64,
@@ -74,7 +76,19 @@ pub struct Quarantine {
     found: Option<(Channel, f64)>,
     /// Whether F has just been found stuck.
     force_stuck: bool,
+    /// Whether something has just been found to have moved q̇ that was not read of F.
+    kicked: bool,
     sensors: [SensorState; 3],
+}
+
+/// What readings are held against.
+pub enum Against<'a> {
+    /// A law that explains its record, from the state after the last reading let through.
+    Law(Expected<'a>, Filter),
+    /// The motion itself: variances of the sensors' noise and RMS of F.
+    Motion([f64; 2], f64),
+    /// Nothing: they are let through.
+    Nothing,
 }
 
 /// A reading beside the interval since the last one.
@@ -87,6 +101,31 @@ struct Arrival {
     runs: [f64; 2],
 }
 
+impl Arrival {
+    /// Whether its readings are as near to what is foreseen as chance leaves them.
+    fn is_near<const N: usize>(&self, law: &Expected, foreseen: &Filter<N>) -> bool {
+        Channel::ALL.into_iter().all(|channel| match self.values[channel as usize] {
+            Some(Value { value, repeats, .. }) => {
+                let (residual, variance) = foreseen.residual(channel, value, law.noise.sensor[channel as usize]);
+                repeats.is_none() && residual * residual <= HELD * HELD * law.caution * variance
+            }
+            None => true,
+        })
+    }
+
+    /// A motion at rest repeats itself as a stuck sensor does: a repetition says something of a channel only where the
+    /// other one moves.
+    fn allow_rest(&mut self, law: &Expected) {
+        let varies = self.values.map(|value| value.is_some_and(|value| value.repeats.is_none()));
+        let is_fast = self.reading.sample.qd.powi(2) > OUTLYING * OUTLYING * law.noise.sensor[1];
+        let other_moves = [varies[1] && is_fast, varies[0]];
+        for index in (0..2).filter(|index| !other_moves[*index]) {
+            self.values[index].iter_mut().for_each(|value| value.repeats = None);
+            self.runs[index] = 0.0;
+        }
+    }
+}
+
 impl Quarantine {
     /// Nothing held of these channels.
     pub fn new(measured: [bool; 2]) -> Quarantine {
@@ -96,9 +135,9 @@ impl Quarantine {
             held: vec![Reading::default(); ROOM],
             count: 0,
             interval: 0.0,
-            through: vec![Reading::default(); 2 * ROOM],
-            first: 0,
-            waiting: 0,
+            through: Queue::new(2 * ROOM),
+            motion: MotionAlone::new(),
+            is_alone: false,
             last: None,
             repetitions: [Repetition::default(); 2],
             samples: 0.0,
@@ -107,28 +146,23 @@ impl Quarantine {
             offset: [0.0; 2],
             found: None,
             force_stuck: false,
+            kicked: false,
             sensors: [SensorState::Ok; 3],
         }
     }
 
-    /// Takes a reading; `law` is what it is held against, `filter` the state after the last reading let through, `pace`
-    /// the usual time between two samples, s. Without a law nothing is held.
-    pub fn take(
-        &mut self,
-        mut reading: Reading,
-        measured: [bool; 2],
-        hold: Hold,
-        pace: f64,
-        law: Option<(Expected, Filter)>,
-    ) {
+    /// Takes a reading, `pace` being the usual time between two samples, s.
+    pub fn take(&mut self, mut reading: Reading, measured: [bool; 2], hold: Hold, pace: f64, against: Against) {
         reading.sample.q -= self.offset[0];
         reading.sample.qd -= self.offset[1];
+        self.change_measure(matches!(against, Against::Motion(..)));
         let before = self.last.replace(reading.sample);
         self.samples += 1.0;
         // what is held has no name yet
         if self.count == 0 {
             self.sensors = self.standing();
         }
+        let law = if let Against::Law(law, filter) = against { Some((law, filter)) } else { None };
         let arrival = before.map(|before| {
             // what the law expects to move is asked of a channel that repeats itself alone
             let repeats = reading.sample.q == before.q || reading.sample.qd == before.qd;
@@ -137,40 +171,50 @@ impl Quarantine {
             let scatter = known.map_or([0.0; 2], |(law, _)| law.noise.sensor.map(f64::sqrt));
             self.arrival(reading, &before, measured, hold, course, scatter)
         });
-        match (law, arrival) {
-            (Some((law, filter)), Some(arrival)) if arrival.dt < GAP * pace => {
+        match (against, arrival) {
+            (Against::Law(law, filter), Some(arrival)) if arrival.dt < GAP * pace => {
                 let law = Expected { noise: law.noise_with(reading.unseen, filter.mean[0]), ..law };
                 self.weigh(&arrival, &law, &filter);
             }
+            (Against::Motion(noise, force), Some(arrival)) if arrival.dt < GAP * pace => {
+                let around = Surroundings { noise, measured, size: self.size(), force };
+                self.weigh_alone(arrival, &around);
+            }
             _ => {
                 self.settle();
+                self.motion.restart();
                 self.let_through(reading);
             }
         }
     }
 
+    /// A law has been found, or lost: what was held against the one says nothing of the other.
+    fn change_measure(&mut self, is_alone: bool) {
+        if self.is_alone != is_alone {
+            self.is_alone = is_alone;
+            self.settle();
+            self.motion.restart();
+        }
+    }
+
     /// The next reading for the record.
     pub fn next(&mut self) -> Option<Reading> {
-        let left = self.waiting.checked_sub(1)?;
-        let reading = std::mem::take(&mut self.through[self.first]);
-        (self.first, self.waiting) = ((self.first + 1) % self.through.len(), left);
-        Some(reading)
+        self.through.pop()
     }
 
     /// Samples that are not in the record yet.
     pub fn behind(&self) -> usize {
-        self.count + self.waiting
+        self.count + self.through.count()
     }
 
     /// Changes the last `count` readings, as far as they are not in the record yet; returns how many are.
     pub fn amend(&mut self, count: u64, mut change: impl FnMut(&mut Reading)) -> u64 {
         let behind = self.behind();
         let own = behind.min(usize::try_from(count).unwrap_or(behind));
-        let room = self.through.len();
         for place in behind - own..behind {
-            match place.checked_sub(self.waiting) {
+            match place.checked_sub(self.through.count()) {
                 Some(held) => change(&mut self.held[held]),
-                None => change(&mut self.through[(self.first + place) % room]),
+                None => change(self.through.at(place)),
             }
         }
         count - own as u64
@@ -183,7 +227,7 @@ impl Quarantine {
 
     /// Whether what is held speaks for another law more than for any fault.
     pub fn suspects_law(&self) -> bool {
-        self.count > 0 && self.weighing.law_against_fault() > 0.0
+        !self.is_alone && self.count > 0 && self.weighing.law_against_fault() > 0.0
     }
 
     /// An offset of the channel has been found in readings that were let through.
@@ -243,17 +287,45 @@ impl Quarantine {
     }
 
     fn weigh(&mut self, arrival: &Arrival, law: &Expected, filter: &Filter) {
-        self.calm_down();
-        let calm = self.stance == Stance::Calm;
+        self.calm_down(law);
         // while readings wait the law in use is behind them
-        let expected = calm && (self.decided > 0 || self.waiting > 0 || self.is_expected(arrival, law, filter));
-        self.decided = self.decided.saturating_sub(u32::from(calm));
+        let waits = self.decided > 0 || self.through.count() > 0;
+        if self.stance == Stance::Calm && (waits || self.is_expected(arrival, law, filter)) {
+            self.decided = self.decided.saturating_sub(1);
+            return self.let_through(arrival.reading);
+        }
+        self.doubt(arrival, law, &under_law(filter));
+    }
+
+    /// Where no law is known readings are held against the motion itself, once that is known.
+    fn weigh_alone(&mut self, mut arrival: Arrival, around: &Surroundings) {
+        let law = self.motion.expected(around, arrival.dt, arrival.reading.unseen);
+        self.calm_down(&law);
+        let filter = match self.stance {
+            Stance::Calm => self.motion.filter(),
+            _ => self.weighing.nothing().start(&law),
+        };
+        let foreseen = law.foresee(&filter, arrival.dt, &arrival.drive);
+        let values = arrival.values.map(|value| value.map(|value| value.value));
+        self.motion.learn(&law, &foreseen, values);
+        arrival.allow_rest(&law);
+        let calm = self.stance == Stance::Calm;
+        if calm && (!self.motion.is_known() || self.decided > 0 || arrival.is_near(&law, &foreseen)) {
+            self.decided = self.decided.saturating_sub(1);
+            self.motion.take(around, arrival.dt, &arrival.drive, arrival.reading.unseen, values);
+            return self.let_through(arrival.reading);
+        }
+        self.doubt(&arrival, &law, &filter);
+    }
+
+    /// What a reading is has no name yet, or is told by what has just had one; where nothing has been held it begins
+    /// from `start`.
+    fn doubt(&mut self, arrival: &Arrival, law: &Expected, start: &Filter<4>) {
         match self.stance {
-            Stance::Calm if expected => self.let_through(arrival.reading),
-            Stance::Calm => self.begin(arrival, law, *filter),
+            Stance::Calm => self.begin(arrival, law, start),
             Stance::Named(place) if self.is_released(place, arrival) => {
-                let filter = self.weighing.hypothesis(place).filter();
-                self.begin(arrival, law, filter);
+                let start = self.weighing.hypothesis(place).start(law);
+                self.begin(arrival, law, &start);
             }
             Stance::Named(place) if self.count == 0 && self.weighing.hypothesis(place).kind.is_no_event() => {
                 self.weighing.renew(law, arrival.dt, ROOM);
@@ -266,13 +338,18 @@ impl Quarantine {
 
     /// Once no burst goes on and everything is in the record, the law in use says again what is expected; not while the
     /// readings speak for anything else: five stds are chance in one reading, and an offset in three.
-    fn calm_down(&mut self) {
+    fn calm_down(&mut self, law: &Expected) {
         if let Stance::Named(place) = self.stance
-            && self.behind() == 0
+            && (self.is_alone || self.behind() == 0)
+            && self.count == 0
         {
             let kind = self.weighing.hypothesis(place).kind;
             let forgotten = kind.is_no_event() && self.weighing.is_idle();
             if self.is_over(place) && (forgotten || kind.is_kick()) {
+                if self.is_alone {
+                    let named = if kind.is_kick() { self.weighing.hypothesis(place) } else { self.weighing.nothing() };
+                    self.motion.put(&named.start(law));
+                }
                 self.stance = Stance::Calm;
                 self.weighing.clear();
             }
@@ -287,14 +364,7 @@ impl Quarantine {
     }
 
     fn is_expected(&self, arrival: &Arrival, law: &Expected, filter: &Filter) -> bool {
-        let expected = law.carry(filter, arrival.dt, &arrival.drive);
-        Channel::ALL.into_iter().all(|channel| match arrival.values[channel as usize] {
-            Some(Value { value, repeats, .. }) => {
-                let (residual, variance) = expected.residual(channel, value, law.noise.sensor[channel as usize]);
-                repeats.is_none() && residual * residual <= HELD * HELD * law.caution * variance
-            }
-            None => true,
-        })
+        arrival.is_near(law, &law.carry(filter, arrival.dt, &arrival.drive))
     }
 
     /// Whether a sensor that was stuck varies again.
@@ -306,8 +376,8 @@ impl Quarantine {
         })
     }
 
-    fn begin(&mut self, arrival: &Arrival, law: &Expected, filter: Filter) {
-        self.weighing.begin(&filter, law, arrival.dt, arrival.runs);
+    fn begin(&mut self, arrival: &Arrival, law: &Expected, start: &Filter<4>) {
+        self.weighing.begin(start, law, arrival.dt, arrival.runs);
         (self.stance, self.interval) = (Stance::Doubt, arrival.dt);
         self.hold(arrival, law);
     }
@@ -320,7 +390,24 @@ impl Quarantine {
         // louder sensors are told from a burst of small readings by their going on alone
         let named = self.weighing.named().filter(|place| !self.weighing.hypothesis(*place).kind.is_loud());
         let named = named.or_else(|| full.then(|| self.weighing.best()));
-        named.into_iter().for_each(|place| self.name(place, law));
+        match named {
+            Some(place) if self.is_alone && !self.has_returned(place) => {
+                if full {
+                    self.settle();
+                    self.motion.refute();
+                }
+            }
+            Some(place) => self.name(place, law),
+            None => {}
+        }
+    }
+
+    /// Where only the motion says what a reading may be, a fault is one that it has returned from to where it was
+    /// expected: what does not within all there is room for is its own course.
+    fn has_returned(&self, place: usize) -> bool {
+        let named = self.weighing.hypothesis(place);
+        let mut others = Channel::ALL.into_iter().filter(|channel| !named.kind.sticks(*channel));
+        others.all(|channel| named.burst(channel) < UNLIKELY)
     }
 
     /// What was held enters the record as the named hypothesis has it.
@@ -337,7 +424,7 @@ impl Quarantine {
             (reading.sample.q, reading.sample.qd) =
                 (if faulty[0] { state.q } else { q }, if faulty[1] { state.qd } else { qd });
             reading.faulty = faulty;
-            if kind.is_kick() && begins && number == 0 {
+            if kind.is_kick() && begins && number == 0 && !self.is_alone {
                 reading.unseen += law.kick(state.q, self.interval);
             }
             any = [any[0] || faulty[0], any[1] || faulty[1]];
@@ -347,12 +434,16 @@ impl Quarantine {
         self.count = 0;
         self.weighing.forget_held();
         self.stance = Stance::Named(place);
+        if self.is_alone {
+            self.motion.put(&self.weighing.hypothesis(place).start(law));
+        }
         match kind {
             // the law in use follows how loud the sensors are
             Kind::Law { .. } | Kind::Louder(_) | Kind::BothLouder => {
                 (self.stance, self.decided) = (Stance::Calm, DECIDED)
             }
             Kind::ForceStuck => (self.stance, self.force_stuck) = (Stance::Calm, true),
+            Kind::Kick | Kind::Glitch => self.kicked = begins,
             Kind::Offset(channel) if self.weighing.odds(place) > CERTAIN => self.know_offset(channel, offset, law),
             _ => {}
         }
@@ -384,6 +475,11 @@ impl Quarantine {
         std::mem::take(&mut self.force_stuck)
     }
 
+    /// Whether something has just been found to have moved q̇ that was not read of F.
+    pub fn found_kick(&mut self) -> bool {
+        std::mem::take(&mut self.kicked)
+    }
+
     /// What the sensors do by the hypothesis just named.
     fn say(&mut self, kind: Kind, faulty: [bool; 2], begins: bool) {
         for (index, faulty) in faulty.into_iter().enumerate() {
@@ -396,7 +492,7 @@ impl Quarantine {
         }
         match kind {
             Kind::Offset(channel) => self.sensors[channel as usize] = SensorState::Offset,
-            Kind::Kick | Kind::Glitch if begins => self.sensors[2] = SensorState::Outlier,
+            Kind::Kick | Kind::Glitch if begins && !self.is_alone => self.sensors[2] = SensorState::Outlier,
             _ => {}
         }
     }
@@ -440,8 +536,6 @@ impl Quarantine {
         for (square, value) in self.squares.iter_mut().zip([reading.sample.q, reading.sample.qd]) {
             *square += (value * value - *square) / self.samples.min(MEMORY);
         }
-        let room = self.through.len();
-        self.through[(self.first + self.waiting) % room] = reading;
-        self.waiting = (self.waiting + 1).min(room);
+        self.through.push(reading);
     }
 }

@@ -38,11 +38,11 @@ impl Weighing {
 
     /// Every hypothesis begins at the state before the first reading held, `dt` s ago, `runs` being what repetitions
     /// before it have cost by channel, nats: one that sticks has not repeated itself by chance.
-    pub fn begin(&mut self, filter: &Filter, law: &Expected, dt: f64, runs: [f64; 2]) {
+    pub fn begin(&mut self, start: &Filter<4>, law: &Expected, dt: f64, runs: [f64; 2]) {
         for hypothesis in &mut self.hypotheses {
             let sticks = Channel::ALL.into_iter().filter(|channel| hypothesis.kind.sticks(*channel));
             let run = sticks.map(|channel| runs[channel as usize]).sum::<f64>();
-            hypothesis.begin(filter, law, dt, 0.0, odds(hypothesis.kind, dt) + run);
+            hypothesis.begin(start, law, dt, 0.0, odds(hypothesis.kind, dt) + run);
         }
     }
 
@@ -50,10 +50,10 @@ impl Weighing {
     /// So does what they have not told in that many samples.
     pub fn renew(&mut self, law: &Expected, dt: f64, samples: usize) {
         let nothing = self.nothing();
-        let (own, log, filter, bursts) = (nothing.kind, nothing.log, nothing.filter(), nothing.bursts);
+        let (own, log, start, bursts) = (nothing.kind, nothing.log, nothing.start(law), nothing.bursts);
         for hypothesis in self.hypotheses.iter_mut().filter(|hypothesis| hypothesis.kind != own) {
             if hypothesis.log - log <= hypothesis.prior || hypothesis.age() >= samples {
-                hypothesis.begin(&filter, law, dt, log, odds(hypothesis.kind, dt));
+                hypothesis.begin(&start, law, dt, log, odds(hypothesis.kind, dt));
                 hypothesis.bursts = bursts;
             }
         }

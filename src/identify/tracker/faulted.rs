@@ -35,6 +35,7 @@ pub(super) fn expected<'a>(
         drive: scales.acceleration(),
         stuck: None,
         parts: law.run.parts,
+        alone: None,
     }
 }
 

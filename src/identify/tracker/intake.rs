@@ -3,7 +3,7 @@
 use super::faulted::expected;
 use super::state::{Intake, Setup, Tracker};
 use crate::estimation::OUTLYING;
-use crate::identify::faults::{Expected, Stray};
+use crate::identify::faults::{Against, Expected, Stray};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::report::{SensorState, Status};
@@ -62,32 +62,45 @@ impl Tracker {
         }
     }
 
-    /// A validated law that explains its record says what a reading can be; nothing else does.
+    /// A validated law that explains its record says what a reading can be, and what F did.
     fn tells_readings(&self) -> bool {
         let law = &self.monitor.law;
         law.running && law.explains && self.regime.law().is_some()
     }
 
-    /// What may be a sensor's fault is held against such a law.
+    /// What may be a sensor's fault is held against such a law, or without one against the motion itself.
     fn hold_against_law(&mut self, setup: Setup, reading: Reading) {
         let Setup { problem, .. } = setup;
-        let known = self.tells_readings() && problem.timing.hold != Hold::BandLimited;
-        let caution = known.then(|| self.decision().caution());
+        let known = self.tells_readings().then(|| self.decision().caution());
         let stuck = self.standing_force().filter(|_| !self.intake.force_lost);
+        let noise = setup.known_noise(&self.difference_noise);
         let Tracker { intake, monitor, window, segment, .. } = self;
         let law = &monitor.law;
         let size = intake.quarantine.size();
-        let held = |caution| Expected { stuck, ..expected(problem, law, caution, &segment.scales, size) };
-        let expected = caution.map(|caution| (held(caution), law.run.filter));
+        let force = if problem.channels.excitation { intake.excitation.size() } else { 0.0 };
+        let against = match (known, noise) {
+            _ if problem.timing.hold == Hold::BandLimited => Against::Nothing,
+            (Some(caution), _) => {
+                let expected = expected(problem, law, caution, &segment.scales, size);
+                Against::Law(Expected { stuck, ..expected }, law.run.filter)
+            }
+            (None, Some(noise)) => Against::Motion(noise, force),
+            (None, None) => Against::Nothing,
+        };
+        let by_law = matches!(against, Against::Law(..));
         let measured = problem.channels.of_motion();
-        intake.quarantine.take(reading, measured, problem.timing.hold, window.pace(), expected);
+        intake.quarantine.take(reading, measured, problem.timing.hold, window.pace(), against);
         let (in_doubt, is_stuck) = (intake.quarantine.is_in_doubt(), intake.quarantine.found_stuck_force());
-        let left = intake.excitation.left().filter(|_| in_doubt && !intake.force_lost);
-        if let Some(readings) = left {
-            intake.quarantine.settle();
-            self.lose_excitation(u64::from(readings));
-        } else if is_stuck {
-            self.lose_excitation(self.intake.force.length());
+        let kicked = intake.quarantine.found_kick() && !by_law;
+        match intake.excitation.left().filter(|_| !intake.force_lost) {
+            Some(readings) if by_law && in_doubt => {
+                intake.quarantine.settle();
+                self.lose_excitation(u64::from(readings));
+            }
+            // without a law F as it is read may act in many ways, but not where it left its course beside a kick
+            Some(readings) if kicked => self.leave_open(u64::from(readings), self.unknown_excitation()),
+            _ if is_stuck => self.lose_excitation(self.intake.force.length()),
+            _ => {}
         }
     }
 

@@ -326,7 +326,15 @@ impl Tracker {
 impl Setup<'_> {
     /// Sensor variances before any law: as set, or from differences.
     pub(super) fn first_noise(&self, differences: &DifferenceNoise) -> [f64; 2] {
-        let found = differences.variance().unwrap_or([0.0; 2]);
+        self.known_noise(differences).unwrap_or_else(|| self.noise_or([0.0; 2]))
+    }
+
+    /// The same; none before there are enough differences.
+    pub(super) fn known_noise(&self, differences: &DifferenceNoise) -> Option<[f64; 2]> {
+        differences.variance().map(|found| self.noise_or(found))
+    }
+
+    fn noise_or(&self, found: [f64; 2]) -> [f64; 2] {
         let given = self.settings.given_noise();
         [0, 1].map(|index| given[index].unwrap_or(found[index] + f64::MIN_POSITIVE))
     }
