@@ -269,8 +269,15 @@ impl Expected<'_> {
 pub struct Value {
     /// What was read.
     pub value: f64,
-    /// −ln of how often the channel repeats a value, where it does and that is rare.
+    /// −ln of how often the channel repeats a value, where it does and that is rare; 0 where it may rest.
     pub repeats: Option<f64>,
+}
+
+impl Value {
+    /// Whether a working sensor would hardly have repeated it.
+    pub fn is_rare(&self) -> bool {
+        self.repeats.is_some_and(|nats| nats > 0.0)
+    }
 }
 
 /// (q, q̇) as a law leaves them, with nothing unknown beside it.
@@ -490,6 +497,8 @@ impl Hypothesis {
         if self.kind.sticks(channel) {
             let faulty = faulty(residual, std);
             self.log += match value.repeats {
+                // at rest it reads what a working one does
+                Some(0.0) => working(0.0, law.noise.sensor[index]),
                 Some(_) => 0.0,
                 None if self.age == 0 => faulty,
                 None => faulty + VARIES,

@@ -105,9 +105,9 @@ impl Arrival {
     /// Whether its readings are as near to what is foreseen as chance leaves them.
     fn is_near<const N: usize>(&self, law: &Expected, foreseen: &Filter<N>) -> bool {
         Channel::ALL.into_iter().all(|channel| match self.values[channel as usize] {
-            Some(Value { value, repeats, .. }) => {
-                let (residual, variance) = foreseen.residual(channel, value, law.noise.sensor[channel as usize]);
-                repeats.is_none() && residual * residual <= HELD * HELD * law.caution * variance
+            Some(read) => {
+                let (residual, variance) = foreseen.residual(channel, read.value, law.noise.sensor[channel as usize]);
+                !read.is_rare() && residual * residual <= HELD * HELD * law.caution * variance
             }
             None => true,
         })
@@ -120,7 +120,7 @@ impl Arrival {
         let is_fast = self.reading.sample.qd.powi(2) > OUTLYING * OUTLYING * law.noise.sensor[1];
         let other_moves = [varies[1] && is_fast, varies[0]];
         for index in (0..2).filter(|index| !other_moves[*index]) {
-            self.values[index].iter_mut().for_each(|value| value.repeats = None);
+            self.values[index].iter_mut().for_each(|value| value.repeats = value.repeats.map(|_| 0.0));
             self.runs[index] = 0.0;
         }
     }
