@@ -1,6 +1,6 @@
 //! Faults of sensors, clocks and masters, put into readings.
 
-use crate::{COURSE, NOISE};
+use crate::NOISE;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::ops::Range;
@@ -151,11 +151,11 @@ impl Fault {
         }
     }
 
-    /// Puts it into the readings; returns the time of the last faulty one, s.
-    pub fn apply(self, readings: &mut Vec<Reading>, seed: u64) -> f64 {
+    /// Puts it into the readings, from time `at` on; returns that of the last faulty one, s.
+    pub fn apply(self, readings: &mut Vec<Reading>, at: f64, seed: u64) -> f64 {
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xfa17);
-        let first = readings.partition_point(|reading| reading.t < COURSE[0]);
-        let last = readings.partition_point(|reading| reading.t < COURSE[0] + self.lasts());
+        let first = readings.partition_point(|reading| reading.t < at);
+        let last = readings.partition_point(|reading| reading.t < at + self.lasts());
         let mut end = last;
         match self {
             Fault::Clean | Fault::Lacks(_) => {}
@@ -212,9 +212,9 @@ impl Fault {
             Fault::Coarse(step) => *readings = readings.iter().step_by(step).copied().collect(),
         }
         match self {
-            Fault::Stamp => COURSE[0],
-            Fault::Flaky | Fault::Late | Fault::Coarse(_) | Fault::Lacks(_) => COURSE[0],
-            _ => readings[end.clamp(first + 1, readings.len()) - 1].t.min(COURSE[0] + self.lasts().max(0.05)),
+            Fault::Stamp => at,
+            Fault::Flaky | Fault::Late | Fault::Coarse(_) | Fault::Lacks(_) => at,
+            _ => readings[end.clamp(first + 1, readings.len()) - 1].t.min(at + self.lasts().max(0.05)),
         }
     }
 }

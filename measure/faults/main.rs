@@ -1,7 +1,8 @@
-//! The table of sensor faults: `cargo xtask faults [--seeds N] [--first SEED] [--only TEXT] [--threads N] [--cells]`.
+//! The table of sensor faults: `cargo xtask faults [--seeds N] [--first SEED] [--only TEXT] [--at S]
+//! [--threads N] [--cells]`.
 //!
 //! Every fault is put into a record of four plants, terms given and full library, at 1 kHz with noise σ = 0.01: the law
-//! holds for 20 s, the fault begins at 10 s, and at 20 s the law switches. What is wrong is judged by the truth:
+//! holds for 20 s, the fault begins at 10 s or where `--at` says, and at 20 s the law switches. What is wrong is judged by the truth:
 //!
 //! | column | meaning |
 //! |---|---|
@@ -41,13 +42,16 @@ const NOISE: f64 = 0.01;
 /// RMS of the force of an effect that a law lacks ÷ RMS of the inertia's.
 const LACKED: f64 = 0.1;
 
-/// Times at which the fault begins, the law switches, and the record ends, s.
-const COURSE: [f64; 3] = [10.0, 20.0, 30.0];
+/// Time at which the fault begins unless another is asked for, the law switches, and the record ends, s.
+const FAULT: f64 = 10.0;
+const SWITCH: f64 = 20.0;
+const END: f64 = 30.0;
 
 /// What is asked for.
 struct Asked {
     seeds: Range<u64>,
     only: String,
+    at: f64,
     threads: usize,
     cells: bool,
 }
@@ -59,6 +63,7 @@ struct Cell {
     plant: Builtin,
     library: bool,
     seed: u64,
+    at: f64,
 }
 
 fn main() -> Result<(), Failure> {
@@ -77,13 +82,14 @@ fn main() -> Result<(), Failure> {
 
 fn asked(mut arguments: impl Iterator<Item = String>) -> Result<Asked, Failure> {
     let (mut seeds, mut first) = (20, 3000);
-    let mut asked = Asked { seeds: 0..0, only: String::new(), threads: 2, cells: false };
+    let mut asked = Asked { seeds: 0..0, only: String::new(), at: FAULT, threads: 2, cells: false };
     while let Some(argument) = arguments.next() {
         let mut value = || arguments.next().ok_or(format!("{argument} needs a value"));
         match argument.as_str() {
             "--seeds" => seeds = value()?.parse()?,
             "--first" => first = value()?.parse()?,
             "--only" => asked.only = value()?,
+            "--at" => asked.at = value()?.parse()?,
             "--threads" => asked.threads = value()?.parse()?,
             "--cells" => asked.cells = true,
             _ => return Err(format!("no such option: {argument}").into()),
@@ -95,7 +101,9 @@ fn asked(mut arguments: impl Iterator<Item = String>) -> Result<Asked, Failure> 
 
 fn cells(asked: &Asked, fault: Fault) -> Vec<Cell> {
     let plants = PLANTS.into_iter().filter(|plant| fault.suits(*plant));
-    let of = |plant: Builtin, library: bool| asked.seeds.clone().map(move |seed| Cell { fault, plant, library, seed });
+    let at = asked.at;
+    let of =
+        |plant: Builtin, library: bool| asked.seeds.clone().map(move |seed| Cell { fault, plant, library, seed, at });
     plants.flat_map(|plant| [false, true].into_iter().flat_map(move |library| of(plant, library))).collect()
 }
 
@@ -135,8 +143,8 @@ impl Cell {
     fn scenario(&self) -> Scenario {
         let mut scenario = self.plant.random(self.seed).with_noise(NOISE);
         scenario.stages.truncate(2);
-        scenario.stages[1].start = COURSE[1];
-        scenario.duration = COURSE[2];
+        scenario.stages[1].start = SWITCH;
+        scenario.duration = END;
         scenario
     }
 
@@ -152,6 +160,6 @@ impl Cell {
     }
 
     fn watch(&self) -> Result<Seen, Failure> {
-        watch(&self.model(), &self.scenario_of_fault()?, self.fault, self.seed)
+        watch(&self.model(), &self.scenario_of_fault()?, self.fault, self.at, self.seed)
     }
 }

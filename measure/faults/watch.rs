@@ -1,7 +1,7 @@
 //! One record through the identifier, judged by its truth.
 
 use crate::fault::Fault;
-use crate::{COURSE, Failure};
+use crate::{END, Failure, SWITCH};
 use switchid::identify::{Coefficient, Identifier, Sample, Settings};
 use switchid::law::{Drive, Model, State, Term};
 use switchid::limits::{Course, Law, Sensors, detection, level};
@@ -65,7 +65,7 @@ fn record(scenario: &Scenario) -> Result<Recorded, Failure> {
 /// RMS of the inertia's force ÷ RMS of what the term multiplies, before the law switches.
 pub fn ratio_of_forces(scenario: &Scenario, term: Term) -> Result<f64, Failure> {
     let recorded = record(scenario)?;
-    let times: Vec<f64> = recorded.readings.iter().map(|reading| reading.t).take_while(|t| *t < COURSE[1]).collect();
+    let times: Vec<f64> = recorded.readings.iter().map(|reading| reading.t).take_while(|t| *t < SWITCH).collect();
     let inertia = scenario.terms.iter().position(|term| *term == Term::Inertia).ok_or("no inertia")?;
     let mut squares = [0.0; 2];
     for (state, next) in recorded.states.iter().zip(&recorded.states[1..]).take(times.len()) {
@@ -76,11 +76,11 @@ pub fn ratio_of_forces(scenario: &Scenario, term: Term) -> Result<f64, Failure> 
     Ok((squares[0] / squares[1]).sqrt())
 }
 
-/// Steps a new identifier over the scenario's record with the fault in it.
-pub fn watch(model: &Model, scenario: &Scenario, fault: Fault, seed: u64) -> Result<Seen, Failure> {
+/// Steps a new identifier over the scenario's record with the fault in it from time `at` on.
+pub fn watch(model: &Model, scenario: &Scenario, fault: Fault, at: f64, seed: u64) -> Result<Seen, Failure> {
     let recorded = record(scenario)?;
     let mut readings = recorded.readings.clone();
-    let last = fault.apply(&mut readings, seed);
+    let last = fault.apply(&mut readings, at, seed);
     let mut identifier = Identifier::new(model, Settings::default())?;
     let none = f64::INFINITY;
     let mut seen = Seen { valid_again: none, named: none, limit: limit(scenario, &recorded)?, ..Seen::default() };
@@ -89,11 +89,12 @@ pub fn watch(model: &Model, scenario: &Scenario, fault: Fault, seed: u64) -> Res
         let sample = Sample { t: reading.t, q: reading.q, qd: reading.qd, excitation: reading.excitation };
         // what is skipped leaves the outputs as the identifier has them
         identifier.step(sample).ok();
-        let t = if reading.t < COURSE[2] { reading.t } else { before };
-        seen.take(&identifier, scenario, t, t - before, last);
+        let t = if reading.t < END { reading.t } else { before };
+        seen.take(&identifier, scenario, t, t - before, [at, last]);
         let switches = identifier.output().switch_count;
         if switches != count {
-            seen.alarm(t, switches.saturating_sub(count), fault);
+            let begins = if matches!(fault, Fault::Lacks(_)) { 0.0 } else { at };
+            seen.alarm(t, switches.saturating_sub(count), begins);
         }
         (before, count) = (t, switches);
     }
@@ -101,12 +102,12 @@ pub fn watch(model: &Model, scenario: &Scenario, fault: Fault, seed: u64) -> Res
 }
 
 impl Seen {
-    fn take(&mut self, identifier: &Identifier, scenario: &Scenario, t: f64, dt: f64, last: f64) {
+    fn take(&mut self, identifier: &Identifier, scenario: &Scenario, t: f64, dt: f64, [at, last]: [f64; 2]) {
         let valid = identifier.output().valid;
         self.missing |= identifier.output().missing.is_some();
-        if t < COURSE[0] - BEFORE {
+        if t < at - BEFORE {
             self.valid_before = valid;
-        } else if t > last && t < COURSE[1] {
+        } else if t > last && t < SWITCH {
             self.valid_again = if valid { self.valid_again.min(t - last) } else { f64::INFINITY };
         }
         if !valid {
@@ -127,13 +128,12 @@ impl Seen {
         self.dishonest += if z > BEYOND { dt } else { 0.0 };
     }
 
-    fn alarm(&mut self, t: f64, count: u32, fault: Fault) {
-        let begins = if matches!(fault, Fault::Lacks(_)) { 0.0 } else { COURSE[0] };
-        match t < COURSE[1] {
+    fn alarm(&mut self, t: f64, count: u32, begins: f64) {
+        match t < SWITCH {
             true if t >= begins => self.false_switches += count,
             true => {}
             false if self.named.is_infinite() => {
-                (self.named, self.false_switches) = (t - COURSE[1], self.false_switches + count - 1)
+                (self.named, self.false_switches) = (t - SWITCH, self.false_switches + count - 1)
             }
             false => self.false_switches += count,
         }
@@ -158,7 +158,7 @@ fn limit(scenario: &Scenario, recorded: &Recorded) -> Result<f64, Failure> {
         let pairs: Vec<_> = scenario.terms.iter().copied().zip(scenario.stages[stage].coefficients.clone()).collect();
         Law::new(&pairs, &(0..pairs.len()).collect::<Vec<_>>())
     };
-    let from = recorded.readings.partition_point(|reading| reading.t < COURSE[1] - 1e-9);
+    let from = recorded.readings.partition_point(|reading| reading.t < SWITCH - 1e-9);
     let readings = &recorded.readings[from..];
     let course = Course {
         t: readings.iter().map(|reading| reading.t).collect(),

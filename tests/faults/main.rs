@@ -1,5 +1,7 @@
 //! Faults of sensors and clocks: none is a switch, none leaves a trace, and `valid` is a promise all the while.
 
+mod before_a_law;
+
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
