@@ -2,7 +2,8 @@
 //! [--threads N] [--cells]`.
 //!
 //! Every fault is put into a record of four plants, terms given and full library, at 1 kHz with noise σ = 0.01: the law
-//! holds for 20 s, the fault begins at 10 s or where `--at` says, and at 20 s the law switches. What is wrong is judged by the truth:
+//! holds for 20 s, the fault begins at 10 s or where `--at` says, and at 20 s the law switches. What is wrong is
+//! judged by the truth:
 //!
 //! | column | meaning |
 //! |---|---|

@@ -3,8 +3,8 @@
 //! x = (q, q̇, u₀, u₁). Under "the law changed" q̈ is the law's + u₀ + u₁ F ÷ m: over the few readings that decide, a
 //! change of any coefficient is one of these two; u₀ then moves as the motion does, as a random walk that is as large
 //! as it is after a radian of the motion. Under "F is stuck" u₀ is what acts less what is read, ÷ m, and forgets where
-//! it was as F did. Under "a channel has an offset" u₀ is the offset. Where no law is known q̈ is u₀ + u₁ F under all of
-//! them (`motion_alone`).
+//! it was as F did. Under "a channel has an offset" u₀ is the offset. Where no law is known q̈ is u₀ + u₁ F under all
+//! of them (`motion_alone`).
 
 use super::price::{Burst, SCATTER, event, faulty, working};
 use crate::estimation::{Channel, Filter, Matrix, Noise, times, white_acceleration};
@@ -477,10 +477,8 @@ impl Hypothesis {
         let kept = standing.kept(dt);
         let Filter { mean, covariance } = &mut self.believed;
         mean[2] *= kept;
-        for place in 0..4 {
-            covariance[2][place] *= kept;
-            covariance[place][2] *= kept;
-        }
+        covariance[2].iter_mut().for_each(|entry| *entry *= kept);
+        covariance.iter_mut().for_each(|row| row[2] *= kept);
         covariance[2][2] += law.drive * law.drive * (1.0 - kept * kept);
     }
 

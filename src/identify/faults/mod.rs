@@ -1,12 +1,13 @@
 //! What may have happened to the sensors instead of to the law: one posterior over both.
 //!
-//! A reading far from what the law in use expects, or where there is none the motion itself, is not used at once. It is held, with those after it, until what
-//! happened has a name: the law changed, or a sensor failed. Every hypothesis is a filter of the state from the last
-//! reading that was as expected, scored on the same readings; physics prices them. A switch leaves q and q̇ continuous
-//! and changes q̈ alone; readings of a burst are independent wide draws, priced one by one; an offset moves one
-//! channel; a kick (an F that was not the plant's) moves q̇, and q follows; a stuck sensor repeats exactly where it
-//! varied before. What is held enters the record once the law or a fault has [3 nats](crate::estimation::TWENTY_TO_ONE)
-//! on the other, without the readings that are a sensor's fault: nothing that is not committed has to be taken back.
+//! A reading far from what the law in use expects, or where there is none the motion itself, is not used at once. It
+//! is held, with those after it, until what happened has a name: the law changed, or a sensor failed. Every hypothesis
+//! is a filter of the state from the last reading that was as expected, scored on the same readings; physics prices
+//! them. A switch leaves q and q̇ continuous and changes q̈ alone; readings of a burst are independent wide draws,
+//! priced one by one; an offset moves one channel; a kick (an F that was not the plant's) moves q̇, and q follows; a
+//! stuck sensor repeats exactly where it varied before. What is held enters the record once the law or a fault has [3
+//! nats](crate::estimation::TWENTY_TO_ONE) on the other, without the readings that are a sensor's fault: nothing that
+//! is not committed has to be taken back.
 //!
 //! - `price`: densities of readings, and the two states of a channel;
 //! - `repetition`: how often a channel repeats a value exactly;

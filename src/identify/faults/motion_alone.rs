@@ -1,9 +1,10 @@
 //! What readings are held against where no law is known: the motion itself.
 //!
-//! q̇ is what q moves by, and q̈ is u₀ + u₁ F, of which u₀ wanders and u₁ is constant. How fast q̈ wanders, and by how much
-//! q is off the integral of q̇ (a channel that is late, filtered, or scaled otherwise), is the motion's own; filters of
-//! several such roughnesses run beside each other, and the likeliest one is believed. A motion that leaves all of them
-//! for longer than a fault would has refuted them: they begin anew, and what they then say is heard after twice as long.
+//! q̇ is what q moves by, and q̈ is u₀ + u₁ F, of which u₀ wanders and u₁ is constant. How fast q̈ wanders, and by how
+//! much q is off the integral of q̇ (a channel that is late, filtered, or scaled otherwise), is the motion's own;
+//! filters of several such roughnesses run beside each other, and the likeliest one is believed. A motion that leaves
+//! all of them for longer than a fault would has refuted them: they begin anew, and what they then say is heard after
+//! twice as long.
 
 use super::hypothesis::{Expected, Roughness};
 use super::price::working;
@@ -12,8 +13,8 @@ use crate::evidence::INERTIA_SPREAD;
 use crate::law::{Drive, Motion, Term};
 use serde::{Deserialize, Serialize};
 
-/// Intervals over which a wandering q̈ takes q̇ as far as its sensor scatters: from a motion that is hardly sampled to one
-/// of thousands of samples a period.
+/// Intervals over which a wandering q̈ takes q̇ as far as its sensor scatters: from a motion that is hardly sampled to
+/// one of thousands of samples a period.
 const SMOOTH: [f64; 5] = [3.0, 10.0, 30.0, 100.0, 300.0];
 
 /// Part of its sensor's variance by which q is off the integral of q̇ after an interval: none, one that is seen after
@@ -38,8 +39,8 @@ const USUAL: f64 = 400.0;
 /// Factor by which the variance of a sensor follows residuals that are all beyond the upper quarter, once in so many.
 const FOLLOWS: f64 = 4.0;
 
-/// An acceleration, and what F adds to one, is this many times as large at first as takes q̇ as far as its sensor scatters
-/// within an interval: anything.
+/// An acceleration, and what F adds to one, is this many times as large at first as takes q̇ as far as its sensor
+/// scatters within an interval: anything.
 const ANY: f64 = 100.0;
 
 /// Std within which what F adds is told to be any.

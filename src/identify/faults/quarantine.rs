@@ -84,7 +84,7 @@ pub struct Quarantine {
 /// What readings are held against.
 pub enum Against<'a> {
     /// A law that explains its record, from the state after the last reading let through.
-    Law(Expected<'a>, Filter),
+    Law(&'a Expected<'a>, Filter),
     /// The motion itself: variances of the sensors' noise and RMS of F.
     Motion([f64; 2], f64),
     /// Nothing: they are let through.
@@ -167,13 +167,13 @@ impl Quarantine {
             // what the law expects to move is asked of a channel that repeats itself alone
             let repeats = reading.sample.q == before.q || reading.sample.qd == before.qd;
             let known = law.filter(|_| repeats);
-            let course = known.map_or([f64::INFINITY; 2], |(law, filter)| self.course(&law, filter, before, reading));
+            let course = known.map_or([f64::INFINITY; 2], |(law, filter)| self.course(law, filter, before, reading));
             let scatter = known.map_or([0.0; 2], |(law, _)| law.noise.sensor.map(f64::sqrt));
             self.arrival(reading, &before, measured, hold, course, scatter)
         });
         match (against, arrival) {
             (Against::Law(law, filter), Some(arrival)) if arrival.dt < GAP * pace => {
-                let law = Expected { noise: law.noise_with(reading.unseen, filter.mean[0]), ..law };
+                let law = Expected { noise: law.noise_with(reading.unseen, filter.mean[0]), ..*law };
                 self.weigh(&arrival, &law, &filter);
             }
             (Against::Motion(noise, force), Some(arrival)) if arrival.dt < GAP * pace => {
@@ -390,15 +390,14 @@ impl Quarantine {
         // louder sensors are told from a burst of small readings by their going on alone
         let named = self.weighing.named().filter(|place| !self.weighing.hypothesis(*place).kind.is_loud());
         let named = named.or_else(|| full.then(|| self.weighing.best()));
+        let is_told = named.is_some_and(|place| !self.is_alone || self.has_returned(place));
         match named {
-            Some(place) if self.is_alone && !self.has_returned(place) => {
-                if full {
-                    self.settle();
-                    self.motion.refute();
-                }
+            Some(place) if is_told => self.name(place, law),
+            Some(_) if full => {
+                self.settle();
+                self.motion.refute();
             }
-            Some(place) => self.name(place, law),
-            None => {}
+            _ => {}
         }
     }
 

@@ -78,12 +78,11 @@ impl Tracker {
         let law = &monitor.law;
         let size = intake.quarantine.size();
         let force = if problem.channels.excitation { intake.excitation.size() } else { 0.0 };
-        let against = match (known, noise) {
+        let expected = known.map(|caution| expected(problem, law, caution, &segment.scales, size));
+        let expected = expected.map(|expected| Expected { stuck, ..expected });
+        let against = match (&expected, noise) {
             _ if problem.timing.hold == Hold::BandLimited => Against::Nothing,
-            (Some(caution), _) => {
-                let expected = expected(problem, law, caution, &segment.scales, size);
-                Against::Law(Expected { stuck, ..expected }, law.run.filter)
-            }
+            (Some(expected), _) => Against::Law(expected, law.run.filter),
             (None, Some(noise)) => Against::Motion(noise, force),
             (None, None) => Against::Nothing,
         };
