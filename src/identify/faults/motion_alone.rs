@@ -201,3 +201,65 @@ impl MotionAlone {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::StandardNormal;
+
+    const DT: f64 = 1e-3;
+    const NOISE: f64 = 0.01;
+    const SAMPLES: u32 = 3000;
+
+    /// Mean squares of what the later half of readings of q and q̇ leaves, in the variances expected of it.
+    fn left_over(motion: &mut MotionAlone, q: impl Fn(f64) -> f64, qd: impl Fn(f64) -> f64) -> [f64; 2] {
+        let size = [1.0, 1.0];
+        let around = Surroundings { noise: [NOISE * NOISE; 2], measured: [true; 2], size, force: 0.0 };
+        let mut generator = ChaCha8Rng::seed_from_u64(18);
+        let mut sums = [0.0; 2];
+        for number in 1..=SAMPLES {
+            let t = DT * f64::from(number);
+            let mut noise = || NOISE * generator.sample::<f64, _>(StandardNormal);
+            let values = [Some(q(t) + noise()), Some(qd(t) + noise())];
+            let expected = motion.expected(&around, DT, 0.0);
+            let foreseen = expected.foresee(&motion.filter(), DT, &Drive::Held(0.0));
+            motion.learn(&expected, &foreseen, values);
+            if number > SAMPLES / 2 {
+                for channel in Channel::ALL {
+                    let (index, value) = (channel as usize, values[channel as usize].unwrap());
+                    let (residual, variance) = foreseen.residual(channel, value, expected.noise.sensor[index]);
+                    sums[index] += residual * residual / variance / f64::from(SAMPLES / 2);
+                }
+            }
+            motion.take(&around, DT, &Drive::Held(0.0), 0.0, values);
+        }
+        sums
+    }
+
+    #[test]
+    fn slow_and_fast_motions_are_foreseen_as_well_as_the_sensors_scatter() {
+        for rate in [0.5, 5.0, 50.0] {
+            let mut motion = MotionAlone::new();
+            let left = left_over(&mut motion, |t| (rate * t).sin(), |t| rate * (rate * t).cos());
+            assert!(motion.is_known() && left.iter().all(|left| (0.8..1.2).contains(left)), "{rate}: {left:?}");
+        }
+    }
+
+    /// By what q̇ is off, 0.3 m/s, an exact integral would be 30 stds off within a second.
+    #[test]
+    fn a_velocity_that_is_late_is_the_motions_own() {
+        let mut motion = MotionAlone::new();
+        let left = left_over(&mut motion, |t| (3.0 * t).sin(), |t| 3.0 * (3.0 * (t - 0.03)).cos());
+        assert!(left.iter().all(|left| (0.7..1.3).contains(left)), "{left:?}");
+    }
+
+    #[test]
+    fn what_was_refuted_is_heard_after_twice_as_long() {
+        let mut motion = MotionAlone::new();
+        left_over(&mut motion, f64::sin, f64::cos);
+        motion.refute();
+        assert!(!motion.is_known() && motion.needed == 2 * NEEDED);
+    }
+}
