@@ -32,6 +32,14 @@ fn no_number_in_the_first_second_leaves_a_trace() {
     }
 }
 
+/// Before anything is known the record begins after them.
+#[test]
+fn no_number_in_the_first_moment_leaves_a_trace() {
+    for (first, value) in [(0, 1e300), (10, f64::MAX), (90, -1e5)] {
+        stands(10_506, |samples| samples[first..first + 10].iter_mut().for_each(|sample| sample.q = value));
+    }
+}
+
 #[test]
 fn a_burst_is_none_of_the_motion() {
     stands(10_507, |samples| {

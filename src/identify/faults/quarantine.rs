@@ -230,6 +230,16 @@ impl Quarantine {
         !self.is_alone && self.count > 0 && self.weighing.law_against_fault() > 0.0
     }
 
+    /// Whether readings are held against the motion itself, and that is known.
+    pub fn knows_motion(&self) -> bool {
+        self.is_alone && self.motion.is_known()
+    }
+
+    /// What has been let through so far says nothing of how large the motion is.
+    pub fn forget_size(&mut self) {
+        (self.squares, self.samples) = ([0.0; 2], 0.0);
+    }
+
     /// An offset of the channel has been found in readings that were let through.
     pub fn take_off(&mut self, channel: Channel, offset: f64) {
         self.offset[channel as usize] += offset;

@@ -1,7 +1,7 @@
 //! From the stream into the record: what may be a sensor's fault is held until it has a name.
 
 use super::faulted::expected;
-use super::state::{Intake, Setup, Tracker};
+use super::state::{Fitting, Intake, Setup, Tracker};
 use crate::estimation::OUTLYING;
 use crate::identify::faults::{Against, Expected, Stray};
 use crate::identify::problem::Problem;
@@ -13,6 +13,12 @@ use crate::law::Hold;
 
 /// Readings that enter the record in a step: what was held is made up for at this pace.
 const CATCH_UP: usize = 4;
+
+/// No motion is this many times as large a moment before it becomes known, within some hundred samples.
+const ABSURD: f64 = 1e3;
+
+/// Samples that tell how large it is by then.
+const LATEST: usize = 50;
 
 /// Samples after which a law that gets none is not that of the present any more.
 const FRESH: usize = 2;
@@ -29,6 +35,34 @@ impl Tracker {
         for _ in 0..CATCH_UP {
             let Some(reading) = self.intake.quarantine.next() else { break };
             self.take(setup, reading);
+        }
+        if !self.intake.motion_known && self.intake.quarantine.knows_motion() {
+            self.intake.motion_known = true;
+            self.judge_beginning();
+        }
+    }
+
+    /// Readings of the stream's first moment are held against nothing. Where the motion, known by now, was at none of
+    /// them the record begins after them.
+    fn judge_beginning(&mut self) {
+        let window = &self.window;
+        let end = window.end();
+        let of = |number: u64| [window.sample(number).q, window.sample(number).qd];
+        let usual = |channel: usize| {
+            let mut sizes: [f64; LATEST] = std::array::from_fn(|back| {
+                of((end - 1).saturating_sub(back as u64).max(window.oldest()))[channel].abs()
+            });
+            sizes.sort_unstable_by(f64::total_cmp);
+            sizes[LATEST / 2]
+        };
+        let size = [usual(0), usual(1)];
+        let is_beyond = |value: f64, size: f64| size > 0.0 && value.abs() > ABSURD * size;
+        let is_absurd = |number| of(number).into_iter().zip(size).any(|(value, size)| is_beyond(value, size));
+        if !self.monitor.law.running && (window.oldest()..end).any(is_absurd) {
+            self.fitting = Fitting::Starting;
+            self.intake.quarantine.forget_size();
+            self.weak_form.restart();
+            self.begin_weak_rows(end);
         }
     }
 

@@ -78,6 +78,8 @@ pub struct Tracker {
 pub(super) struct Intake {
     pub(super) excitation: ExcitationGate,
     pub(super) quarantine: Quarantine,
+    /// Whether the motion has been known at some time.
+    pub(super) motion_known: bool,
     pub(super) after_outage: AfterOutage,
     pub(super) hindsight: Hindsight,
     /// Whether an alarm waits for the decision between another law and an offset.
@@ -188,6 +190,7 @@ impl Tracker {
             intake: Intake {
                 excitation: ExcitationGate::default(),
                 quarantine: Quarantine::new(problem.channels.of_motion()),
+                motion_known: false,
                 after_outage: AfterOutage::default(),
                 hindsight: Hindsight::new(),
                 undecided: false,
