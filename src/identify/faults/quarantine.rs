@@ -400,7 +400,8 @@ impl Quarantine {
         // louder sensors are told from a burst of small readings by their going on alone
         let named = self.weighing.named().filter(|place| !self.weighing.hypothesis(*place).kind.is_loud());
         let named = named.or_else(|| full.then(|| self.weighing.best()));
-        let is_told = named.is_some_and(|place| !self.is_alone || self.has_returned(place));
+        let is_told =
+            named.is_some_and(|place| !self.is_alone || self.has_returned(place) && !self.may_rest(place, arrival));
         match named {
             Some(place) if is_told => self.name(place, law),
             Some(_) if full => {
@@ -409,6 +410,14 @@ impl Quarantine {
             }
             _ => {}
         }
+    }
+
+    /// Whether the motion may be at rest where a sensor would be called stuck for the first time.
+    fn may_rest(&self, place: usize, arrival: &Arrival) -> bool {
+        let kind = self.weighing.hypothesis(place).kind;
+        let mut stuck = Channel::ALL.into_iter().filter(|channel| kind.sticks(*channel));
+        self.stance == Stance::Doubt
+            && stuck.any(|channel| !arrival.values[channel as usize].is_some_and(|value| value.is_rare()))
     }
 
     /// Where only the motion says what a reading may be, a fault is one that it has returned from to where it was
