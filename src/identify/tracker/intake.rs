@@ -17,6 +17,9 @@ const CATCH_UP: usize = 4;
 /// No motion is this many times as large a moment before it becomes known, within some hundred samples.
 const ABSURD: f64 = 1e3;
 
+/// Samples within which it is known, unless gaps come between: later on a motion may have decayed.
+const BEGINNING: u64 = 300;
+
 /// Samples that tell how large it is by then.
 const LATEST: usize = 50;
 
@@ -58,7 +61,7 @@ impl Tracker {
         let size = [usual(0), usual(1)];
         let is_beyond = |value: f64, size: f64| size > 0.0 && value.abs() > ABSURD * size;
         let is_absurd = |number| of(number).into_iter().zip(size).any(|(value, size)| is_beyond(value, size));
-        if !self.monitor.law.running && (window.oldest()..end).any(is_absurd) {
+        if end <= BEGINNING && !self.monitor.law.running && (window.oldest()..end).any(is_absurd) {
             self.fitting = Fitting::Starting;
             self.intake.quarantine.forget_size();
             self.weak_form.restart();
