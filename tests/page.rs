@@ -1,8 +1,8 @@
 //! The page of `switchid report` in Debian's Chromium: nothing is loaded from elsewhere, what is in view is drawn and
 //! can be zoomed, the rest is drawn when it comes into view.
 //!
-//! `SWITCHID_PAGE_ROWS=1000000 cargo test --release --test page -- --nocapture` prints the page's bytes and the time
-//! until it is zoomed for a recording of a million samples. Where there is no Chromium the test says so; on CI it
+//! `SWITCHID_PAGE_ROWS=1000000 cargo test --release --test main page:: -- --nocapture` prints the page's bytes and the
+//! time until it is zoomed for a recording of a million samples. Where there is no Chromium the test says so; on CI it
 //! fails.
 
 use std::io::{BufRead, BufReader, Read, Write};

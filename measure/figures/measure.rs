@@ -1,6 +1,6 @@
 //! The built-in scenarios through the default identifier.
 
-use crate::follow::{Figures, follow};
+use super::follow::{Figures, follow};
 use switchid::identify::{Identifier, Settings};
 use switchid::law::{Given, Model};
 use switchid::simulate::{Builtin, Scenario, record};

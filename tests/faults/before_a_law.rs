@@ -1,6 +1,6 @@
 //! Faults in the first second, when the motion alone says what a reading may be: a law is found as without them.
 
-use crate::{BEYOND, NOISE, burst, identifier, plant, samples, watch};
+use super::{BEYOND, NOISE, burst, identifier, plant, samples, watch};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;

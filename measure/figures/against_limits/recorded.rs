@@ -1,6 +1,6 @@
 //! A record with its truth, from which limits are computed and readings are handed out.
 
-use crate::Failure;
+use super::Failure;
 use std::ops::Range;
 use switchid::law::{Drive, Given, Model, State};
 use switchid::limits::{Course, Law, Sensors};

@@ -4,7 +4,9 @@
 //! those that are held, under which any of them may be a wide draw, and by louder sensors. What the likelier gains on
 //! the law in use alone is set against the evidence of a switch, on the samples that speak for one.
 
-use super::hypothesis::{Expected, Hypothesis, Kind, Value, under_law};
+use super::expected::Expected;
+use super::hypothesis::{Hypothesis, Value, under_law};
+use super::kind::Kind;
 use super::price::{event, working};
 use super::quarantine::ROOM;
 use crate::estimation::{Channel, Filter, Observation};

@@ -11,11 +11,11 @@
 //!
 //! - `price`: densities of readings, and the two states of a channel;
 //! - `repetition`: how often a channel repeats a value exactly;
-//! - `hypothesis`: the filter of one hypothesis;
-//! - `weighing`: all of them on the same readings;
+//! - `expected`: the law that readings are held against, or what there is without one;
+//! - `kind`: what may have happened; `hypothesis`: the filter of one; `weighing`: all of them on the same readings;
 //! - `motion_alone`: what is expected where no law is known;
-//! - `queue`: readings on their way into the record;
-//! - `quarantine`: readings held, and what is let through;
+//! - `arrival`: a reading beside the last one; `queue`: readings on their way into the record;
+//! - `quarantine`: readings held, and what is let through; `states`: what is said of each sensor;
 //! - `hindsight`: whether what speaks for a switch is a burst of readings that were not held;
 //! - `excitation`: a reading of F that leaves its course and returns;
 //! - `standing_force`: whether an F that was lost acts as it is read again;
@@ -24,10 +24,13 @@
 //! - `sender`: samples that nobody has read, sent again or interpolated.
 
 mod after_outage;
+mod arrival;
 mod clock;
 mod excitation;
+mod expected;
 mod hindsight;
 mod hypothesis;
+mod kind;
 mod motion_alone;
 mod price;
 mod quarantine;
@@ -35,13 +38,14 @@ mod queue;
 mod repetition;
 mod sender;
 mod standing_force;
+mod states;
 mod weighing;
 
 pub use after_outage::{AfterOutage, Returned};
 pub use clock::Clock;
 pub use excitation::{ExcitationGate, Stray};
+pub use expected::{Expected, Standing};
 pub use hindsight::{Found, Hindsight};
-pub use hypothesis::{Expected, Standing};
 pub use quarantine::{Against, Quarantine};
 pub use repetition::Repetition;
 pub use sender::Sender;

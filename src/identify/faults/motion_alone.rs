@@ -6,7 +6,7 @@
 //! all of them for longer than a fault would has refuted them: they begin anew, and what they then say is heard after
 //! twice as long.
 
-use super::hypothesis::{Expected, Roughness};
+use super::expected::{Expected, Roughness};
 use super::price::working;
 use crate::estimation::{Channel, Filter, Noise, SAMPLES_OF_A_VARIANCE};
 use crate::evidence::INERTIA_SPREAD;

@@ -1,25 +1,24 @@
 //! Readings held until what happened has a name, and those that are let through.
 
-use super::hypothesis::{Expected, Kind, Value, under_law};
+use super::arrival::{Arrival, Arrivals, Course};
+use super::expected::Expected;
+use super::hypothesis::{Hypothesis, under_law};
+use super::kind::Kind;
 use super::motion_alone::{MotionAlone, Surroundings};
 use super::queue::Queue;
-use super::repetition::Repetition;
+use super::states::States;
 use super::weighing::Weighing;
 use crate::estimation::{Channel, Filter, OUTLYING, UNLIKELY};
 use crate::identify::packed_readings;
 use crate::identify::reading::Reading;
 use crate::identify::report::SensorState;
 use crate::identify::sample::{GAP, Sample};
-use crate::law::{Drive, Hold, State};
+use crate::law::{Hold, State};
 use serde::{Deserialize, Serialize};
 
 /// Samples held at most: what has no name by then has the likeliest one. Three bursts of 20 fit in, and the record
 /// catches up with them in 16 steps.
 pub const ROOM: usize = 64;
-
-/// A reading is held from so many stds on: two of them in a row would make an alarm of a false-alarm interval of 1e6 s,
-/// 16 nats, and by chance one comes in 16 000 readings. Of a law of which more evidence is asked more is.
-const HELD: f64 = 4.0;
 
 /// Samples for which nothing is held after the law was named: the evidence of a switch decides, which in the
 /// standard scenarios takes 8 to 28 samples (medians at σ = 0.01).
@@ -47,6 +46,13 @@ enum Stance {
     Named(usize),
 }
 
+impl Stance {
+    /// The hypothesis that was named.
+    fn named(self, weighing: &Weighing) -> Option<&Hypothesis> {
+        if let Stance::Named(place) = self { Some(weighing.hypothesis(place)) } else { None }
+    }
+}
+
 /// The readings of a stream on their way into the record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quarantine {
@@ -63,8 +69,7 @@ pub struct Quarantine {
     /// What is expected without a law, and whether that is what readings are held against.
     motion: MotionAlone,
     is_alone: bool,
-    last: Option<Sample>,
-    repetitions: [Repetition; 2],
+    arrivals: Arrivals,
     samples: f64,
     /// Mean squares of q and q̇ let through.
     squares: [f64; 2],
@@ -78,7 +83,7 @@ pub struct Quarantine {
     force_stuck: bool,
     /// Whether something has just been found to have moved q̇ that was not read of F.
     kicked: bool,
-    sensors: [SensorState; 3],
+    states: States,
 }
 
 /// What readings are held against.
@@ -89,41 +94,6 @@ pub enum Against<'a> {
     Motion([f64; 2], f64),
     /// Nothing: they are let through.
     Nothing,
-}
-
-/// A reading beside the interval since the last one.
-struct Arrival {
-    reading: Reading,
-    dt: f64,
-    drive: Drive,
-    values: [Option<Value>; 2],
-    /// What the repetitions before this one have cost by channel, nats; 0 where it is none.
-    runs: [f64; 2],
-}
-
-impl Arrival {
-    /// Whether its readings are as near to what is foreseen as chance leaves them.
-    fn is_near<const N: usize>(&self, law: &Expected, foreseen: &Filter<N>) -> bool {
-        Channel::ALL.into_iter().all(|channel| match self.values[channel as usize] {
-            Some(read) => {
-                let (residual, variance) = foreseen.residual(channel, read.value, law.noise.sensor[channel as usize]);
-                !read.is_rare() && residual * residual <= HELD * HELD * law.caution * variance
-            }
-            None => true,
-        })
-    }
-
-    /// A motion at rest repeats itself as a stuck sensor does: a repetition says something of a channel only where the
-    /// other one moves.
-    fn allow_rest(&mut self, law: &Expected) {
-        let varies = self.values.map(|value| value.is_some_and(|value| value.repeats.is_none()));
-        let is_fast = self.reading.sample.qd.powi(2) > OUTLYING * OUTLYING * law.noise.sensor[1];
-        let other_moves = [varies[1] && is_fast, varies[0]];
-        for index in (0..2).filter(|index| !other_moves[*index]) {
-            self.values[index].iter_mut().for_each(|value| value.repeats = value.repeats.map(|_| 0.0));
-            self.runs[index] = 0.0;
-        }
-    }
 }
 
 impl Quarantine {
@@ -138,8 +108,7 @@ impl Quarantine {
             through: Queue::new(2 * ROOM),
             motion: MotionAlone::new(),
             is_alone: false,
-            last: None,
-            repetitions: [Repetition::default(); 2],
+            arrivals: Arrivals::default(),
             samples: 0.0,
             squares: [0.0; 2],
             decided: 0,
@@ -147,7 +116,7 @@ impl Quarantine {
             found: None,
             force_stuck: false,
             kicked: false,
-            sensors: [SensorState::Ok; 3],
+            states: States::default(),
         }
     }
 
@@ -156,21 +125,15 @@ impl Quarantine {
         reading.sample.q -= self.offset[0];
         reading.sample.qd -= self.offset[1];
         self.change_measure(matches!(against, Against::Motion(..)));
-        let before = self.last.replace(reading.sample);
         self.samples += 1.0;
         // what is held has no name yet
         if self.count == 0 {
-            self.sensors = self.standing();
+            self.states.last(self.offset, self.stance.named(&self.weighing));
         }
-        let law = if let Against::Law(law, filter) = against { Some((law, filter)) } else { None };
-        let arrival = before.map(|before| {
-            // what the law expects to move is asked of a channel that repeats itself alone
-            let repeats = reading.sample.q == before.q || reading.sample.qd == before.qd;
-            let known = law.filter(|_| repeats);
-            let course = known.map_or([f64::INFINITY; 2], |(law, filter)| self.course(law, filter, before, reading));
-            let scatter = known.map_or([0.0; 2], |(law, _)| law.noise.sensor.map(f64::sqrt));
-            self.arrival(reading, &before, measured, hold, course, scatter)
-        });
+        let law = if let Against::Law(law, filter) = against { Some((law, self.believed(filter))) } else { None };
+        let course =
+            |before: &Sample| law.map_or(Course::UNKNOWN, |(law, filter)| course(law, &filter, before, &reading));
+        let arrival = self.arrivals.take(reading, measured, hold, course);
         match (against, arrival) {
             (Against::Law(law, filter), Some(arrival)) if arrival.dt < GAP * pace => {
                 let law = Expected { noise: law.noise_with(reading.unseen, filter.mean[0]), ..*law };
@@ -247,7 +210,7 @@ impl Quarantine {
 
     /// Time of the last sample of the stream, s.
     pub fn now(&self) -> f64 {
-        self.last.map_or(0.0, |sample| sample.t)
+        self.arrivals.last.map_or(0.0, |sample| sample.t)
     }
 
     /// RMS of q and q̇.
@@ -257,43 +220,12 @@ impl Quarantine {
 
     /// What the sensors of q, q̇ and F do.
     pub fn sensors(&self) -> [SensorState; 3] {
-        self.sensors
+        self.states.said()
     }
 
-    /// What q and q̇ have moved by at least since the sample before, by the law.
-    fn course(&self, law: &Expected, filter: Filter, before: Sample, reading: Reading) -> [f64; 2] {
-        let filter = if self.stance == Stance::Calm { filter } else { self.weighing.nothing().filter() };
-        let dt = reading.sample.t - before.t;
-        let qdd = law.motion.acceleration(State { q: filter.mean[0], qd: filter.mean[1] }, before.excitation);
-        let speed = filter.mean[1].abs() - OUTLYING * filter.covariance[1][1].sqrt();
-        [speed * dt, qdd.abs() * dt - OUTLYING * (law.noise.process * dt).sqrt()]
-    }
-
-    fn arrival(
-        &mut self,
-        reading: Reading,
-        before: &Sample,
-        measured: [bool; 2],
-        hold: Hold,
-        course: [f64; 2],
-        scatter: [f64; 2],
-    ) -> Arrival {
-        let sample = reading.sample;
-        let drive = match hold {
-            Hold::Zero => Drive::Held(before.excitation),
-            Hold::Linear | Hold::BandLimited => Drive::Line(before.excitation, sample.excitation),
-        };
-        let dt = sample.t - before.t;
-        let mut runs = [0.0; 2];
-        let values = Channel::ALL.map(|channel| {
-            let index = channel as usize;
-            let value = [sample.q, sample.qd][index];
-            let run = self.repetitions[index].run();
-            let repeats = self.repetitions[index].take(value, course[index], scatter[index]);
-            runs[index] = if repeats.is_some() { run } else { 0.0 };
-            measured[index].then_some(Value { value, repeats })
-        });
-        Arrival { reading, dt, drive, values, runs }
+    /// The state after the last reading: the law's own, or where readings are held that in which nothing happened.
+    fn believed(&self, filter: Filter) -> Filter {
+        if self.stance == Stance::Calm { filter } else { self.weighing.nothing().filter() }
     }
 
     fn weigh(&mut self, arrival: &Arrival, law: &Expected, filter: &Filter) {
@@ -316,7 +248,7 @@ impl Quarantine {
             _ => self.weighing.nothing().start(&law),
         };
         let foreseen = law.foresee(&filter, arrival.dt, &arrival.drive);
-        let values = arrival.values.map(|value| value.map(|value| value.value));
+        let values = arrival.measured();
         self.motion.learn(&law, &foreseen, values);
         arrival.allow_rest(&law);
         let calm = self.stance == Stance::Calm;
@@ -465,7 +397,7 @@ impl Quarantine {
             Kind::Offset(channel) if self.weighing.odds(place) > CERTAIN => self.know_offset(channel, offset, law),
             _ => {}
         }
-        self.say(kind, any, begins);
+        self.states.say(kind, any, begins && !self.is_alone);
     }
 
     /// An offset that is known well is taken off.
@@ -498,47 +430,9 @@ impl Quarantine {
         std::mem::take(&mut self.kicked)
     }
 
-    /// What the sensors do by the hypothesis just named.
-    fn say(&mut self, kind: Kind, faulty: [bool; 2], begins: bool) {
-        for (index, faulty) in faulty.into_iter().enumerate() {
-            if kind.is_no_event() && faulty {
-                self.sensors[index] = SensorState::Outlier;
-            }
-        }
-        for channel in Channel::ALL.into_iter().filter(|channel| kind.sticks(*channel)) {
-            self.sensors[channel as usize] = SensorState::Stuck;
-        }
-        match kind {
-            Kind::Offset(channel) => self.sensors[channel as usize] = SensorState::Offset,
-            Kind::Kick | Kind::Glitch if begins && !self.is_alone => self.sensors[2] = SensorState::Outlier,
-            _ => {}
-        }
-    }
-
     /// Readings of these channels that were let through have been found a burst.
     pub fn blame(&mut self, channels: [bool; 2]) {
-        for (sensor, _) in self.sensors.iter_mut().zip(channels).filter(|(_, of_burst)| *of_burst) {
-            *sensor = SensorState::Outlier;
-        }
-    }
-
-    /// What lasts of what the sensors do.
-    fn standing(&self) -> [SensorState; 3] {
-        let offset = self.offset.map(|offset| if offset == 0.0 { SensorState::Ok } else { SensorState::Offset });
-        let mut sensors = [offset[0], offset[1], SensorState::Ok];
-        if let Stance::Named(place) = self.stance {
-            let named = self.weighing.hypothesis(place);
-            for channel in Channel::ALL {
-                let index = channel as usize;
-                match named.kind {
-                    kind if kind.sticks(channel) => sensors[index] = SensorState::Stuck,
-                    Kind::Offset(off) if off == channel => sensors[index] = SensorState::Offset,
-                    _ if named.burst(channel) > UNLIKELY => sensors[index] = SensorState::Outlier,
-                    _ => {}
-                }
-            }
-        }
-        sensors
+        self.states.blame(channels);
     }
 
     /// Everything held enters the record as it is: there is no law to hold it against any more, or none that says why.
@@ -556,4 +450,13 @@ impl Quarantine {
         }
         self.through.push(reading);
     }
+}
+
+/// What q and q̇ have moved by at least since the sample `before`, by the law.
+fn course(law: &Expected, filter: &Filter, before: &Sample, reading: &Reading) -> Course {
+    let dt = reading.sample.t - before.t;
+    let qdd = law.motion.acceleration(State { q: filter.mean[0], qd: filter.mean[1] }, before.excitation);
+    let speed = filter.mean[1].abs() - OUTLYING * filter.covariance[1][1].sqrt();
+    let moved = [speed * dt, qdd.abs() * dt - OUTLYING * (law.noise.process * dt).sqrt()];
+    Course { moved, scatter: law.noise.sensor.map(f64::sqrt) }
 }

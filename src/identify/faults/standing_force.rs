@@ -4,7 +4,7 @@
 //! only the usual size and pace are known; under the second with the one that is read. Both are scored on the same
 //! readings, from where the second began to be the likelier one (Page 1954).
 
-use super::hypothesis::Expected;
+use super::expected::Expected;
 use crate::estimation::{Channel, Filter, Innovation, Observation, TWENTY_TO_ONE};
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,8 @@
 //! All hypotheses on the same readings: whether the law or a sensor is the likelier, and by how much.
 
-use super::hypothesis::{Expected, Hypothesis, Kind, Value};
+use super::expected::Expected;
+use super::hypothesis::{Hypothesis, Value};
+use super::kind::Kind;
 use super::price::event;
 use crate::estimation::{Channel, Filter, TWENTY_TO_ONE, log_sum};
 use crate::law::Drive;

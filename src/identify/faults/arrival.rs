@@ -1,0 +1,105 @@
+//! A reading as it arrives: the interval since the last one, and what each channel repeats.
+
+use super::expected::Expected;
+use super::hypothesis::Value;
+use super::repetition::Repetition;
+use crate::estimation::{Channel, Filter, OUTLYING};
+use crate::identify::reading::Reading;
+use crate::identify::sample::Sample;
+use crate::law::{Drive, Hold};
+use serde::{Deserialize, Serialize};
+
+/// A reading is held from so many stds on: two of them in a row would make an alarm of a false-alarm interval of 1e6 s,
+/// 16 nats, and by chance one comes in 16 000 readings. Of a law of which more evidence is asked more is.
+const HELD: f64 = 4.0;
+
+/// A reading beside the interval since the last one.
+pub struct Arrival {
+    pub reading: Reading,
+    pub dt: f64,
+    pub drive: Drive,
+    pub values: [Option<Value>; 2],
+    /// What the repetitions before this one have cost by channel, nats; 0 where it is none.
+    pub runs: [f64; 2],
+}
+
+impl Arrival {
+    /// Whether its readings are as near to what is foreseen as chance leaves them.
+    pub fn is_near<const N: usize>(&self, law: &Expected, foreseen: &Filter<N>) -> bool {
+        Channel::ALL.into_iter().all(|channel| match self.values[channel as usize] {
+            Some(read) => {
+                let (residual, variance) = foreseen.residual(channel, read.value, law.noise.sensor[channel as usize]);
+                !read.is_rare() && residual * residual <= HELD * HELD * law.caution * variance
+            }
+            None => true,
+        })
+    }
+
+    /// What was read of either channel.
+    pub fn measured(&self) -> [Option<f64>; 2] {
+        self.values.map(|value| value.map(|value| value.value))
+    }
+
+    /// A motion at rest repeats itself as a stuck sensor does: a repetition says something of a channel only where the
+    /// other one moves.
+    pub fn allow_rest(&mut self, law: &Expected) {
+        let varies = self.values.map(|value| value.is_some_and(|value| value.repeats.is_none()));
+        let is_fast = self.reading.sample.qd.powi(2) > OUTLYING * OUTLYING * law.noise.sensor[1];
+        let other_moves = [varies[1] && is_fast, varies[0]];
+        for index in (0..2).filter(|index| !other_moves[*index]) {
+            self.values[index].iter_mut().for_each(|value| value.repeats = value.repeats.map(|_| 0.0));
+            self.runs[index] = 0.0;
+        }
+    }
+}
+
+/// What a channel is expected to have moved by at least since the last sample, and the std of its noise: what a
+/// repetition is held against.
+#[derive(Clone, Copy, Debug)]
+pub struct Course {
+    pub moved: [f64; 2],
+    pub scatter: [f64; 2],
+}
+
+impl Course {
+    /// Nothing is known of it.
+    pub const UNKNOWN: Course = Course { moved: [f64::INFINITY; 2], scatter: [0.0; 2] };
+}
+
+/// Readings one after the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Arrivals {
+    pub last: Option<Sample>,
+    repetitions: [Repetition; 2],
+}
+
+impl Arrivals {
+    /// Takes a reading of these channels; none is an arrival before there is an interval. `course` is asked for where a
+    /// channel repeats itself alone.
+    pub fn take(
+        &mut self,
+        reading: Reading,
+        measured: [bool; 2],
+        hold: Hold,
+        course: impl FnOnce(&Sample) -> Course,
+    ) -> Option<Arrival> {
+        let sample = reading.sample;
+        let before = self.last.replace(sample)?;
+        let repeats = sample.q == before.q || sample.qd == before.qd;
+        let Course { moved, scatter } = if repeats { course(&before) } else { Course::UNKNOWN };
+        let drive = match hold {
+            Hold::Zero => Drive::Held(before.excitation),
+            Hold::Linear | Hold::BandLimited => Drive::Line(before.excitation, sample.excitation),
+        };
+        let mut runs = [0.0; 2];
+        let values = Channel::ALL.map(|channel| {
+            let index = channel as usize;
+            let value = [sample.q, sample.qd][index];
+            let run = self.repetitions[index].run();
+            let repeats = self.repetitions[index].take(value, moved[index], scatter[index]);
+            runs[index] = if repeats.is_some() { run } else { 0.0 };
+            measured[index].then_some(Value { value, repeats })
+        });
+        Some(Arrival { reading, dt: sample.t - before.t, drive, values, runs })
+    }
+}

@@ -1,0 +1,117 @@
+//! What may have happened, and what is unknown under it.
+
+use super::expected::Expected;
+use crate::estimation::Channel;
+use serde::{Deserialize, Serialize};
+
+/// What may have happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Kind {
+    /// Nothing but readings that are wide draws, if any.
+    Readings,
+    /// Nothing but those, and the law in use is as wrong as a valid one may be.
+    Misfit,
+    /// The law changed so many samples before the first reading that is held, and q̈ by so many times what a switch
+    /// usually adds.
+    Law { before: u8, times: u8 },
+    /// Something moved q̇, and q follows.
+    Kick,
+    /// What was read of F is not what acted: that was any force of its usual size.
+    Glitch,
+    /// F, which stands still, is not what acts: that goes on as F did before.
+    ForceStuck,
+    /// A channel has an offset.
+    Offset(Channel),
+    /// A channel repeats its value.
+    Stuck(Channel),
+    /// Both channels do.
+    BothStuck,
+    /// A channel scatters more than it did, and goes on to.
+    Louder(Channel),
+    /// Both channels do.
+    BothLouder,
+}
+
+impl Kind {
+    /// Every one of them, the least first.
+    pub const ALL: [Kind; 16] = [
+        Kind::Readings,
+        Kind::Misfit,
+        Kind::Law { before: 0, times: 1 },
+        Kind::Law { before: 0, times: 10 },
+        Kind::Law { before: 3, times: 1 },
+        Kind::Kick,
+        Kind::Glitch,
+        Kind::ForceStuck,
+        Kind::Offset(Channel::Q),
+        Kind::Offset(Channel::Qd),
+        Kind::Stuck(Channel::Q),
+        Kind::Stuck(Channel::Qd),
+        Kind::BothStuck,
+        Kind::Louder(Channel::Q),
+        Kind::Louder(Channel::Qd),
+        Kind::BothLouder,
+    ];
+
+    /// Whether nothing has happened but readings that are wide draws.
+    pub fn is_no_event(self) -> bool {
+        matches!(self, Kind::Readings | Kind::Misfit)
+    }
+
+    /// Whether it can be told where no law is known: a change of law is one of q̈ there. An offset moves slowly in one
+    /// channel, as its own course may, and a rest repeats both.
+    pub fn can_be_told_by_motion(self) -> bool {
+        !matches!(self, Kind::Misfit | Kind::ForceStuck | Kind::Offset(_) | Kind::BothStuck)
+    }
+
+    /// Whether it can be told apart where these channels are measured: a sensor that is not there does not fail.
+    pub fn can_be_told(self, measured: [bool; 2]) -> bool {
+        match self {
+            Kind::Offset(channel) | Kind::Stuck(channel) | Kind::Louder(channel) => measured[channel as usize],
+            Kind::BothStuck | Kind::BothLouder => measured == [true; 2],
+            _ => true,
+        }
+    }
+
+    /// Whether the channel repeats its value.
+    pub fn sticks(self, channel: Channel) -> bool {
+        self == Kind::BothStuck || self == Kind::Stuck(channel)
+    }
+
+    /// Whether the channel scatters more than it did.
+    pub fn is_louder(self, channel: Channel) -> bool {
+        self == Kind::BothLouder || self == Kind::Louder(channel)
+    }
+
+    /// Whether a channel does.
+    pub fn is_loud(self) -> bool {
+        matches!(self, Kind::Louder(_) | Kind::BothLouder)
+    }
+
+    /// Whether q̇ moved once by what no reading tells, and q follows.
+    pub fn is_kick(self) -> bool {
+        matches!(self, Kind::Kick | Kind::Glitch)
+    }
+
+    /// Intensity of the white acceleration that it adds in its own interval, the `first`, for when in it that was
+    /// nobody knows, and what u₀ moves by in a second, as a variance.
+    pub fn unknown(self, law: &Expected, inputs: [f64; 2], dt: f64, first: bool) -> [f64; 2] {
+        let [acceleration, gain] = law.switch;
+        match self {
+            Kind::Law { times, .. } => {
+                let acceleration = f64::from(times) * acceleration;
+                let event = (acceleration * acceleration + (gain * inputs[1]).powi(2)) * dt;
+                [if first { event } else { 0.0 }, acceleration * acceleration * law.rate]
+            }
+            Kind::Misfit => [0.0, law.misfit() * law.rate],
+            Kind::Kick if first => [law.size[1] * law.size[1] / dt, 0.0],
+            Kind::Glitch if first => [law.drive * law.drive * dt, 0.0],
+            _ => [0.0; 2],
+        }
+    }
+
+    /// Whether the law is another one.
+    pub fn is_law(self) -> bool {
+        matches!(self, Kind::Law { .. })
+    }
+}
