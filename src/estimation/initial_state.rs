@@ -2,8 +2,9 @@
 
 use super::filter::{Channel, Filter, Noise};
 
-/// A motion that turns by more than this in an outage, rad, cannot be followed over it: the excitation is not known.
-pub const LOST: f64 = 4.0;
+/// A motion that turns by more than this while samples are missing, rad, cannot be followed: the excitation is not
+/// known.
+pub(super) const LOST: f64 = 4.0;
 
 /// How many times its own square the variance of what an outage leaves unknown is.
 const UNKNOWN: f64 = 10.0;

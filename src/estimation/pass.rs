@@ -26,8 +26,16 @@ pub struct Observation {
     pub drive: Drive,
     /// What was measured at its end, q and q̇; `None` where a channel is not measured.
     pub measured: [Option<f64>; 2],
-    /// Intensity of the white force that the excitation may have had unseen over that time, N² s.
+    /// Intensity of the white force that the excitation may have had unseen over that time, N² s; infinite over an
+    /// outage, of which nothing is known.
     pub unseen: f64,
+}
+
+impl Observation {
+    /// Whether the motion cannot be followed to it where it turns by so much, rad.
+    pub fn is_lost(&self, turned: f64) -> bool {
+        self.unseen.is_infinite() || self.unseen > 0.0 && turned > LOST
+    }
 }
 
 /// δx⁺ = A δx + B δθ over an interval between two samples.
@@ -163,7 +171,7 @@ impl Pass {
             self.seeking = true;
         }
         self.compiled.follow(motion);
-        if observation.unseen > 0.0 && self.quickest * observation.dt * observation.dt > LOST * LOST {
+        if observation.is_lost(self.quickest.sqrt() * observation.dt) {
             return self.resume(noise, observation);
         }
         let unseen = match observation.unseen > 0.0 {

@@ -14,7 +14,8 @@ const GAP: f64 = 1.5;
 /// … unless more than so many in a row are.
 const PATIENCE: u32 = 3;
 
-/// An interval this many times as long as the usual one is an outage.
+/// An interval this many times as long as the usual one is an outage: the law may have switched within, and nothing
+/// says when.
 const OUTAGE: f64 = 50.0;
 
 /// Accepted samples by number; the first of all is number 0.
@@ -23,6 +24,8 @@ pub struct Window {
     #[serde(with = "packed_readings")]
     ring: Vec<Reading>,
     count: u64,
+    /// Number of the first sample after the last outage.
+    resumed: u64,
     channels: Channels,
     hold: Hold,
     band_limited: BandLimited,
@@ -59,14 +62,19 @@ impl Pace {
         self.roughness += (square - self.roughness) / self.count;
     }
 
+    fn is_outage(&self, dt: f64) -> bool {
+        self.dt > 0.0 && dt > OUTAGE * self.dt
+    }
+
     fn is_gap(&self, dt: f64) -> bool {
         self.dt > 0.0 && dt > GAP * self.dt
     }
 
     /// Over an interval in which samples are missing the excitation is known at its ends alone: intensity of the white
-    /// force that may have been there besides, N² s.
+    /// force that may have been there besides, N² s; infinite where nothing is known of what moved it.
     fn unseen(&self, dt: f64, moved: f64) -> f64 {
         match self.is_gap(dt) {
+            _ if self.is_outage(dt) => f64::INFINITY,
             true => (1.0 - self.dt / dt) * (self.roughness * self.dt + 0.25 * moved * moved * dt),
             false => 0.0,
         }
@@ -77,7 +85,8 @@ impl Window {
     /// Room for `capacity` samples.
     pub fn new(capacity: usize, channels: Channels, hold: Hold) -> Window {
         let ring = vec![Reading::default(); capacity];
-        Window { ring, count: 0, channels, hold, band_limited: BandLimited::new(), pace: Pace::default(), unseen: 0.0 }
+        let (band_limited, pace) = (BandLimited::new(), Pace::default());
+        Window { ring, count: 0, resumed: 0, channels, hold, band_limited, pace, unseen: 0.0 }
     }
 
     /// How many samples it can hold.
@@ -91,6 +100,9 @@ impl Window {
         reading.unseen += std::mem::take(&mut self.unseen);
         if self.count > 0 {
             let before = *self.sample(self.count - 1);
+            if self.pace.is_outage(reading.sample.t - before.t) {
+                self.resumed = self.count;
+            }
             self.pace.take(&before, &reading.sample);
         }
         let slot = self.slot(self.count);
@@ -124,13 +136,18 @@ impl Window {
         &self.ring[self.slot(number)].sample
     }
 
+    /// Number of the first sample since which none is missing for long, of those that are still there.
+    pub fn resumed(&self) -> u64 {
+        self.resumed.max(self.oldest())
+    }
+
     /// Whether samples are missing for long before the sample of that number.
     pub fn ends_outage(&self, number: u64) -> bool {
-        number > self.oldest() && self.sample(number).t - self.sample(number - 1).t > OUTAGE * self.pace.dt
+        number > self.oldest() && self.pace.is_outage(self.sample(number).t - self.sample(number - 1).t)
     }
 
     /// What is missed of F over the interval to the next sample, if that is so long and F moves by so much: intensity
-    /// of a white force, N² s.
+    /// of a white force, N² s; infinite over an outage.
     pub fn missed(&self, dt: f64, moved: f64) -> f64 {
         self.pace.unseen(dt, moved)
     }

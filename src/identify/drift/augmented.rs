@@ -11,7 +11,7 @@
 //! its std. A filter whose coefficients have ceased to wander is begun again and again from the likeliest of them,
 //! until for some periods it loses nothing: the coefficients rest.
 
-use crate::estimation::{AugmentedFilter, Channel, InnovationGate, LOST, Noise, Observation, Start, Unknowns};
+use crate::estimation::{AugmentedFilter, Channel, InnovationGate, Noise, Observation, Start, Unknowns};
 use crate::evidence::SWITCH_SIZE;
 use crate::identify::problem::Problem;
 use crate::identify::window::Window;
@@ -196,7 +196,7 @@ impl AugmentedDrift {
         while self.course != Course::Idle && self.next < stop {
             let observation = window.observation(self.next);
             let turned = TAU * observation.dt / (self.period * window.pace());
-            self.take(problem, &observation, observation.unseen > 0.0 && turned > LOST);
+            self.take(problem, &observation, observation.is_lost(turned));
             self.next += 1;
             match self.course {
                 Course::Trial => self.decide(),

@@ -21,6 +21,8 @@ pub struct Expected<'a> {
     pub size: [f64; 2],
     /// RMS of F ÷ m.
     pub drive: f64,
+    /// Time since the end of an outage in which the law may have changed, s; 0 where that would have been noticed.
+    pub unnoticed: f64,
     /// F, where it may be stuck.
     pub stuck: Option<Standing>,
     /// Parts of an interval between two samples.

@@ -24,8 +24,8 @@ const SETTLE: u64 = 3 * ROOM as u64;
 /// What else may have begun then: another law, to which a switch of the usual size led or one of ten times that (what
 /// linear evidence sets aside as far off speaks for these), or louder sensors.
 const EVENTS: [Kind; 5] = [
-    Kind::Law { before: 0, times: 1 },
-    Kind::Law { before: 0, times: 10 },
+    Kind::Law { times: 1, unnoticed: false },
+    Kind::Law { times: 10, unnoticed: false },
     Kind::Louder(Channel::Q),
     Kind::Louder(Channel::Qd),
     Kind::BothLouder,
@@ -58,7 +58,10 @@ impl Hindsight {
     /// The likeliest fault against another law since sample `switch`, which has `evidence` nats, by the window's
     /// samples, the last of them where there is no room for all.
     pub fn weigh(&mut self, law: &Expected, window: &Window, (switch, evidence): (u64, f64)) -> Found {
-        let oldest = (window.oldest() + 2).max(window.ready().saturating_sub(ROOM as u64));
+        let oldest = (window.resumed() + 2).max(window.ready().saturating_sub(ROOM as u64));
+        if oldest >= window.ready() {
+            return Found { odds: f64::NEG_INFINITY, is_burst: false };
+        }
         self.first = switch.saturating_sub(BEFORE).max(oldest);
         let rare = event(window.pace()).ln();
         let after = (switch + 1).clamp(self.first, window.ready() - 1);
@@ -114,7 +117,7 @@ impl Hindsight {
 
 /// The state before sample `first`.
 fn settled(law: &Expected, window: &Window, first: u64) -> Filter {
-    let begin = first.saturating_sub(SETTLE).max(window.oldest());
+    let begin = first.saturating_sub(SETTLE).max(window.resumed());
     let sample = window.sample(begin);
     let known = window.observation(begin + 1).measured;
     // as far as the restoring acceleration takes it in a radian

@@ -35,6 +35,9 @@ pub fn under_law(filter: &Filter) -> Filter<4> {
     Filter { mean: [q, qd, 0.0, 0.0], covariance: [[qq, qv, 0.0, 0.0], [vq, vv, 0.0, 0.0], [0.0; 4], [0.0; 4]] }
 }
 
+/// Samples for which a change of law goes unnoticed, at most: those that the evidence of a large one needs.
+const UNNOTICED: f64 = 3.0;
+
 /// Probability that what befalls one channel begins in the other too: a loose plug, a logger that fails.
 const SHARED: f64 = 0.05;
 
@@ -90,10 +93,11 @@ impl Hypothesis {
         let [acceleration, gain] = law.switch;
         match self.kind {
             kind if law.alone.is_some() && !kind.can_be_told_by_motion() => self.log = f64::NEG_INFINITY,
-            Kind::Law { before, times } => {
+            Kind::Law { times, unnoticed } => {
                 let acceleration = f64::from(times) * acceleration;
-                let since = f64::from(before) * dt;
+                let since = if unnoticed { law.unnoticed.max(UNNOTICED * dt) } else { 0.0 };
                 let square = acceleration * acceleration;
+                covariance[0][0] += 0.25 * square * since.powi(4);
                 covariance[1][1] += square * since * since;
                 covariance[1][2] += square * since;
                 covariance[2][1] += square * since;

@@ -11,9 +11,9 @@ pub enum Kind {
     Readings,
     /// Nothing but those, and the law in use is as wrong as a valid one may be.
     Misfit,
-    /// The law changed so many samples before the first reading that is held, and q̈ by so many times what a switch
-    /// usually adds.
-    Law { before: u8, times: u8 },
+    /// The law changed, and q̈ by so many times what a switch usually adds: with the first reading that is held, or
+    /// unnoticed before it.
+    Law { times: u8, unnoticed: bool },
     /// Something moved q̇, and q follows.
     Kick,
     /// What was read of F is not what acted: that was any force of its usual size.
@@ -37,9 +37,9 @@ impl Kind {
     pub const ALL: [Kind; 16] = [
         Kind::Readings,
         Kind::Misfit,
-        Kind::Law { before: 0, times: 1 },
-        Kind::Law { before: 0, times: 10 },
-        Kind::Law { before: 3, times: 1 },
+        Kind::Law { times: 1, unnoticed: false },
+        Kind::Law { times: 10, unnoticed: false },
+        Kind::Law { times: 1, unnoticed: true },
         Kind::Kick,
         Kind::Glitch,
         Kind::ForceStuck,

@@ -137,6 +137,7 @@ impl MotionAlone {
             rate: 0.0,
             size,
             drive: self.square.sqrt(),
+            unnoticed: 0.0,
             stuck: None,
             parts: 1,
             alone: Some(roughness),

@@ -70,6 +70,8 @@ pub struct Quarantine {
     motion: MotionAlone,
     is_alone: bool,
     arrivals: Arrivals,
+    /// Time since samples were last missing, s.
+    whole: f64,
     samples: f64,
     /// Mean squares of q and q̇ let through.
     squares: [f64; 2],
@@ -109,6 +111,7 @@ impl Quarantine {
             motion: MotionAlone::new(),
             is_alone: false,
             arrivals: Arrivals::default(),
+            whole: 0.0,
             samples: 0.0,
             squares: [0.0; 2],
             decided: 0,
@@ -134,12 +137,17 @@ impl Quarantine {
         let course =
             |before: &Sample| law.map_or(Course::UNKNOWN, |(law, filter)| course(law, &filter, before, &reading));
         let arrival = self.arrivals.take(reading, measured, hold, course);
+        let is_whole = |arrival: &Arrival| arrival.dt < GAP * pace;
+        self.whole =
+            arrival.as_ref().filter(|arrival| is_whole(arrival)).map_or(0.0, |arrival| self.whole + arrival.dt);
         match (against, arrival) {
-            (Against::Law(law, filter), Some(arrival)) if arrival.dt < GAP * pace => {
-                let law = Expected { noise: law.noise_with(reading.unseen, filter.mean[0]), ..*law };
+            (Against::Law(law, filter), Some(arrival)) if is_whole(&arrival) => {
+                // what has been followed for a radian since would have been noticed
+                let unnoticed = if self.whole * law.rate < 1.0 { self.whole } else { 0.0 };
+                let law = Expected { noise: law.noise_with(reading.unseen, filter.mean[0]), unnoticed, ..*law };
                 self.weigh(&arrival, &law, &filter);
             }
-            (Against::Motion(noise, force), Some(arrival)) if arrival.dt < GAP * pace => {
+            (Against::Motion(noise, force), Some(arrival)) if is_whole(&arrival) => {
                 let around = Surroundings { noise, measured, size: self.size(), force };
                 self.weigh_alone(arrival, &around);
             }

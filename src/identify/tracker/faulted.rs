@@ -33,6 +33,7 @@ pub(super) fn expected<'a>(
         rate: scales.natural_time().recip(),
         size,
         drive: scales.acceleration(),
+        unnoticed: 0.0,
         stuck: None,
         parts: law.run.parts,
         alone: None,
