@@ -12,9 +12,6 @@ use serde::{Deserialize, Serialize};
 /// An offset not found within this time after the outage is none that it brought, s.
 const WITHIN: f64 = 5.0;
 
-/// Log-probability that a sensor comes back with an offset: one outage in a hundred.
-const COMES_BACK_OFF: f64 = -4.6;
-
 /// The offset of one channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Offset {
@@ -162,7 +159,7 @@ impl AfterOutage {
         let offset = left * (score - taken / variance);
         let evidence = match self.taken {
             Some(_) => 0.5 * offset * offset / left,
-            None => q.max(qd) + COMES_BACK_OFF,
+            None => q.max(qd),
         };
         let against_other = (q - qd).abs();
         Some(Returned { channel, offset, sensitivity, variance: left, evidence, against_other, since })

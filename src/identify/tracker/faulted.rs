@@ -95,7 +95,7 @@ impl Tracker {
     }
 
     /// Whether what speaks for a switch is a sensor's fault, or may be.
-    pub(super) fn is_fault(&mut self, problem: &Problem, suspect: &Suspect, threshold: f64) -> bool {
+    pub(super) fn is_fault(&mut self, problem: &Problem, suspect: &Suspect) -> bool {
         if !self.monitor.law.explains {
             return false;
         }
@@ -103,7 +103,7 @@ impl Tracker {
             self.lose_excitation(readings);
             return true;
         }
-        self.is_burst(problem, suspect) || self.is_offset(suspect, threshold)
+        self.is_burst(problem, suspect) || self.is_offset(suspect)
     }
 
     /// Whether a burst of readings that were not far enough off to be held, or louder sensors, are as likely as what
@@ -178,11 +178,11 @@ impl Tracker {
         2.0 * force * force * self.segment.scales.natural_time().min(1.0)
     }
 
-    /// Whether one offset since the last outage explains what several coefficients would have to change for,
-    /// `threshold` being what the improbability of a switch asks; until that is decided there is no alarm.
-    fn is_offset(&mut self, suspect: &Suspect, threshold: f64) -> bool {
+    /// Whether one offset since the last outage explains what several coefficients would have to change for: what an
+    /// outage brings may be the one as well as the other, and until that is decided there is no alarm.
+    fn is_offset(&mut self, suspect: &Suspect) -> bool {
         let Some(returned) = self.intake.after_outage.likeliest() else { return false };
-        let odds = returned.evidence - (suspect.evidence - threshold);
+        let odds = returned.evidence - suspect.evidence;
         let told = self.intake.after_outage.is_found() || returned.against_other > DECISIVE;
         let open = odds.abs() < DECISIVE || odds > 0.0 && !told;
         self.intake.undecided = open && returned.since < UNDECIDED;

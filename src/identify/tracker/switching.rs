@@ -26,7 +26,7 @@ impl Tracker {
         self.intake.undecided &= alarms;
         // in nats of a law that is known for sure, as those are of an effect or a lag
         let excess = (suspect.evidence - threshold) / decision.caution();
-        let is_fault = alarms && self.is_fault(setup.problem, suspect, threshold);
+        let is_fault = alarms && self.is_fault(setup.problem, suspect);
         if is_fault || alarms && (self.is_lag(setup.problem, excess) || self.is_effect(excess)) {
             return;
         }
