@@ -1,32 +1,25 @@
-//! Whether a sensor came back from an outage with an offset, and what is left of one that was found: one unknown beside
-//! the law, in closed form.
+//! What an outage has brought: nothing, a sensor that is off from then on, or another law.
 //!
-//! With an offset u of a channel the filter of the law in use expects z u more of it, z being carried from sample to
-//! sample as any sensitivity is. Its innovations ε of variance s then have the score g = Σ r ε ÷ s and the information
-//! I = Σ r² ÷ s, r being what is expected more of the reading itself; against a prior of variance V the offset has
-//! ½ g² V ÷ (1 + I V) − ½ ln(1 + I V) nats.
+//! Each is a filter from the first sample after the outage on, scored on the same readings. What was said of the motion
+//! before says nothing of it any more, so that of a channel that came back with an offset u the state is what was read
+//! less u, and the motion under the law tells them apart.
 
-use crate::estimation::{Channel, Filter, Innovation, IntervalMap, gains, times};
+use super::expected::Expected;
+use super::hypothesis::{Hypothesis, Value, under_law};
+use super::kind::Kind;
+use crate::estimation::{Channel, Filter, Observation};
+use crate::evidence::SWITCH_SIZE;
 use serde::{Deserialize, Serialize};
 
 /// An offset not found within this time after the outage is none that it brought, s.
 const WITHIN: f64 = 5.0;
 
-/// The offset of one channel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Offset {
-    /// z.
-    sensitivity: [f64; 2],
-    information: f64,
-    score: f64,
-    /// V.
-    variance: f64,
-}
-
-/// The offsets that the last outage may have brought.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// What the last outage may have brought.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AfterOutage {
-    offsets: [Offset; 2],
+    nothing: Hypothesis,
+    law: Hypothesis,
+    offsets: [Hypothesis; 2],
     /// Time since the outage, s; `None` where there was none of late.
     since: Option<f64>,
     /// Time since the outage from which what is left of an offset that was found is taken off, s.
@@ -42,74 +35,66 @@ pub struct Returned {
     pub channel: Channel,
     /// The offset, or what is left of it.
     pub offset: f64,
-    /// What it does to the state that the filter has, and its variance.
-    sensitivity: [f64; 2],
-    variance: f64,
-    /// Log-odds against no offset, and the log-likelihood against one of the other channel, nats.
+    /// The state without it.
+    pub filter: Filter,
+    /// Log-likelihood of what is not taken off yet against none of it, nats …
     pub evidence: f64,
+    /// … of the offset against another law since the outage …
+    pub against_law: f64,
+    /// … and against one of the other channel.
     pub against_other: f64,
     /// Time since the outage, s.
     pub since: f64,
 }
 
-impl Offset {
-    fn take(&mut self, channel: Channel, map: &IntervalMap, innovations: &[Option<Innovation>; 2]) {
-        self.sensitivity = times(&map.transition, self.sensitivity);
-        for (read, gain) in Channel::ALL.into_iter().zip(gains(innovations)) {
-            let Some(innovation) = &innovations[read as usize] else { continue };
-            let row = self.sensitivity[read as usize] + if read == channel { 1.0 } else { 0.0 };
-            self.information += row * row * innovation.precision;
-            self.score += row * innovation.residual * innovation.precision;
-            self.sensitivity.iter_mut().zip(gain).for_each(|(entry, gain)| *entry -= gain * row);
-        }
-    }
-
-    /// Log-likelihood of the offset against none, nats.
-    fn evidence(&self) -> f64 {
-        let told = 1.0 + self.information * self.variance;
-        0.5 * (self.score * self.score * self.variance / told - told.ln())
-    }
-}
-
-impl Returned {
-    /// The filter without the offset.
-    pub fn without(&self, mut filter: Filter) -> Filter {
-        let z = self.sensitivity;
-        for row in 0..2 {
-            filter.mean[row] += z[row] * self.offset;
-            for column in 0..2 {
-                filter.covariance[row][column] += z[row] * z[column] * self.variance;
-            }
-        }
-        filter
-    }
-}
-
 impl AfterOutage {
-    /// An outage ends with this sample; `size` is what an offset may be by channel, std.
-    pub fn begin(&mut self, size: [f64; 2], map: &IntervalMap, innovations: &[Option<Innovation>; 2]) {
-        self.offsets = size.map(|size| Offset { variance: size * size, ..Offset::default() });
-        (self.since, self.due, self.taken) = (Some(0.0), f64::INFINITY, None);
-        if innovations.iter().all(|innovation| innovation.is_none()) {
-            // the motion was not followed over the outage: its state is what was read
-            for (channel, offset) in self.offsets.iter_mut().enumerate() {
-                offset.sensitivity[channel] = -1.0;
-            }
-            return;
+    /// Nothing is asked.
+    pub fn new() -> AfterOutage {
+        let new = |kind| Hypothesis::new(kind, 1);
+        AfterOutage {
+            nothing: new(Kind::Readings),
+            law: new(Kind::Law { times: 1, unnoticed: false }),
+            offsets: Channel::ALL.map(|channel| new(Kind::Offset(channel))),
+            since: None,
+            due: f64::INFINITY,
+            taken: None,
         }
-        self.read(map, innovations);
+    }
+
+    /// An outage ends with a sample of these channels, after which the state is this one. An offset is as large a part
+    /// of the motion as a switch is of the force.
+    pub fn begin(&mut self, law: &Expected, state: &Filter, measured: [bool; 2]) {
+        let law = &Expected { size: law.size.map(|size| SWITCH_SIZE * size), ..*law };
+        let start = under_law(state);
+        for hypothesis in [&mut self.nothing, &mut self.law] {
+            hypothesis.begin(&start, law, 0.0, 0.0, 0.0);
+        }
+        for (index, hypothesis) in self.offsets.iter_mut().enumerate() {
+            let (mut start, variance) = (start, law.size[index].powi(2));
+            let covariance = &mut start.covariance;
+            covariance[index][index] += variance;
+            (covariance[index][2], covariance[2][index]) = (-variance, -variance);
+            hypothesis.begin(&start, law, 0.0, 0.0, if measured[index] { 0.0 } else { f64::NEG_INFINITY });
+        }
+        (self.since, self.due, self.taken) = (Some(0.0), f64::INFINITY, None);
     }
 
     /// An offset of the channel was found without an outage and taken off: this variance of it is left.
-    pub fn follow(&mut self, channel: Channel, variance: f64) {
-        self.offsets = [Offset::default(); 2];
-        self.offsets[channel as usize].variance = variance;
-        (self.since, self.due, self.taken) = (Some(0.0), 0.0, Some((channel, 0.0)));
+    pub fn follow(&mut self, law: &Expected, state: &Filter, (channel, variance): (Channel, f64)) {
+        self.begin(law, state, [true; 2]);
+        let law = &Expected { size: [variance.sqrt(); 2], ..*law };
+        self.offsets[channel as usize].begin(&under_law(state), law, 0.0, 0.0, 0.0);
+        (self.due, self.taken) = (0.0, Some((channel, 0.0)));
     }
 
     /// Nothing is asked any more.
     pub fn end(&mut self) {
         self.since = None;
+        self.hypotheses().for_each(Hypothesis::clear);
+    }
+
+    fn hypotheses(&mut self) -> impl Iterator<Item = &mut Hypothesis> {
+        [&mut self.nothing, &mut self.law].into_iter().chain(&mut self.offsets)
     }
 
     /// Whether it is asked.
@@ -117,15 +102,20 @@ impl AfterOutage {
         self.since.is_some()
     }
 
-    /// Takes what the law in use makes of a sample, `dt` s after the last one.
-    pub fn take(&mut self, dt: f64, map: &IntervalMap, innovations: &[Option<Innovation>; 2]) {
-        self.read(map, innovations);
-        self.since = self.since.map(|since| since + dt).filter(|since| *since < WITHIN);
-    }
-
-    fn read(&mut self, map: &IntervalMap, innovations: &[Option<Innovation>; 2]) {
-        for (channel, offset) in Channel::ALL.into_iter().zip(&mut self.offsets) {
-            offset.take(channel, map, innovations);
+    /// Takes a sample.
+    pub fn take(&mut self, law: &Expected, observation: &Observation) {
+        let Observation { dt, drive, mut measured, .. } = *observation;
+        if let Some((channel, taken)) = self.taken {
+            measured[channel as usize].iter_mut().for_each(|value| *value += taken);
+        }
+        let values = measured.map(|value| value.map(|value| Value { value, repeats: None }));
+        for hypothesis in self.hypotheses() {
+            hypothesis.take(law, dt, &drive, values, 0);
+            hypothesis.forget_held();
+        }
+        match self.since.map(|since| since + dt).filter(|since| *since < WITHIN) {
+            None => self.end(),
+            since => self.since = since,
         }
     }
 
@@ -139,50 +129,58 @@ impl AfterOutage {
         self.taken.is_some()
     }
 
-    /// The offset has been taken off the readings since the outage, and the filter goes on without it.
+    /// The offset has been taken off the readings since the outage, and the law goes on without it.
     pub fn correct(&mut self, returned: &Returned) {
-        let Returned { channel, offset, .. } = *returned;
         let before = self.taken.map_or(0.0, |(_, taken)| taken);
-        (self.taken, self.due) = (Some((channel, before + offset)), 2.0 * returned.since);
-        let corrected = &mut self.offsets[channel as usize];
-        corrected.score -= corrected.information * offset;
+        (self.taken, self.due) = (Some((returned.channel, before + returned.offset)), 2.0 * returned.since);
     }
 
     /// The likelier of the offsets; what is left of one that has been taken off.
     pub fn likeliest(&self) -> Option<Returned> {
         let since = self.since?;
-        let [q, qd] = self.offsets.map(|offset| offset.evidence());
+        let [q, qd] = self.offsets.each_ref().map(|offset| offset.log);
         let likelier = if q > qd { Channel::Q } else { Channel::Qd };
         let (channel, taken) = self.taken.unwrap_or((likelier, 0.0));
-        let Offset { sensitivity, information, score, variance } = self.offsets[channel as usize];
-        let left = variance / (1.0 + information * variance);
-        let offset = left * (score - taken / variance);
+        let found = &self.offsets[channel as usize];
+        let (offset, std) = found.offset();
+        let offset = offset - taken;
         let evidence = match self.taken {
-            Some(_) => 0.5 * offset * offset / left,
-            None => q.max(qd),
+            Some(_) => 0.5 * (offset / std).powi(2),
+            None => found.log - self.nothing.log,
         };
-        let against_other = (q - qd).abs();
-        Some(Returned { channel, offset, sensitivity, variance: left, evidence, against_other, since })
+        let (against_law, against_other) = (found.log - self.law.log, (q - qd).abs());
+        Some(Returned { channel, offset, filter: found.filter(), evidence, against_law, against_other, since })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::estimation::Noise;
+    use crate::law::{Drive, Motion, Term};
 
-    /// A particle at rest, read with std 1 in both channels, whose q comes back off by `off`.
+    /// A particle at rest on a spring, read with std 1 in both channels, whose q comes back off by `off`.
     fn returned(off: f64) -> AfterOutage {
-        let map = IntervalMap { transition: [[1.0, 0.01], [0.0, 1.0]], input: Vec::new(), push: [0.0; 2] };
-        let mut filter: Filter = Filter::begin([0.0; 2], [1e-4, 1e-6]);
-        let mut after = AfterOutage::default();
+        let law = Expected {
+            motion: Motion::new(&[Term::Inertia, Term::parse("q").unwrap()], &[1.0, 1.0]),
+            noise: Noise { sensor: [1.0; 2], process: 1e-6 },
+            caution: 1.0,
+            switch: [10.0, 0.5],
+            rate: 1.0,
+            size: [30.0; 2],
+            drive: 0.0,
+            unnoticed: 0.0,
+            stuck: None,
+            parts: 1,
+            alone: None,
+        };
+        let mut after = AfterOutage::new();
         for index in 0..300 {
-            filter.predict(|change| times(&map.transition, change), &[[0.0; 2]; 2]);
             let noise = if index % 2 == 0 { 1.0 } else { -1.0 };
-            let innovations = [(Channel::Q, off + noise), (Channel::Qd, -noise)];
-            let innovations = innovations.map(|(channel, read)| Some(filter.update(channel, read, 1.0)));
+            let measured = [Some(off + noise), Some(-noise)];
             match index {
-                0 => after.begin([10.0; 2], &map, &innovations),
-                _ => after.take(0.01, &map, &innovations),
+                0 => after.begin(&law, &Filter::begin([off + noise, -noise], [1.0; 2]), [true; 2]),
+                _ => after.take(&law, &Observation { dt: 0.01, drive: Drive::Held(0.0), measured, unseen: 0.0 }),
             }
         }
         after
@@ -190,15 +188,15 @@ mod tests {
 
     #[test]
     fn an_offset_of_one_channel_is_found_and_none_is_not() {
-        let found = returned(2.0).likeliest().unwrap();
+        let found = returned(8.0).likeliest().unwrap();
         assert_eq!(found.channel, Channel::Q);
-        assert!((found.offset - 2.0).abs() < 0.2 && found.evidence > 100.0, "{found:?}");
+        assert!((found.offset - 8.0).abs() < 1.0 && found.evidence > 100.0 && found.against_law > 3.0, "{found:?}");
         assert!(returned(0.0).likeliest().unwrap().evidence < 0.0);
     }
 
     #[test]
     fn what_has_been_taken_off_is_not_found_again() {
-        let mut after = returned(2.0);
+        let mut after = returned(8.0);
         let found = after.likeliest().unwrap();
         after.correct(&found);
         let left = after.likeliest().unwrap();

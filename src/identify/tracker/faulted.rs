@@ -43,23 +43,25 @@ pub(super) fn expected<'a>(
 impl Tracker {
     /// Takes what the law in use makes of a sample, number `number`, for the hypotheses of faults that no single
     /// reading shows.
-    pub(super) fn weigh_faults(&mut self, number: u64, innovations: &[Option<Innovation>; 2]) {
-        let Tracker { intake, window, monitor, .. } = self;
+    pub(super) fn weigh_faults(&mut self, problem: &Problem, number: u64, observation: &Observation) {
+        let caution = self.decision().caution();
+        let Tracker { intake, window, monitor, segment, .. } = self;
         let law = &monitor.law;
-        if let Some((channel, variance)) = intake.quarantine.found_offset() {
-            intake.after_outage.follow(channel, variance);
+        let (state, outage) = (&law.run.filter, window.ends_outage(number));
+        let size = intake.quarantine.size();
+        let expected = || expected(problem, law, caution, &segment.scales, size);
+        if let Some(found) = intake.quarantine.found_offset() {
+            intake.after_outage.follow(&expected(), state, found);
         }
-        let outage = window.ends_outage(number);
-        if !(outage || intake.after_outage.is_open()) || !law.explains {
-            return;
-        }
-        let map = &law.run.map;
         match outage {
-            true => intake.after_outage.begin(intake.quarantine.size(), map, innovations),
-            false => {
-                let dt = window.sample(number).t - window.sample(number - 1).t;
-                intake.after_outage.take(dt, map, innovations);
+            _ if !law.explains => {}
+            true => intake.after_outage.begin(&expected(), state, problem.channels.of_motion()),
+            false if intake.after_outage.is_open() => {
+                let law = expected();
+                let noise = law.noise_with(observation.unseen, state.mean[0]);
+                intake.after_outage.take(&Expected { noise, ..law }, observation);
             }
+            false => {}
         }
         if intake.after_outage.is_due() {
             self.take_off_the_rest();
@@ -182,7 +184,7 @@ impl Tracker {
     /// outage brings may be the one as well as the other, and until that is decided there is no alarm.
     fn is_offset(&mut self, suspect: &Suspect) -> bool {
         let Some(returned) = self.intake.after_outage.likeliest() else { return false };
-        let odds = returned.evidence - suspect.evidence;
+        let odds = (returned.evidence - suspect.evidence).min(returned.against_law);
         let told = self.intake.after_outage.is_found() || returned.against_other > DECISIVE;
         let open = odds.abs() < DECISIVE || odds > 0.0 && !told;
         self.intake.undecided = open && returned.since < UNDECIDED;
@@ -217,7 +219,7 @@ impl Tracker {
         self.clear_suspicion();
         let run = &mut self.monitor.law.run;
         let spread = match returned {
-            Some(returned) => returned.without(run.filter),
+            Some(returned) => returned.filter,
             None => {
                 let [[qq, _], [_, vv]] = run.filter.covariance;
                 let [q, qd] = self.monitor.law.noise.sensor;

@@ -191,7 +191,7 @@ impl Tracker {
                 excitation: ExcitationGate::default(),
                 quarantine: Quarantine::new(problem.channels.of_motion()),
                 motion_known: false,
-                after_outage: AfterOutage::default(),
+                after_outage: AfterOutage::new(),
                 hindsight: Hindsight::new(),
                 undecided: false,
                 force: Repetition::default(),
