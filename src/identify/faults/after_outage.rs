@@ -7,7 +7,8 @@
 use super::expected::Expected;
 use super::hypothesis::{Hypothesis, Value, under_law};
 use super::kind::Kind;
-use crate::estimation::{Channel, Filter, Observation};
+use super::price::working;
+use crate::estimation::{Channel, Filter, Innovation, Observation};
 use crate::evidence::SWITCH_SIZE;
 use serde::{Deserialize, Serialize};
 
@@ -17,7 +18,8 @@ const WITHIN: f64 = 5.0;
 /// What the last outage may have brought.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AfterOutage {
-    nothing: Hypothesis,
+    /// Log-likelihood of nothing, the law in use going on, nats.
+    nothing: f64,
     law: Hypothesis,
     offsets: [Hypothesis; 2],
     /// Time since the outage, s; `None` where there was none of late.
@@ -37,12 +39,12 @@ pub struct Returned {
     pub offset: f64,
     /// The state without it.
     pub filter: Filter,
-    /// Log-likelihood of what is not taken off yet against none of it, nats …
-    pub evidence: f64,
-    /// … of the offset against another law since the outage …
-    pub against_law: f64,
-    /// … and against one of the other channel.
+    /// Its log-odds against another law since the outage, nats …
+    pub odds: f64,
+    /// … and against an offset of the other channel.
     pub against_other: f64,
+    /// Log-likelihood of it, of one that has been taken off what is left of it, against nothing.
+    pub evidence: f64,
     /// Time since the outage, s.
     pub since: f64,
 }
@@ -52,7 +54,7 @@ impl AfterOutage {
     pub fn new() -> AfterOutage {
         let new = |kind| Hypothesis::new(kind, 1);
         AfterOutage {
-            nothing: new(Kind::Readings),
+            nothing: 0.0,
             law: new(Kind::Law { times: 1, unnoticed: false }),
             offsets: Channel::ALL.map(|channel| new(Kind::Offset(channel))),
             since: None,
@@ -66,9 +68,8 @@ impl AfterOutage {
     pub fn begin(&mut self, law: &Expected, state: &Filter, measured: [bool; 2]) {
         let law = &Expected { size: law.size.map(|size| SWITCH_SIZE * size), ..*law };
         let start = under_law(state);
-        for hypothesis in [&mut self.nothing, &mut self.law] {
-            hypothesis.begin(&start, law, 0.0, 0.0, 0.0);
-        }
+        self.nothing = 0.0;
+        self.law.begin(&start, law, 0.0, 0.0, 0.0);
         for (index, hypothesis) in self.offsets.iter_mut().enumerate() {
             let (mut start, variance) = (start, law.size[index].powi(2));
             let covariance = &mut start.covariance;
@@ -94,7 +95,7 @@ impl AfterOutage {
     }
 
     fn hypotheses(&mut self) -> impl Iterator<Item = &mut Hypothesis> {
-        [&mut self.nothing, &mut self.law].into_iter().chain(&mut self.offsets)
+        std::iter::once(&mut self.law).chain(&mut self.offsets)
     }
 
     /// Whether it is asked.
@@ -102,8 +103,14 @@ impl AfterOutage {
         self.since.is_some()
     }
 
-    /// Takes a sample.
-    pub fn take(&mut self, law: &Expected, observation: &Observation) {
+    /// Takes a sample, which led the law in use to this state with these innovations.
+    pub fn take(
+        &mut self,
+        law: &Expected,
+        observation: &Observation,
+        state: &Filter,
+        innovations: &[Option<Innovation>; 2],
+    ) {
         let Observation { dt, drive, mut measured, .. } = *observation;
         if let Some((channel, taken)) = self.taken {
             measured[channel as usize].iter_mut().for_each(|value| *value += taken);
@@ -112,6 +119,12 @@ impl AfterOutage {
         for hypothesis in self.hypotheses() {
             hypothesis.take(law, dt, &drive, values, 0);
             hypothesis.forget_held();
+        }
+        let densities = innovations.iter().flatten().map(|said| working(said.residual, said.precision.recip()));
+        self.nothing += densities.sum::<f64>();
+        // what has not made another law likelier says that it may be about to come
+        if self.law.log < self.nothing {
+            self.law.begin(&under_law(state), law, dt, self.nothing, 0.0);
         }
         match self.since.map(|since| since + dt).filter(|since| *since < WITHIN) {
             None => self.end(),
@@ -144,12 +157,12 @@ impl AfterOutage {
         let found = &self.offsets[channel as usize];
         let (offset, std) = found.offset();
         let offset = offset - taken;
+        let (odds, against_other) = (found.log - self.law.log, (q - qd).abs());
         let evidence = match self.taken {
             Some(_) => 0.5 * (offset / std).powi(2),
-            None => found.log - self.nothing.log,
+            None => found.log - self.nothing,
         };
-        let (against_law, against_other) = (found.log - self.law.log, (q - qd).abs());
-        Some(Returned { channel, offset, filter: found.filter(), evidence, against_law, against_other, since })
+        Some(Returned { channel, offset, filter: found.filter(), odds, against_other, evidence, since })
     }
 }
 
@@ -190,8 +203,8 @@ mod tests {
     fn an_offset_of_one_channel_is_found_and_none_is_not() {
         let found = returned(8.0).likeliest().unwrap();
         assert_eq!(found.channel, Channel::Q);
-        assert!((found.offset - 8.0).abs() < 1.0 && found.evidence > 100.0 && found.against_law > 3.0, "{found:?}");
-        assert!(returned(0.0).likeliest().unwrap().evidence < 0.0);
+        assert!((found.offset - 8.0).abs() < 1.0 && found.odds > 3.0, "{found:?}");
+        assert!(returned(0.0).likeliest().unwrap().odds < 0.0);
     }
 
     #[test]

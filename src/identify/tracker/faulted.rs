@@ -43,7 +43,13 @@ pub(super) fn expected<'a>(
 impl Tracker {
     /// Takes what the law in use makes of a sample, number `number`, for the hypotheses of faults that no single
     /// reading shows.
-    pub(super) fn weigh_faults(&mut self, problem: &Problem, number: u64, observation: &Observation) {
+    pub(super) fn weigh_faults(
+        &mut self,
+        problem: &Problem,
+        number: u64,
+        observation: &Observation,
+        innovations: &[Option<Innovation>; 2],
+    ) {
         let caution = self.decision().caution();
         let Tracker { intake, window, monitor, segment, .. } = self;
         let law = &monitor.law;
@@ -59,7 +65,7 @@ impl Tracker {
             false if intake.after_outage.is_open() => {
                 let law = expected();
                 let noise = law.noise_with(observation.unseen, state.mean[0]);
-                intake.after_outage.take(&Expected { noise, ..law }, observation);
+                intake.after_outage.take(&Expected { noise, ..law }, observation, state, innovations);
             }
             false => {}
         }
@@ -184,7 +190,7 @@ impl Tracker {
     /// outage brings may be the one as well as the other, and until that is decided there is no alarm.
     fn is_offset(&mut self, suspect: &Suspect) -> bool {
         let Some(returned) = self.intake.after_outage.likeliest() else { return false };
-        let odds = (returned.evidence - suspect.evidence).min(returned.against_law);
+        let odds = (returned.evidence - suspect.evidence).min(returned.odds);
         let told = self.intake.after_outage.is_found() || returned.against_other > DECISIVE;
         let open = odds.abs() < DECISIVE || odds > 0.0 && !told;
         self.intake.undecided = open && returned.since < UNDECIDED;

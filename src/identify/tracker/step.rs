@@ -82,7 +82,7 @@ impl Tracker {
                 return;
             }
             monitor.bank.step(&monitor.law.run.map, monitor.law.effect_input(), &innovations);
-            self.weigh_faults(setup.problem, number, &observation);
+            self.weigh_faults(setup.problem, number, &observation, &innovations);
             self.weigh_standing_force(setup.problem, &observation, &innovations);
             let (sample, monitor) = (self.window.sample(number), &mut self.monitor);
             monitor.prediction.step(setup.problem, setup.settings, &monitor.law, sample, &observation);
