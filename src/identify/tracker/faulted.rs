@@ -13,8 +13,12 @@ use crate::identify::segment::MotionScales;
 /// A decision between an offset and another law may take this long after an outage, s …
 const UNDECIDED: f64 = 3.0;
 
-/// … and is made before with these log-odds: the law and the offset are near each other for some tenths of a second.
+/// … and is made before with these log-odds, for the offset once the motion has turned by a radian: until then what an
+/// offset does is like what another law does.
 const DECISIVE: f64 = 6.0;
+
+/// The evidence of a switch is linear in what may be no small change, and is right to this part of itself.
+const LINEAR: f64 = 0.1;
 
 /// What readings are held against: the law in use, of which `caution` times the evidence is asked, in a motion of these
 /// scales and this size.
@@ -190,8 +194,9 @@ impl Tracker {
     /// outage brings may be the one as well as the other, and until that is decided there is no alarm.
     fn is_offset(&mut self, suspect: &Suspect) -> bool {
         let Some(returned) = self.intake.after_outage.likeliest() else { return false };
-        let odds = (returned.evidence - suspect.evidence).min(returned.odds);
-        let told = self.intake.after_outage.is_found() || returned.against_other > DECISIVE;
+        let odds = (returned.evidence - (1.0 - LINEAR) * suspect.evidence).min(returned.odds);
+        let has_turned = returned.since > self.segment.scales.natural_time();
+        let told = self.intake.after_outage.is_found() || has_turned && returned.against_other > DECISIVE;
         let open = odds.abs() < DECISIVE || odds > 0.0 && !told;
         self.intake.undecided = open && returned.since < UNDECIDED;
         if self.intake.undecided || odds < 0.0 {
