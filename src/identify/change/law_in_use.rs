@@ -42,6 +42,8 @@ pub struct LawInUse {
     beside: AddedEffect,
     /// What is told of the own terms and of that.
     whole: Information,
+    /// What its run said of the coefficients when the last outage ended.
+    kept: Information,
     /// When F acted by all of its record, as last told.
     pub told: ToldLag,
     /// Its terms: the model's and, last, an effect that the model lacks.
@@ -88,6 +90,7 @@ impl LawInUse {
             laws: WithAndWithout::none(n),
             beside: AddedEffect::new(n),
             whole: Information::none(n + 1),
+            kept: Information::none(n),
             told: ToldLag::none(n),
             terms: problem.terms_and_effect(),
             all: problem.known.clone(),
@@ -124,6 +127,19 @@ impl LawInUse {
         let [q, qd] = innovations;
         let [q_aside, qd_aside] = self.run.set_aside;
         [q.or(q_aside), qd.or(qd_aside)]
+    }
+
+    /// An outage ends: what comes may have to be forgotten.
+    pub fn keep(&mut self) {
+        self.kept.clone_from_slices(&self.run.information);
+    }
+
+    /// What has come since the last outage was misread.
+    pub fn forget_since_outage(&mut self) {
+        self.run.information.clone_from_slices(&self.kept);
+        self.run.sensitivity.fill([0.0; 2]);
+        self.lag.begin();
+        self.effects.end();
     }
 
     /// The sensors' noise as it is now, and what the law leaves open.

@@ -56,6 +56,9 @@ impl Tracker {
     ) {
         let caution = self.decision().caution();
         let Tracker { intake, window, monitor, segment, .. } = self;
+        if window.ends_outage(number) {
+            monitor.law.keep();
+        }
         let law = &monitor.law;
         let (state, outage) = (&law.run.filter, window.ends_outage(number));
         let size = intake.quarantine.size();
@@ -133,7 +136,7 @@ impl Tracker {
             if is_burst {
                 self.leave_out_burst();
             }
-            self.restart_law(None);
+            self.restart_law(self.as_read());
         }
         self.intake.hindsight.clear();
         odds > -TWENTY_TO_ONE
@@ -181,7 +184,7 @@ impl Tracker {
         let recorded = self.intake.quarantine.amend(count, open);
         self.window.amend(recorded, open);
         self.segment.begin_run(&self.window);
-        self.restart_law(None);
+        self.restart_law(self.as_read());
     }
 
     /// Intensity of the white force, N² s, that an excitation of which nothing is known is like.
@@ -208,9 +211,10 @@ impl Tracker {
 
     fn correct_offset(&mut self, returned: &Returned) {
         let Returned { channel, offset, since, .. } = *returned;
+        let is_first = !self.intake.after_outage.is_found();
         self.intake.quarantine.take_off(channel, offset);
         self.intake.after_outage.correct(returned);
-        let now = self.now();
+        let (now, since) = (self.now(), since + 0.5 * self.window.pace());
         let first = (self.window.oldest()..self.window.end())
             .rev()
             .take_while(|number| now - self.window.sample(*number).t <= since);
@@ -222,24 +226,24 @@ impl Tracker {
         self.intake.quarantine.amend(u64::MAX, take_off);
         self.window.amend(count, take_off);
         self.segment.begin_run(&self.window);
-        self.restart_law(Some(returned));
+        if is_first {
+            self.monitor.law.forget_since_outage();
+        }
+        self.restart_law(returned.filter);
     }
 
     /// What spoke for a switch was a fault: the law in use goes on from a state that the fault did not touch.
-    fn restart_law(&mut self, returned: Option<&Returned>) {
+    fn restart_law(&mut self, filter: Filter) {
         self.clear_suspicion();
-        let run = &mut self.monitor.law.run;
-        let spread = match returned {
-            Some(returned) => returned.filter,
-            None => {
-                let [[qq, _], [_, vv]] = run.filter.covariance;
-                let [q, qd] = self.monitor.law.noise.sensor;
-                Filter::begin(run.filter.mean, [qq.max(q), vv.max(qd)])
-            }
-        };
-        run.filter = spread;
-        let state = run.filter.state();
-        self.monitor.prediction.restart(state, self.window.sample(self.window.ready() - 1).t);
+        self.monitor.law.run.filter = filter;
+        self.monitor.prediction.restart(filter.state(), self.window.sample(self.window.ready() - 1).t);
+    }
+
+    /// The state of the law in use, of which no more is known than was read last.
+    fn as_read(&self) -> Filter {
+        let Filter { mean, covariance: [[qq, _], [_, vv]] } = self.monitor.law.run.filter;
+        let [q, qd] = self.monitor.law.noise.sensor;
+        Filter::begin(mean, [qq.max(q), vv.max(qd)])
     }
 
     fn clear_suspicion(&mut self) {
