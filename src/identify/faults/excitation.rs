@@ -53,9 +53,10 @@ pub struct Stray {
 
 impl ExcitationGate {
     /// Takes a sample. The reading holds the white force that is left open for the interval: where the last F was
-    /// replaced, and what was `missed` of one that moved by so much over so long.
-    pub fn take(&mut self, sample: Sample, missed: impl Fn(f64, f64) -> f64) -> Reading {
-        let replaced = self.faulty && self.course.is_none();
+    /// replaced, or had repeated itself exactly `repeated` times where it varied before (a sender that has none to send
+    /// sends the last again), and what was `missed` of one that moved by so much over so long.
+    pub fn take(&mut self, sample: Sample, repeated: u64, missed: impl Fn(f64, f64) -> f64) -> Reading {
+        let replaced = self.faulty && self.course.is_none() || (1..=u64::from(LONGEST)).contains(&repeated);
         let before = self.last.unwrap_or(Sample { excitation: 0.0, ..sample });
         let force = sample.excitation;
         let absurd = self.is_absurd(force);
@@ -173,7 +174,7 @@ mod tests {
 
     fn through(forces: &[f64]) -> Vec<Reading> {
         let mut gate = ExcitationGate::default();
-        forces.iter().enumerate().map(|(index, force)| gate.take(sample(index, *force), |_, _| 0.0)).collect()
+        forces.iter().enumerate().map(|(index, force)| gate.take(sample(index, *force), 0, |_, _| 0.0)).collect()
     }
 
     fn sine() -> Vec<f64> {
@@ -184,7 +185,7 @@ mod tests {
     fn ended(forces: &[f64]) -> Vec<(usize, Stray)> {
         let mut gate = ExcitationGate::default();
         let told = forces.iter().enumerate().filter_map(|(index, force)| {
-            assert_eq!(gate.take(sample(index, *force), |_, _| 0.0).sample.excitation, *force);
+            assert_eq!(gate.take(sample(index, *force), 0, |_, _| 0.0).sample.excitation, *force);
             gate.ended().map(|stray| (index, stray))
         });
         told.collect()
@@ -213,7 +214,7 @@ mod tests {
             .iter()
             .enumerate()
             .map(|(index, force)| {
-                gate.take(sample(index, *force), |_, _| 0.0);
+                gate.take(sample(index, *force), 0, |_, _| 0.0);
                 gate.left()
             })
             .collect();
@@ -256,7 +257,7 @@ mod tests {
         let paces: Vec<f64> = forces
             .enumerate()
             .map(|(index, force)| {
-                gate.take(sample(index, force), |_, _| 0.0);
+                gate.take(sample(index, force), 0, |_, _| 0.0);
                 gate.pace()
             })
             .collect();

@@ -31,7 +31,8 @@ impl Tracker {
     pub fn step(&mut self, problem: &Problem, settings: &Settings, sample: Sample) {
         let setup = Setup { problem, settings };
         let window = &self.window;
-        let mut reading = self.intake.excitation.take(sample, |dt, moved| window.missed(dt, moved));
+        let mut reading =
+            self.intake.excitation.take(sample, self.intake.force.length(), |dt, moved| window.missed(dt, moved));
         self.weigh_stray(problem, &mut reading);
         self.follow_excitation(problem, &mut reading);
         self.hold_against_law(setup, reading);
