@@ -1,6 +1,6 @@
 //! Faults of sensors, clocks and masters, put into readings.
 
-use crate::NOISE;
+use crate::{NOISE, SWITCH};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::ops::Range;
@@ -17,6 +17,9 @@ const OFFSET: f64 = 0.05;
 
 /// A glitch of F, in amplitudes.
 const GLITCH: f64 = 2.5;
+
+/// Share of the samples for which a sender has nothing new.
+const REPEATED: f64 = 0.1;
 
 /// Share of a flaky sensor's readings that are wide draws.
 const FLAKY: f64 = 0.01;
@@ -58,6 +61,12 @@ pub enum Fault {
     NotANumber,
     /// No samples for this many s.
     Gap(u32),
+    /// No samples for this many ms, in the midst of which the law switches.
+    Hidden(u32),
+    /// No samples in the first fifth of every second.
+    Gaps,
+    /// One reading in ten repeats the last one.
+    Repeated(Of),
     /// The displacement is off by 0.05 from a gap of 1 s on.
     Offset,
     /// The displacement is off by 0.05 from a sample on.
@@ -70,21 +79,11 @@ pub enum Fault {
     Coarse(usize),
     /// The plant has this effect throughout, and the law lacks it.
     Lacks(&'static str),
-    Clipped(Of),
-    Lost,
-    Held(Of),
-    Gaps,
-    Hum,
-    Louder,
-    Creep,
-    TwoFaults,
-    Jitter,
-    Rounded,
 }
 
 impl Fault {
     /// All of them, in the order of the table.
-    pub const ALL: [Fault; 48] = [
+    pub const ALL: [Fault; 40] = [
         Fault::Clean,
         Fault::Burst(Of::Q),
         Fault::Burst(Of::Qd),
@@ -106,6 +105,12 @@ impl Fault {
         Fault::NotANumber,
         Fault::Gap(1),
         Fault::Gap(5),
+        Fault::Hidden(200),
+        Fault::Hidden(1000),
+        Fault::Hidden(5000),
+        Fault::Gaps,
+        Fault::Repeated(Of::F),
+        Fault::Repeated(Of::All),
         Fault::Offset,
         Fault::Jump,
         Fault::Stamp,
@@ -119,20 +124,6 @@ impl Fault {
         Fault::Lacks("quadratic_damping"),
         Fault::Lacks("bilinear_stiffness"),
         Fault::Lacks("signed_quadratic_stiffness"),
-        Fault::Clipped(Of::Q),
-        Fault::Clipped(Of::Qd),
-        Fault::Clipped(Of::Both),
-        Fault::Lost,
-        Fault::Held(Of::Q),
-        Fault::Held(Of::Qd),
-        Fault::Held(Of::F),
-        Fault::Held(Of::All),
-        Fault::Gaps,
-        Fault::Hum,
-        Fault::Louder,
-        Fault::Creep,
-        Fault::TwoFaults,
-        Fault::Jitter,
     ];
 
     /// Its name in the table.
@@ -150,22 +141,15 @@ impl Fault {
             Fault::HugeDisplacement => "ten q = 1e300".into(),
             Fault::NotANumber => "NaN 5 s".into(),
             Fault::Gap(seconds) => format!("gap {seconds} s"),
+            Fault::Hidden(ms) => format!("gap {} s over the switch", f64::from(ms) / 1000.0),
+            Fault::Gaps => "gap 0.2 s every second".into(),
+            Fault::Repeated(of) => format!("one in 10 repeats the last, {}", of.id()),
             Fault::Offset => "offset 0.05 of q after a gap".into(),
             Fault::Jump => "offset 0.05 of q".into(),
             Fault::Stamp => "one time stamp 1e6".into(),
             Fault::Late => "q, qd one sample late".into(),
             Fault::Coarse(step) => format!("steps of {step} ms, hold wrong"),
             Fault::Lacks(effect) => format!("lacks {effect}"),
-            Fault::Clipped(of) => format!("x clipped, {}", of.id()),
-            Fault::Lost => "x one in 10 NaN".into(),
-            Fault::Held(of) => format!("x one in 10 repeats, {}", of.id()),
-            Fault::Gaps => "x gaps 0.2 s each s".into(),
-            Fault::Hum => "x hum 50 Hz".into(),
-            Fault::Louder => "x louder".into(),
-            Fault::Creep => "x creep of q".into(),
-            Fault::TwoFaults => "x burst, stuck, burst".into(),
-            Fault::Jitter => "x jitter".into(),
-            Fault::Rounded => "x rounded".into(),
         }
     }
 
@@ -236,6 +220,19 @@ impl Fault {
                 (reading.q, reading.qd, reading.excitation) = (f64::NAN, f64::NAN, f64::NAN);
             }),
             Fault::Gap(_) => drop(readings.drain(first..last)),
+            Fault::Hidden(ms) => {
+                let half = 0.5e-3 * f64::from(ms);
+                readings.retain(|reading| (reading.t - SWITCH).abs() > half);
+            }
+            Fault::Gaps => readings.retain(|reading| reading.t < at || reading.t.fract() > 0.2),
+            Fault::Repeated(of) => {
+                for index in first..readings.len() {
+                    let before = readings[index - 1];
+                    if generator.random_bool(REPEATED) {
+                        of.set(&mut readings[index], &before);
+                    }
+                }
+            }
             Fault::Offset | Fault::Jump => {
                 drop(readings.drain(first..last));
                 readings[first..].iter_mut().for_each(|reading| reading.q += OFFSET);
@@ -244,68 +241,11 @@ impl Fault {
             Fault::Stamp => readings[first].t = 1e6,
             Fault::Late => late(readings),
             Fault::Coarse(step) => *readings = readings.iter().step_by(step).copied().collect(),
-            Fault::Clipped(of) => {
-                let most =
-                    |of: fn(&Reading) -> f64| 0.8 * readings[..first].iter().map(|r| of(r).abs()).fold(0.0, f64::max);
-                let [q, qd] = [most(|r| r.q), most(|r| r.qd)];
-                for r in &mut readings[first..] {
-                    if of != Of::Qd {
-                        r.q = r.q.clamp(-q, q);
-                    }
-                    if of != Of::Q {
-                        r.qd = r.qd.clamp(-qd, qd);
-                    }
-                }
-            }
-            Fault::Lost => {
-                for r in &mut readings[first..] {
-                    if generator.random_bool(0.1) {
-                        (r.q, r.qd, r.excitation) = (f64::NAN, f64::NAN, f64::NAN);
-                    }
-                }
-            }
-            Fault::Held(of) => {
-                let old = readings.clone();
-                for index in first..readings.len() {
-                    if generator.random_bool(0.1) {
-                        of.set(&mut readings[index], &old[index - 1]);
-                    }
-                }
-            }
-            Fault::Gaps => readings.retain(|r| r.t < at || r.t.fract() > 0.2),
-            Fault::Hum => readings[first..].iter_mut().for_each(|r| r.qd += 5.0 * NOISE * (314.159 * r.t).sin()),
-            Fault::Louder => {
-                for r in &mut readings[first..] {
-                    for v in [&mut r.q, &mut r.qd] {
-                        let u: f64 = (0..12).map(|_| generator.random_range(-0.5..0.5)).sum();
-                        *v += 3.0 * NOISE * u;
-                    }
-                }
-            }
-            Fault::Creep => readings[first..].iter_mut().for_each(|r| r.q += 0.005 * (r.t - at)),
-            Fault::TwoFaults => {
-                end = first + 700;
-                burst(&mut readings[first..first + 10], Of::Both, &mut generator);
-                let before = readings[first + 99];
-                readings[first + 100..first + 600].iter_mut().for_each(|r| Of::Q.set(r, &before));
-                burst(&mut readings[first + 690..end], Of::Qd, &mut generator);
-            }
-            Fault::Jitter => {
-                readings[first..].iter_mut().for_each(|r| r.t += 0.0003 * generator.random_range(-1.0..1.0))
-            }
-            Fault::Rounded => {}
         }
         match self {
             Fault::Stamp => at,
+            Fault::Hidden(_) | Fault::Gaps | Fault::Repeated(_) => at,
             Fault::Flaky | Fault::Late | Fault::Coarse(_) | Fault::Lacks(_) => at,
-            Fault::Clipped(_)
-            | Fault::Lost
-            | Fault::Held(_)
-            | Fault::Gaps
-            | Fault::Hum
-            | Fault::Louder
-            | Fault::Creep
-            | Fault::Jitter => at,
             _ => readings[end.clamp(first + 1, readings.len()) - 1].t.min(at + self.lasts().max(0.05)),
         }
     }

@@ -3,7 +3,7 @@
 //!
 //! Every fault is put into a record of four plants, terms given and full library, at 1 kHz with noise σ = 0.01: the law
 //! holds for 20 s, the fault begins at 10 s or where `--at` says, and at 20 s the law switches. What is wrong is
-//! judged by the truth:
+//! judged by the truth, and the switch counts from the first sample after it:
 //!
 //! | column | meaning |
 //! |---|---|

@@ -22,6 +22,8 @@ const BEFORE: f64 = 0.01;
 /// What was seen of one record.
 #[derive(Clone, Debug, Default)]
 pub struct Seen {
+    /// Time of the first sample that shows the switch, s.
+    pub switch: f64,
     /// Time valid and wrong, s.
     pub wrong: f64,
     /// Time valid with a coefficient beyond 6 of its std, s.
@@ -81,9 +83,13 @@ pub fn watch(model: &Model, scenario: &Scenario, fault: Fault, at: f64, seed: u6
     let recorded = record(scenario)?;
     let mut readings = recorded.readings.clone();
     let last = fault.apply(&mut readings, at, seed);
+    // a switch that no sample shows yet is none
+    let shows = |t: &f64| (SWITCH - 1e-9..END).contains(t);
+    let switch = readings.iter().map(|reading| reading.t).find(shows).ok_or("no sample shows the switch")?;
     let mut identifier = Identifier::new(model, Settings::default())?;
     let none = f64::INFINITY;
-    let mut seen = Seen { valid_again: none, named: none, limit: limit(scenario, &recorded)?, ..Seen::default() };
+    let limit = limit(scenario, &recorded, switch)?;
+    let mut seen = Seen { switch, valid_again: none, named: none, limit, ..Seen::default() };
     let (mut before, mut count) = (0.0, 0);
     for reading in readings {
         let sample = Sample { t: reading.t, q: reading.q, qd: reading.qd, excitation: reading.excitation };
@@ -117,8 +123,7 @@ impl Seen {
         self.valid[0] += 1;
         self.valid[1] += u64::from(coefficients.iter().any(|known| known.std.is_none()));
         let stage = scenario.stage_at(t);
-        let since = t - scenario.stages[stage].start;
-        if stage > 0 && since < ALLOWED {
+        if stage > 0 && t - self.switch < ALLOWED {
             return;
         }
         let [error, z, square] = errors(coefficients, scenario, stage);
@@ -133,7 +138,7 @@ impl Seen {
             true if t >= begins => self.false_switches += count,
             true => {}
             false if self.named.is_infinite() => {
-                (self.named, self.false_switches) = (t - SWITCH, self.false_switches + count - 1)
+                (self.named, self.false_switches) = (t - self.switch, self.false_switches + count - 1)
             }
             false => self.false_switches += count,
         }
@@ -152,13 +157,13 @@ fn errors(published: &[Coefficient], scenario: &Scenario, stage: usize) -> [f64;
     [square / truth.iter().map(|value| value * value).sum::<f64>(), worst, mean]
 }
 
-/// The limit of the delay at the switch, s; infinite where it cannot be seen.
-fn limit(scenario: &Scenario, recorded: &Recorded) -> Result<f64, Failure> {
+/// The limit of the delay, s, from a sample at time `switch` on; infinite where it cannot be seen.
+fn limit(scenario: &Scenario, recorded: &Recorded, switch: f64) -> Result<f64, Failure> {
     let law = |stage: usize| {
         let pairs: Vec<_> = scenario.terms.iter().copied().zip(scenario.stages[stage].coefficients.clone()).collect();
         Law::new(&pairs, &(0..pairs.len()).collect::<Vec<_>>())
     };
-    let from = recorded.readings.partition_point(|reading| reading.t < SWITCH - 1e-9);
+    let from = recorded.readings.partition_point(|reading| reading.t < switch - 1e-9);
     let readings = &recorded.readings[from..];
     let course = Course {
         t: readings.iter().map(|reading| reading.t).collect(),

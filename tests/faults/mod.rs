@@ -1,6 +1,7 @@
 //! Faults of sensors and clocks: none is a switch, none leaves a trace, and `valid` is a promise all the while.
 
 mod before_a_law;
+mod outages;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -412,18 +413,6 @@ fn a_sensor_that_becomes_louder_is_believed_and_its_noise_told() {
     let ratio = output.noise.qd.unwrap() / (3.0 * NOISE);
     assert!((0.75..1.25).contains(&ratio) && output.switch_count == 0 && output.valid, "{ratio}: {output:?}");
     assert!(output.sensors == [SensorState::Ok; 3] && scenario.stages.len() == 2, "{:?}", output.sensors);
-}
-
-#[test]
-fn a_sensor_that_comes_back_from_an_outage_with_an_offset_is_no_switch() {
-    let (_, mut samples) = steady(61);
-    samples[FIRST..].iter_mut().for_each(|sample| sample.q += 5.0 * NOISE);
-    samples.drain(FIRST - 1000..FIRST);
-    let mut identifier = identifier(Builtin::DuffingSine);
-    // the first sample after an outage is believed with the second one
-    samples.iter().for_each(|sample| _ = identifier.step(*sample).ok());
-    let output = identifier.output();
-    assert!(output.switch_count == 0 && output.sensors[0] == SensorState::Offset, "{output:?}");
 }
 
 /// Switches between two samples, of plants without noise: what the law then is, is wrong by thousands of stds.

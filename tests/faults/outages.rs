@@ -1,0 +1,80 @@
+//! Samples that are missing, or sent again: an outage may bring an offset, or hide a switch.
+
+use super::{FIRST, NOISE, identifier, plant, samples, steady};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use switchid::identify::{Identifier, Output, SensorState, Settings};
+use switchid::law::{Given, Model};
+use switchid::limits::SETTLED_ERROR;
+use switchid::simulate::Builtin;
+
+#[test]
+fn a_sensor_that_comes_back_from_an_outage_with_an_offset_is_no_switch() {
+    let (_, mut samples) = steady(61);
+    samples[FIRST..].iter_mut().for_each(|sample| sample.q += 5.0 * NOISE);
+    samples.drain(FIRST - 1000..FIRST);
+    let mut identifier = identifier(Builtin::DuffingSine);
+    // the first sample after an outage is believed with the second one
+    samples.iter().for_each(|sample| _ = identifier.step(*sample).ok());
+    let output = identifier.output();
+    assert!(output.switch_count == 0 && output.sensors[0] == SensorState::Offset, "{output:?}");
+}
+
+/// The law of a record that has no samples for so many seconds, in the midst of which it switches: what is false while
+/// `valid` holds, and the output at the end.
+fn over_a_gap(builtin: Builtin, seed: u64, gap: f64) -> (f64, Output) {
+    let switch = 10.0;
+    let scenario = plant(builtin, seed, switch, 20.0);
+    let model = Model::of("plant", builtin.terms().into_iter().map(|term| (term, Given::Fit)));
+    let mut identifier = Identifier::new(&model, Settings::default()).unwrap();
+    let mut wrong = 0.0;
+    for sample in samples(&scenario).iter().filter(|sample| (sample.t - switch).abs() > 0.5 * gap) {
+        // the first sample after an outage is believed with the second one
+        identifier.step(*sample).ok();
+        let (output, truth) = (identifier.output(), &scenario.stages[usize::from(sample.t > switch)].coefficients);
+        let counts = output.valid && (sample.t - switch - 0.5 * gap).abs() > 0.5;
+        let off = identifier.coefficients().iter().zip(truth).map(|(known, truth)| (known.value - truth).powi(2));
+        let e = off.sum::<f64>() / truth.iter().map(|value| value * value).sum::<f64>();
+        wrong += if counts && e > SETTLED_ERROR { 1e-3 } else { 0.0 };
+    }
+    (wrong, identifier.output().clone())
+}
+
+/// An offset explains what the law has become for a tenth of a second as well, the motion over the gap does not.
+#[test]
+fn a_switch_that_no_sample_shows_is_one_from_the_first_that_does() {
+    for (builtin, seed, gap) in [
+        (Builtin::DuffingSine, 10516, 1.0),
+        (Builtin::DuffingWhite, 10516, 1.0),
+        (Builtin::VanDerPolSine, 10517, 0.2),
+        (Builtin::VanDerPolWhite, 10517, 1.0),
+        (Builtin::VanDerPolSine, 10519, 5.0),
+    ] {
+        let (wrong, output) = over_a_gap(builtin, seed, gap);
+        let named = output.named_time.map(|named| named - 10.0 - 0.5 * gap);
+        let label = format!("{} {seed}, gap {gap} s: {wrong} s wrong, named after {named:?} s", builtin.id());
+        assert!(output.switch_count == 1 && wrong == 0.0 && output.valid, "{label}; {output:?}");
+        assert!(
+            named.is_some_and(|named| named < 1.0) && output.sensors == [SensorState::Ok; 3],
+            "{label}; {output:?}"
+        );
+    }
+}
+
+/// A sender that has no F to send sends the last once more; of a rough one that is not what acts.
+#[test]
+fn a_force_that_is_sent_again_is_no_switch() {
+    for seed in [10516, 10517] {
+        let mut samples = samples(&plant(Builtin::DuffingWhite, seed, 1e3, 14.0));
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        for index in FIRST..samples.len() {
+            if generator.random_bool(0.1) {
+                samples[index].excitation = samples[index - 1].excitation;
+            }
+        }
+        let mut identifier = identifier(Builtin::DuffingWhite);
+        samples.iter().for_each(|sample| identifier.step(*sample).unwrap());
+        let output = identifier.output();
+        assert!(output.switch_count == 0 && output.valid, "{seed}: {output:?}");
+    }
+}
