@@ -20,6 +20,19 @@ fn a_sensor_that_comes_back_from_an_outage_with_an_offset_is_no_switch() {
     assert!(output.switch_count == 0 && output.sensors[0] == SensorState::Offset, "{output:?}");
 }
 
+/// Under a white force a state that is one sample old is none.
+#[test]
+fn an_offset_without_an_outage_is_no_switch() {
+    for builtin in [Builtin::DuffingWhite, Builtin::VanDerPolWhite] {
+        let mut samples = samples(&plant(builtin, 10525, 1e3, 12.0));
+        samples[FIRST..].iter_mut().for_each(|sample| sample.q += 5.0 * NOISE);
+        let mut identifier = identifier(builtin);
+        samples.iter().for_each(|sample| identifier.step(*sample).unwrap());
+        let output = identifier.output();
+        assert!(output.switch_count == 0 && output.valid && output.sensors[0] == SensorState::Offset, "{output:?}");
+    }
+}
+
 /// The law of a record that has no samples for so many seconds, in the midst of which it switches: what is false while
 /// `valid` holds, and the output at the end.
 fn over_a_gap(builtin: Builtin, seed: u64, gap: f64) -> (f64, Output) {

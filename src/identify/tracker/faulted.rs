@@ -63,18 +63,17 @@ impl Tracker {
         let (state, outage) = (&law.run.filter, window.ends_outage(number));
         let size = intake.quarantine.size();
         let expected = || expected(problem, law, caution, &segment.scales, size);
-        if let Some(found) = intake.quarantine.found_offset() {
-            intake.after_outage.follow(&expected(), state, found);
-        }
-        match outage {
-            _ if !law.explains => {}
-            true => intake.after_outage.begin(&expected(), state, problem.channels.of_motion()),
-            false if intake.after_outage.is_open() => {
+        let found = intake.quarantine.found_offset();
+        match found {
+            Some(found) => intake.after_outage.follow(&expected(), state, found),
+            None if !law.explains => {}
+            None if outage => intake.after_outage.begin(&expected(), state, problem.channels.of_motion()),
+            None if intake.after_outage.is_open() => {
                 let law = expected();
                 let noise = law.noise_with(observation.unseen, state.mean[0]);
                 intake.after_outage.take(&Expected { noise, ..law }, observation, state, innovations);
             }
-            false => {}
+            None => {}
         }
         if intake.after_outage.is_due() {
             self.take_off_the_rest();
