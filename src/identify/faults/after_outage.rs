@@ -174,8 +174,9 @@ mod tests {
 
     /// A particle at rest on a spring, read with std 1 in both channels, whose q comes back off by `off`.
     fn returned(off: f64) -> AfterOutage {
+        let terms = [Term::Inertia, Term::parse("q").unwrap()];
         let law = Expected {
-            motion: Motion::new(&[Term::Inertia, Term::parse("q").unwrap()], &[1.0, 1.0]),
+            motion: Motion::new(&terms, &[1.0, 1.0]),
             noise: Noise { sensor: [1.0; 2], process: 1e-6 },
             caution: 1.0,
             switch: [10.0, 0.5],
@@ -188,13 +189,15 @@ mod tests {
             alone: None,
         };
         let mut after = AfterOutage::new();
-        for index in 0..300 {
+        let mut state = Filter::begin([off + 1.0, -1.0], [1.0; 2]);
+        after.begin(&law, &state, [true; 2]);
+        for index in 1..300 {
             let noise = if index % 2 == 0 { 1.0 } else { -1.0 };
-            let measured = [Some(off + noise), Some(-noise)];
-            match index {
-                0 => after.begin(&law, &Filter::begin([off + noise, -noise], [1.0; 2]), [true; 2]),
-                _ => after.take(&law, &Observation { dt: 0.01, drive: Drive::Held(0.0), measured, unseen: 0.0 }),
-            }
+            let read = [off + noise, -noise];
+            let observation = Observation { dt: 0.01, drive: Drive::Held(0.0), measured: read.map(Some), unseen: 0.0 };
+            state = law.carry(&state, observation.dt, &observation.drive);
+            let innovations = Channel::ALL.map(|channel| Some(state.update(channel, read[channel as usize], 1.0)));
+            after.take(&law, &observation, &state, &innovations);
         }
         after
     }

@@ -195,6 +195,7 @@ mod tests {
             rate: 2.0,
             size: [1.0, 2.0],
             drive: 1.0,
+            unnoticed: 0.0,
             stuck: None,
             parts: 1,
             alone: None,
