@@ -3,13 +3,11 @@
 
 #[path = "../measure/figures/against_limits/disturbed.rs"]
 mod disturbed;
-#[path = "../measure/figures/follow.rs"]
-mod follow;
 #[path = "../measure/figures/against_limits/recorded.rs"]
 mod recorded;
 
+use super::follow::follow;
 use disturbed::Disturbance;
-use follow::follow;
 use recorded::{Library, Recorded, law, sensors};
 use switchid::identify::{Identifier, Sample, Settings};
 use switchid::limits::{Start, bound, detection, level};

@@ -13,6 +13,8 @@ mod dropbear;
 #[cfg(feature = "cli")]
 mod examples;
 mod faults;
+#[path = "../measure/figures/follow.rs"]
+mod follow;
 mod force_law;
 #[cfg(feature = "formats")]
 mod formats;

@@ -1,11 +1,9 @@
 //! The truth of the built-in scenarios is found again by the default identifier.
 
-#[path = "../measure/figures/follow.rs"]
-mod follow;
 #[path = "../measure/figures/measure.rs"]
 mod measure;
 
-use follow::Figures;
+use super::follow::{self, Figures};
 use measure::{measure, model};
 use switchid::simulate::{Builtin, Scenario};
 

@@ -50,7 +50,7 @@ fn over_a_gap(builtin: Builtin, seed: u64, gap: f64) -> (f64, Output) {
         let e = off.sum::<f64>() / truth.iter().map(|value| value * value).sum::<f64>();
         wrong += if counts && e > SETTLED_ERROR { 1e-3 } else { 0.0 };
     }
-    (wrong, identifier.output().clone())
+    (wrong, *identifier.output())
 }
 
 /// An offset explains what the law has become for a tenth of a second as well, the motion over the gap does not.
