@@ -13,9 +13,12 @@ use crate::identify::segment::MotionScales;
 /// A decision between an offset and another law may take this long after an outage, s …
 const UNDECIDED: f64 = 3.0;
 
-/// … and is made before with these log-odds, for the offset once the motion has turned by a radian: until then what an
-/// offset does is like what another law does.
+/// … and is made before with these log-odds …
 const DECISIVE: f64 = 6.0;
+
+/// … for the offset once the motion has turned by so many radians: what that does stays, and until then what another
+/// law does may stay too.
+const TURNED: f64 = 2.0;
 
 /// The evidence of a switch is linear in what may be no small change, and is right to this part of itself.
 const LINEAR: f64 = 0.1;
@@ -197,7 +200,7 @@ impl Tracker {
     fn is_offset(&mut self, suspect: &Suspect) -> bool {
         let Some(returned) = self.intake.after_outage.likeliest() else { return false };
         let odds = (returned.evidence - (1.0 - LINEAR) * suspect.evidence).min(returned.odds);
-        let has_turned = returned.since > self.segment.scales.natural_time();
+        let has_turned = returned.since > TURNED * self.segment.scales.natural_time();
         let told = self.intake.after_outage.is_found() || has_turned && returned.against_other > DECISIVE;
         let open = odds.abs() < DECISIVE || odds > 0.0 && !told;
         self.intake.undecided = open && returned.since < UNDECIDED;
