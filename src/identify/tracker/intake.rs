@@ -100,8 +100,8 @@ impl Tracker {
         }
     }
 
-    /// A validated law that explains its record says what a reading can be, and what F did, unless it may be another one
-    /// since an outage.
+    /// A validated law that explains its record says what a reading can be, and what F did, unless it may be another
+    /// one since an outage.
     fn tells_readings(&self) -> bool {
         let law = &self.monitor.law;
         law.running && law.explains && self.regime.law().is_some() && !self.intake.undecided
