@@ -20,21 +20,25 @@ pub fn test() -> Result<(), Error> {
     steps.check("real records", real_records);
     steps.check("licences of the FMUs' crates", licences::check);
     steps.check("format", || cargo_run(&["fmt", "--all", "--check"]));
+    // each has a folder of its own to build in, and none keeps both processors busy
+    let fmus = steps.begin("FMUs", fmu::build);
+    let sanitized = steps.begin("slave under AddressSanitizer", sanitize::slave);
     steps.check("clippy", || cargo_run(&clippy(&["--workspace", "--exclude", CHECK, "--all-targets"])));
+    steps.wait(sanitized);
+    steps.wait(fmus);
+    let imported = steps.begin("FMUs through the fmi crate", fmi_crate);
+    let own = foreign::own_stepper();
+    let wine = steps.begin("Windows binary under Wine", || foreign::compare_quickly(&own?));
     steps.check("clippy, heart alone", || cargo_run(&clippy(&["--package", "switchid", "--no-default-features"])));
     steps.check("clippy, command line without formats and pictures", || {
         cargo_run(&clippy(&["--package", "switchid", "--no-default-features", "--features", "cli"]))
     });
     steps.check("documentation", documentation);
-    steps.check("FMUs", fmu::build);
-    let own = foreign::own_stepper();
-    let wine = steps.begin("Windows binary under Wine", || foreign::compare_quickly(&own?));
+    steps.wait(imported);
     steps.check("Rust tests", || {
         cargo_run(&["test", "--release", "--quiet", "--no-fail-fast", "--workspace", "--exclude", CHECK])
     });
     steps.check("random FMI calls", binaries::bounded);
-    steps.check("slave under AddressSanitizer", sanitize::slave);
-    steps.check("FMUs through the fmi crate", fmi_crate);
     steps.check("command line of the cross-check", fmu::build_command);
     let interpreter = steps.run("Python environment", python::environment);
     let harness = steps.begin("harness tests", || pytest(&interpreter?));
