@@ -14,6 +14,13 @@ pub struct Reading {
     pub unseen: f64,
 }
 
+impl Reading {
+    /// Whether one of the channels that are `measured` counts.
+    pub fn counts(&self, measured: [bool; 2]) -> bool {
+        self.faulty.into_iter().zip(measured).any(|(faulty, measured)| measured && !faulty)
+    }
+}
+
 impl From<Sample> for Reading {
     fn from(sample: Sample) -> Reading {
         Reading { sample, faulty: [false; 2], unseen: 0.0 }

@@ -7,8 +7,17 @@ use thiserror::Error;
 /// bridged.
 pub const GAP: f64 = 4.5;
 
+/// Readings that do not come, or do not count, for so many usual distances are an outage: the law may have switched
+/// within, and nothing says when.
+const OUTAGE: f64 = 50.0;
+
 /// Share of an interval in the usual one: that follows another rate of sampling within 20 samples.
 pub const PACE_SHARE: f64 = 0.05;
+
+/// Whether nothing that counts has come for so long, s, where one usually comes every `pace` s, that it is an outage.
+pub fn is_outage(silence: f64, pace: f64) -> bool {
+    pace > 0.0 && silence > OUTAGE * pace
+}
 
 /// One measurement.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

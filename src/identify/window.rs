@@ -2,7 +2,7 @@
 
 use super::packed_readings;
 use super::reading::Reading;
-use super::sample::{PACE_SHARE, Sample};
+use super::sample::{PACE_SHARE, Sample, is_outage};
 use super::settings::Channels;
 use crate::estimation::{Filter, Noise, Observation, SAMPLES_OF_A_VARIANCE, initial_state};
 use crate::law::{BandLimited, Drive, Hold, REACH, look_ahead};
@@ -11,12 +11,11 @@ use serde::{Deserialize, Serialize};
 /// An interval this many times as long as the usual one lacks samples, half way between none and one …
 const GAP: f64 = 1.5;
 
-/// … unless more than so many in a row are.
-const PATIENCE: u32 = 3;
+/// … unless so many in a row are that less than this would be chance: then the samples come at another rate.
+const CHANCE: f64 = 1e-6;
 
-/// An interval this many times as long as the usual one is an outage: the law may have switched within, and nothing
-/// says when.
-const OUTAGE: f64 = 50.0;
+/// Share of intervals that lack samples, at least: four in a row are no chance where there were none before.
+const LACKING: f64 = 0.03;
 
 /// Accepted samples by number; the first of all is number 0.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,6 +25,8 @@ pub struct Window {
     count: u64,
     /// Number of the first sample after the last outage.
     resumed: u64,
+    /// Time of the last sample of which a reading of the motion counts, s.
+    counted: f64,
     channels: Channels,
     hold: Hold,
     band_limited: BandLimited,
@@ -39,8 +40,9 @@ pub struct Window {
 struct Pace {
     /// The usual time between two samples, s.
     dt: f64,
-    /// Longer ones in a row.
-    longer: u32,
+    /// Longer ones in a row, and their share of all.
+    longer: i32,
+    lacking: f64,
     /// Mean of half the square of what the excitation moves by, N².
     roughness: f64,
     count: f64,
@@ -49,10 +51,12 @@ struct Pace {
 impl Pace {
     fn take(&mut self, before: &Sample, sample: &Sample) {
         let dt = sample.t - before.t;
-        self.longer = if self.is_gap(dt) { self.longer + 1 } else { 0 };
-        if self.dt == 0.0 || self.longer > PATIENCE {
+        let is_longer = self.is_gap(dt);
+        self.longer = if is_longer { self.longer + 1 } else { 0 };
+        if self.dt == 0.0 || self.lacking.max(LACKING).powi(self.longer) < CHANCE {
             self.dt = dt;
         }
+        self.lacking += (f64::from(u8::from(is_longer)) - self.lacking) / (self.count + 1.0);
         if self.is_gap(dt) {
             return;
         }
@@ -62,19 +66,14 @@ impl Pace {
         self.roughness += (square - self.roughness) / self.count;
     }
 
-    fn is_outage(&self, dt: f64) -> bool {
-        self.dt > 0.0 && dt > OUTAGE * self.dt
-    }
-
     fn is_gap(&self, dt: f64) -> bool {
         self.dt > 0.0 && dt > GAP * self.dt
     }
 
     /// Over an interval in which samples are missing the excitation is known at its ends alone: intensity of the white
-    /// force that may have been there besides, N² s; infinite where nothing is known of what moved it.
+    /// force that may have been there besides, N² s.
     fn unseen(&self, dt: f64, moved: f64) -> f64 {
         match self.is_gap(dt) {
-            _ if self.is_outage(dt) => f64::INFINITY,
             true => (1.0 - self.dt / dt) * (self.roughness * self.dt + 0.25 * moved * moved * dt),
             false => 0.0,
         }
@@ -86,7 +85,7 @@ impl Window {
     pub fn new(capacity: usize, channels: Channels, hold: Hold) -> Window {
         let ring = vec![Reading::default(); capacity];
         let (band_limited, pace) = (BandLimited::new(), Pace::default());
-        Window { ring, count: 0, resumed: 0, channels, hold, band_limited, pace, unseen: 0.0 }
+        Window { ring, count: 0, resumed: 0, counted: f64::INFINITY, channels, hold, band_limited, pace, unseen: 0.0 }
     }
 
     /// How many samples it can hold.
@@ -94,15 +93,19 @@ impl Window {
         self.ring.len()
     }
 
-    /// Adds a sample; the oldest goes when there is no room.
+    /// Adds a sample; the oldest goes when there is no room. Nothing is known of what moved the motion over an outage.
     pub fn push(&mut self, reading: impl Into<Reading>) {
         let mut reading = reading.into();
+        let Sample { t, .. } = reading.sample;
         reading.unseen += std::mem::take(&mut self.unseen);
+        if reading.counts(self.channels.of_motion()) {
+            if is_outage(t - self.counted, self.pace.dt) {
+                (self.resumed, reading.unseen) = (self.count, f64::INFINITY);
+            }
+            self.counted = t;
+        }
         if self.count > 0 {
             let before = *self.sample(self.count - 1);
-            if self.pace.is_outage(reading.sample.t - before.t) {
-                self.resumed = self.count;
-            }
             self.pace.take(&before, &reading.sample);
         }
         let slot = self.slot(self.count);
@@ -141,13 +144,13 @@ impl Window {
         self.resumed.max(self.oldest())
     }
 
-    /// Whether samples are missing for long before the sample of that number.
+    /// Whether an outage ends with the sample of that number.
     pub fn ends_outage(&self, number: u64) -> bool {
-        number > self.oldest() && self.pace.is_outage(self.sample(number).t - self.sample(number - 1).t)
+        self.ring[self.slot(number)].unseen.is_infinite()
     }
 
     /// What is missed of F over the interval to the next sample, if that is so long and F moves by so much: intensity
-    /// of a white force, N² s; infinite over an outage.
+    /// of a white force, N² s.
     pub fn missed(&self, dt: f64, moved: f64) -> f64 {
         self.pace.unseen(dt, moved)
     }
@@ -284,6 +287,21 @@ mod tests {
             alignment.align(lag, sample).into_iter().for_each(|sample| window.push(sample));
         }
         window
+    }
+
+    /// Usual time between two samples after so many of those numbers have come.
+    fn pace(numbers: impl Iterator<Item = u32>) -> f64 {
+        let mut window = Window::new(8, Channels::ALL, Hold::Zero);
+        numbers.for_each(|k| window.push(Sample { t: f64::from(k), ..Sample::default() }));
+        window.pace()
+    }
+
+    #[test]
+    fn samples_that_are_lost_in_a_row_by_chance_do_not_change_the_pace() {
+        // of ten one is lost, and then every second one for a while
+        let often = (0..2000).filter(|k| k % 10 > 0);
+        assert_eq!(pace(often.clone().chain((2001..2010).step_by(2))), 1.0);
+        assert_eq!(pace((0..2000).chain((2001..2010).step_by(2))), 2.0);
     }
 
     /// A force that comes a sample late is known of the last interval when the next sample has come; one that comes a

@@ -12,7 +12,7 @@ use crate::estimation::{Channel, Filter, OUTLYING, UNLIKELY};
 use crate::identify::packed_readings;
 use crate::identify::reading::Reading;
 use crate::identify::report::SensorState;
-use crate::identify::sample::{GAP, Sample};
+use crate::identify::sample::{GAP, Sample, is_outage};
 use crate::law::{Hold, State};
 use serde::{Deserialize, Serialize};
 
@@ -56,6 +56,8 @@ impl Stance {
 /// The readings of a stream on their way into the record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Quarantine {
+    /// Which of q and q̇ are measured.
+    measured: [bool; 2],
     weighing: Weighing,
     stance: Stance,
     /// Readings held, and how many.
@@ -72,6 +74,8 @@ pub struct Quarantine {
     arrivals: Arrivals,
     /// Time since samples were last missing, s.
     whole: f64,
+    /// Time of the last sample let through of which a reading counts, s.
+    counted: f64,
     samples: f64,
     /// Mean squares of q and q̇ let through.
     squares: [f64; 2],
@@ -102,6 +106,7 @@ impl Quarantine {
     /// Nothing held of these channels.
     pub fn new(measured: [bool; 2]) -> Quarantine {
         Quarantine {
+            measured,
             weighing: Weighing::new(ROOM, measured),
             stance: Stance::Calm,
             held: vec![Reading::default(); ROOM],
@@ -112,6 +117,7 @@ impl Quarantine {
             is_alone: false,
             arrivals: Arrivals::default(),
             whole: 0.0,
+            counted: f64::INFINITY,
             samples: 0.0,
             squares: [0.0; 2],
             decided: 0,
@@ -124,7 +130,7 @@ impl Quarantine {
     }
 
     /// Takes a reading, `pace` being the usual time between two samples, s.
-    pub fn take(&mut self, mut reading: Reading, measured: [bool; 2], hold: Hold, pace: f64, against: Against) {
+    pub fn take(&mut self, mut reading: Reading, hold: Hold, pace: f64, against: Against) {
         reading.sample.q -= self.offset[0];
         reading.sample.qd -= self.offset[1];
         self.change_measure(matches!(against, Against::Motion(..)));
@@ -136,11 +142,16 @@ impl Quarantine {
         let law = if let Against::Law(law, filter) = against { Some((law, self.believed(filter))) } else { None };
         let course =
             |before: &Sample| law.map_or(Course::UNKNOWN, |(law, filter)| course(law, &filter, before, &reading));
-        let arrival = self.arrivals.take(reading, measured, hold, course);
+        let arrival = self.arrivals.take(reading, self.measured, hold, course);
         let is_whole = |arrival: &Arrival| arrival.dt < GAP * pace;
         self.whole =
             arrival.as_ref().filter(|arrival| is_whole(arrival)).map_or(0.0, |arrival| self.whole + arrival.dt);
         match (against, arrival) {
+            // what brings the readings back may have brought another law as well
+            (_, Some(arrival)) if self.is_released(&arrival) && is_outage(reading.sample.t - self.counted, pace) => {
+                self.settle();
+                self.let_through(arrival.reading);
+            }
             (Against::Law(law, filter), Some(arrival)) if is_whole(&arrival) => {
                 // what has been followed for a radian since would have been noticed
                 let unnoticed = if self.whole * law.rate < 1.0 { self.whole } else { 0.0 };
@@ -148,7 +159,7 @@ impl Quarantine {
                 self.weigh(&arrival, &law, &filter);
             }
             (Against::Motion(noise, force), Some(arrival)) if is_whole(&arrival) => {
-                let around = Surroundings { noise, measured, size: self.size(), force };
+                let around = Surroundings { noise, measured: self.measured, size: self.size(), force };
                 self.weigh_alone(arrival, &around);
             }
             _ => {
@@ -273,7 +284,7 @@ impl Quarantine {
     fn doubt(&mut self, arrival: &Arrival, law: &Expected, start: &Filter<4>) {
         match self.stance {
             Stance::Calm => self.begin(arrival, law, start),
-            Stance::Named(place) if self.is_released(place, arrival) => {
+            Stance::Named(place) if self.is_released(arrival) => {
                 let start = self.weighing.hypothesis(place).start(law);
                 self.begin(arrival, law, &start);
             }
@@ -318,11 +329,11 @@ impl Quarantine {
     }
 
     /// Whether a sensor that was stuck varies again.
-    fn is_released(&self, place: usize, arrival: &Arrival) -> bool {
-        let kind = self.weighing.hypothesis(place).kind;
+    fn is_released(&self, arrival: &Arrival) -> bool {
+        let Some(named) = self.stance.named(&self.weighing) else { return false };
         Channel::ALL.into_iter().any(|channel| {
             let varies = arrival.values[channel as usize].is_none_or(|value| value.repeats.is_none());
-            kind.sticks(channel) && varies
+            named.kind.sticks(channel) && varies
         })
     }
 
@@ -456,6 +467,7 @@ impl Quarantine {
         for (square, value) in self.squares.iter_mut().zip([reading.sample.q, reading.sample.qd]) {
             *square += (value * value - *square) / self.samples.min(MEMORY);
         }
+        self.counted = if reading.counts(self.measured) { reading.sample.t } else { self.counted };
         self.through.push(reading);
     }
 }

@@ -126,8 +126,7 @@ impl Tracker {
             (None, None) => Against::Nothing,
         };
         let by_law = matches!(against, Against::Law(..));
-        let measured = problem.channels.of_motion();
-        intake.quarantine.take(reading, measured, problem.timing.hold, window.pace(), against);
+        intake.quarantine.take(reading, problem.timing.hold, window.pace(), against);
         let (in_doubt, is_stuck) = (intake.quarantine.is_in_doubt(), intake.quarantine.found_stuck_force());
         let kicked = intake.quarantine.found_kick() && !by_law;
         match intake.excitation.left().filter(|_| !intake.force_lost) {
