@@ -48,12 +48,6 @@ impl Track {
         -0.5 * (q.total() + qd.total() + self.squares[0] + self.squares[1])
     }
 
-    /// Geometric mean of s in the channel; 0 where nothing was measured.
-    pub fn variance(&self, channel: Channel) -> f64 {
-        let count = self.count[channel as usize];
-        if count > 0.0 { (self.log_variance[channel as usize].total() / count).exp() } else { 0.0 }
-    }
-
     /// Number of scalar measurements.
     pub fn total(&self) -> f64 {
         self.count[0] + self.count[1]

@@ -1,7 +1,7 @@
 //! Sensor noise follows the innovations, process noise the likelihood.
 
 use super::state::Segment;
-use crate::estimation::{Channel, Noise, RIVALS, TWENTY_TO_ONE, Track};
+use crate::estimation::{Channel, Filter, Noise, RIVALS, TWENTY_TO_ONE, Track, white_acceleration};
 use crate::identify::problem::Problem;
 use crate::identify::settings::Settings;
 use crate::identify::window::Window;
@@ -13,6 +13,9 @@ const PROCESS_SHARE: f64 = 2.0;
 /// The same where the state is known from the last 30 samples alone: an innovation's variance is its sensor's times 1 +
 /// 1/30.
 const FORGETTING: f64 = 1.0 + 1.0 / 30.0;
+
+/// Samples after which the state that a run begins from adds less than half of that to an innovation's variance.
+const STEADY: usize = 256;
 
 /// Nothing tells a process noise from none under which the state is remembered for ten times the longest window,
 /// samples.
@@ -45,15 +48,31 @@ impl Segment {
 
     /// What the run says of the law's own error, under the noise levels that it ran with.
     pub(super) fn tell_error(&mut self, problem: &Problem, settings: &Settings, track: &Track, window: &Window) {
-        let exceeds = |factor: f64| {
-            Channel::ALL.iter().any(|channel| track.variance(*channel) > factor * self.noise.sensor[*channel as usize])
-        };
+        let scatter = self.scatter(problem, window.pace());
         let overdispersion = self.run.sandwich.overdispersion(&self.run.filter_run.information);
         let errs = self.gains(track)[0] <= -TWENTY_TO_ONE
             && self.noise.process >= 2.0 * self.process_floor(problem, settings, window);
         self.fit.overdispersion = if overdispersion > LASTING { overdispersion } else { 1.0 };
-        self.fit.process_matters = exceeds(PROCESS_SHARE);
-        self.fit.explains = !exceeds(FORGETTING) && overdispersion < UNEXPLAINED && !errs;
+        self.fit.process_matters = scatter > PROCESS_SHARE;
+        self.fit.explains = scatter < FORGETTING && overdispersion < UNEXPLAINED && !errs;
+    }
+
+    /// Variance of an innovation ÷ that of its sensor, at most, where readings come every `dt` s and nothing but the
+    /// process noise acts: what the excitation did unseen is no error of the law's.
+    fn scatter(&self, problem: &Problem, dt: f64) -> f64 {
+        let Noise { sensor: [q, qd], process } = self.noise;
+        let measured = problem.channels.of_motion();
+        let begins = [if measured[0] { q } else { qd * dt * dt }, if measured[1] { qd } else { q / (dt * dt) }];
+        let mut filter = Filter::begin([0.0; 2], begins);
+        let mut scatter = [0.0; 2];
+        for _ in 0..STEADY {
+            filter.predict(|[q, qd]| [q + dt * qd, qd], &white_acceleration(process, dt));
+            for channel in Channel::ALL.into_iter().filter(|channel| measured[*channel as usize]) {
+                let variance = self.noise.sensor[channel as usize];
+                scatter[channel as usize] = filter.update(channel, 0.0, variance).variance / variance;
+            }
+        }
+        scatter[0].max(scatter[1])
     }
 
     /// Sensor variances that are not given follow the innovations.
