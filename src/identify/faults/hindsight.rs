@@ -64,24 +64,23 @@ impl Hindsight {
         }
         self.first = switch.saturating_sub(BEFORE).max(oldest);
         let rare = event(window.pace()).ln();
-        let after = (switch + 1).clamp(self.first, window.ready() - 1);
         let mut nothing = settled(law, window, self.first);
         let mut log = 0.0;
         self.burst.begin(&under_law(&nothing), law, 0.0, 0.0, 0.0);
-        for (place, number) in (self.first..window.ready()).enumerate() {
+        let first = self.first;
+        for (place, number) in (first..window.ready()).enumerate() {
             let observation = window.observation(number);
             let law = Expected { noise: law.noise_with(observation.unseen, nothing.mean[0]), ..*law };
             let values = observation.measured.map(|value| value.map(|value| Value { value, repeats: None }));
             let Observation { dt, drive, .. } = observation;
-            if number == after {
-                let start = under_law(&nothing);
-                self.events.iter_mut().for_each(|other| other.begin(&start, &law, dt, log, rare));
+            let start = under_law(&nothing);
+            // what has not become likelier than it was is about to begin (Page 1954)
+            for event in self.events.iter_mut().filter(|event| number == first || event.log <= log + rare) {
+                event.begin(&start, &law, dt, log, rare);
             }
             log += take(&law, &observation, &mut nothing);
             self.burst.take(&law, dt, &drive, values, place);
-            if number >= after {
-                self.events.iter_mut().for_each(|other| other.take(&law, dt, &drive, values, place));
-            }
+            self.events.iter_mut().for_each(|event| event.take(&law, dt, &drive, values, place));
         }
         // less the share of what has no burst
         let burst = self.burst.log + (-(log - self.burst.log).min(0.0).exp()).ln_1p();
