@@ -57,7 +57,7 @@ pub use difference_noise::DifferenceNoise;
 pub use effect_posterior::{EffectPosterior, LawWithEffect, WithAndWithout};
 pub use filter::{Channel, Filter, Innovation, Noise, times, white_acceleration};
 pub use information::{Information, Solution};
-pub use initial_state::initial_state;
+pub use initial_state::{initial_state, state_after_outage};
 pub use innovation_gate::{InnovationGate, OUTLYING};
 pub use kinematics::{FixedLagSmoother, Instant, LONGEST, MotionNoise};
 pub use lag_test::{Lag, LagTest, ToldLag};

@@ -4,7 +4,7 @@ use super::packed_readings;
 use super::reading::Reading;
 use super::sample::{PACE_SHARE, Sample, is_outage};
 use super::settings::Channels;
-use crate::estimation::{Filter, Noise, Observation, SAMPLES_OF_A_VARIANCE, initial_state};
+use crate::estimation::{Filter, Noise, Observation, SAMPLES_OF_A_VARIANCE, initial_state, state_after_outage};
 use crate::law::{BandLimited, Drive, Hold, REACH, look_ahead};
 use serde::{Deserialize, Serialize};
 
@@ -252,12 +252,19 @@ impl Window {
         [before, after]
     }
 
-    /// The state at sample `start` from that sample and the next alone, where a filter run begins.
+    /// The state at sample `start` from that sample and the next alone, where a filter run begins; a reading that is a
+    /// fault tells nothing of it.
     pub fn initial_state(&self, start: u64, noise: &Noise) -> Filter {
         let pair = [start, (start + 1).min(self.end() - 1)].map(|number| *self.sample(number));
         let [q, qd] = [pair.map(|sample| sample.q), pair.map(|sample| sample.qd)];
-        let measured = [self.channels.q.then_some(q), self.channels.qd.then_some(qd)];
-        initial_state(measured, pair[1].t - pair[0].t, noise)
+        let measured = self.channels.of_motion();
+        let faulty = self.ring[self.slot(start)].faulty;
+        if measured.into_iter().zip(faulty).any(|(measured, faulty)| measured && faulty) {
+            let counts =
+                [0, 1].map(|channel| (measured[channel] && !faulty[channel]).then_some([q[0], qd[0]][channel]));
+            return state_after_outage([q[0], qd[0]], counts, noise);
+        }
+        initial_state([measured[0].then_some(q), measured[1].then_some(qd)], pair[1].t - pair[0].t, noise)
     }
 
     /// Interpolates the excitation after sample `start`; beyond the ends of the record its last value stays.

@@ -14,7 +14,8 @@ const PROCESS_SHARE: f64 = 2.0;
 /// 1/30.
 const FORGETTING: f64 = 1.0 + 1.0 / 30.0;
 
-/// Samples after which the state that a run begins from adds less than half of that to an innovation's variance.
+/// Samples after which an innovation's variance stays as it is: what the state that a run begins from adds to it is by
+/// then less than half of what that is.
 const STEADY: usize = 256;
 
 /// Nothing tells a process noise from none under which the state is remembered for ten times the longest window,
@@ -48,7 +49,7 @@ impl Segment {
 
     /// What the run says of the law's own error, under the noise levels that it ran with.
     pub(super) fn tell_error(&mut self, problem: &Problem, settings: &Settings, track: &Track, window: &Window) {
-        let scatter = self.scatter(problem, window.pace());
+        let scatter = self.scatter(problem, track.count, window.pace());
         let overdispersion = self.run.sandwich.overdispersion(&self.run.filter_run.information);
         let errs = self.gains(track)[0] <= -TWENTY_TO_ONE
             && self.noise.process >= 2.0 * self.process_floor(problem, settings, window);
@@ -57,22 +58,26 @@ impl Segment {
         self.fit.explains = scatter < FORGETTING && overdispersion < UNEXPLAINED && !errs;
     }
 
-    /// Variance of an innovation ÷ that of its sensor, at most, where readings come every `dt` s and nothing but the
-    /// process noise acts: what the excitation did unseen is no error of the law's.
-    fn scatter(&self, problem: &Problem, dt: f64) -> f64 {
+    /// Geometric mean of an innovation's variance ÷ that of its sensor, of the channel where it is larger, over a run of
+    /// so many innovations by channel, one every `dt` s, on which nothing but the process noise acts: what the excitation
+    /// did unseen is no error of the law's.
+    fn scatter(&self, problem: &Problem, counts: [f64; 2], dt: f64) -> f64 {
         let Noise { sensor: [q, qd], process } = self.noise;
         let measured = problem.channels.of_motion();
         let begins = [if measured[0] { q } else { qd * dt * dt }, if measured[1] { qd } else { q / (dt * dt) }];
         let mut filter = Filter::begin([0.0; 2], begins);
-        let mut scatter = [0.0; 2];
-        for _ in 0..STEADY {
+        let (mut last, mut sum) = ([0.0; 2], [0.0; 2]);
+        for number in 0..STEADY {
             filter.predict(|[q, qd]| [q + dt * qd, qd], &white_acceleration(process, dt));
             for channel in Channel::ALL.into_iter().filter(|channel| measured[*channel as usize]) {
-                let variance = self.noise.sensor[channel as usize];
-                scatter[channel as usize] = filter.update(channel, 0.0, variance).variance / variance;
+                let (index, variance) = (channel as usize, self.noise.sensor[channel as usize]);
+                last[index] = (filter.update(channel, 0.0, variance).variance / variance).ln();
+                sum[index] += if (number as f64) < counts[index] { last[index] } else { 0.0 };
             }
         }
-        scatter[0].max(scatter[1])
+        let steady = counts.map(|count| (count - STEADY as f64).max(0.0));
+        let mean = |channel: usize| (sum[channel] + steady[channel] * last[channel]) / counts[channel].max(1.0);
+        mean(0).max(mean(1)).exp()
     }
 
     /// Sensor variances that are not given follow the innovations.

@@ -104,7 +104,8 @@ impl Tracker {
     /// one since an outage.
     fn tells_readings(&self) -> bool {
         let law = &self.monitor.law;
-        law.running && law.explains && self.regime.law().is_some() && !self.intake.undecided
+        let is_known = self.regime.law().is_some() && !self.regime.is_unconfirmed();
+        law.running && law.explains && is_known && !self.intake.undecided
     }
 
     /// What may be a sensor's fault is held against such a law, or without one against the motion itself.
