@@ -58,9 +58,9 @@ impl Segment {
         self.fit.explains = scatter < FORGETTING && overdispersion < UNEXPLAINED && !errs;
     }
 
-    /// Geometric mean of an innovation's variance ÷ that of its sensor, of the channel where it is larger, over a run of
-    /// so many innovations by channel, one every `dt` s, on which nothing but the process noise acts: what the excitation
-    /// did unseen is no error of the law's.
+    /// Geometric mean of an innovation's variance ÷ that of its sensor, of the channel where it is larger, over a run
+    /// of so many innovations by channel, one every `dt` s, on which nothing but the process noise acts: what the
+    /// excitation did unseen is no error of the law's.
     fn scatter(&self, problem: &Problem, counts: [f64; 2], dt: f64) -> f64 {
         let Noise { sensor: [q, qd], process } = self.noise;
         let measured = problem.channels.of_motion();
