@@ -40,7 +40,7 @@ pub struct Window {
 struct Pace {
     /// The usual time between two samples, s.
     dt: f64,
-    /// Longer ones in a row, and their share of all.
+    /// Longer ones in a row, and how many of them usually come between two that are not.
     longer: i32,
     lacking: f64,
     /// Mean of half the square of what the excitation moves by, N².
@@ -51,17 +51,20 @@ struct Pace {
 impl Pace {
     fn take(&mut self, before: &Sample, sample: &Sample) {
         let dt = sample.t - before.t;
-        let is_longer = self.is_gap(dt);
-        self.longer = if is_longer { self.longer + 1 } else { 0 };
-        if self.dt == 0.0 || self.lacking.max(LACKING).powi(self.longer) < CHANCE {
-            self.dt = dt;
+        let run = self.longer;
+        self.longer = if self.is_gap(dt) { run + 1 } else { 0 };
+        let share = (self.lacking / (1.0 + self.lacking)).max(LACKING);
+        let is_another_rate = self.dt == 0.0 || share.powi(self.longer) < CHANCE;
+        if is_another_rate {
+            (self.dt, self.longer) = (dt, 0);
         }
-        self.lacking += (f64::from(u8::from(is_longer)) - self.lacking) / (self.count + 1.0);
-        if self.is_gap(dt) {
+        if self.longer > 0 {
             return;
         }
         self.dt += PACE_SHARE * (dt - self.dt);
         self.count = (self.count + 1.0).min(SAMPLES_OF_A_VARIANCE);
+        let run = if is_another_rate { 0 } else { run };
+        self.lacking += (f64::from(run) - self.lacking) / self.count;
         let square = 0.5 * (sample.excitation - before.excitation).powi(2);
         self.roughness += (square - self.roughness) / self.count;
     }
@@ -309,6 +312,8 @@ mod tests {
         let often = (0..2000).filter(|k| k % 10 > 0);
         assert_eq!(pace(often.clone().chain((2001..2010).step_by(2))), 1.0);
         assert_eq!(pace((0..2000).chain((2001..2010).step_by(2))), 2.0);
+        // a first interval that is short is none of theirs
+        assert_eq!(pace([0].into_iter().chain((1..40).step_by(2))), 2.0);
     }
 
     /// A force that comes a sample late is known of the last interval when the next sample has come; one that comes a
