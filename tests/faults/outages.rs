@@ -125,3 +125,15 @@ fn a_force_that_is_sent_again_is_no_switch() {
         assert!(output.switch_count == 0 && output.valid, "{seed}: {output:?}");
     }
 }
+
+/// A switch to a law that is taken for a known one at first: under that one a channel has an offset.
+#[test]
+fn a_law_that_was_recognised_wrongly_leaves_no_offset() {
+    let scenario = Builtin::VanDerPolSine.random(29).with_noise(NOISE);
+    let mut identifier = Identifier::new(&Model::cubic_library(), Settings::default()).unwrap();
+    for sample in samples(&scenario).into_iter().take_while(|sample| sample.t < 90.0) {
+        identifier.step(sample).unwrap();
+    }
+    let output = identifier.output();
+    assert!(output.switch_count == 4 && output.valid && output.sensors == [SensorState::Ok; 3], "{output:?}");
+}
