@@ -137,3 +137,24 @@ fn a_law_that_was_recognised_wrongly_leaves_no_offset() {
     let output = identifier.output();
     assert!(output.switch_count == 4 && output.valid && output.sensors == [SensorState::Ok; 3], "{output:?}");
 }
+
+/// What acted while every channel was sent again is open, and widens what the innovations may be; that is no error of
+/// the law's.
+#[test]
+fn a_law_whose_samples_are_sent_again_now_and_then_stays_valid() {
+    let mut samples = samples(&plant(Builtin::DuffingWhite, 10530, 1e3, 12.0));
+    let mut generator = ChaCha8Rng::seed_from_u64(10530 ^ 0xfa17);
+    for index in 4000..samples.len() {
+        if generator.random_bool(0.1) {
+            samples[index] = Sample { t: samples[index].t, ..samples[index - 1] };
+        }
+    }
+    let mut identifier = identifier(Builtin::DuffingWhite);
+    let mut lost = 0;
+    for sample in samples {
+        identifier.step(sample).ok();
+        lost += u32::from(sample.t > 4.0 && !identifier.output().valid);
+    }
+    let output = identifier.output();
+    assert!(output.switch_count == 0 && output.valid && lost < 200, "{lost}: {output:?}");
+}
