@@ -103,9 +103,12 @@ impl Window {
         reading.unseen += std::mem::take(&mut self.unseen);
         if reading.counts(self.channels.of_motion()) {
             if is_outage(t - self.counted, self.pace.dt) {
-                (self.resumed, reading.unseen) = (self.count, f64::INFINITY);
+                reading.unseen = f64::INFINITY;
             }
             self.counted = t;
+        }
+        if reading.unseen.is_infinite() {
+            self.resumed = self.count;
         }
         if self.count > 0 {
             let before = *self.sample(self.count - 1);

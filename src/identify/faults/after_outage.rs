@@ -7,13 +7,20 @@
 use super::expected::Expected;
 use super::hypothesis::{Hypothesis, Value, under_law};
 use super::kind::Kind;
-use super::price::working;
+use super::price::{event, working};
 use crate::estimation::{Channel, Filter, Innovation, Observation};
-use crate::evidence::SWITCH_SIZE;
 use serde::{Deserialize, Serialize};
 
 /// An offset not found within this time after the outage is none that it brought, s.
 const WITHIN: f64 = 5.0;
+
+/// Log-odds at which what an outage has brought is told.
+pub const DECISIVE: f64 = 6.0;
+
+/// Offsets that are begun from and the std about each, as parts of the motion's size: small ones are as likely as those
+/// of which a filter that is linear about none finds nothing.
+const STARTS: [[f64; 2]; 7] =
+    [[0.0, 0.1], [-0.3, 0.15], [0.3, 0.15], [-0.7, 0.25], [0.7, 0.25], [-1.3, 0.4], [1.3, 0.4]];
 
 /// What the last outage may have brought.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -21,7 +28,8 @@ pub struct AfterOutage {
     /// Log-likelihood of nothing, the law in use going on, nats.
     nothing: f64,
     law: Hypothesis,
-    offsets: [Hypothesis; 2],
+    /// By channel and start.
+    offsets: [[Hypothesis; STARTS.len()]; 2],
     /// Time since the outage, s; `None` where there was none of late.
     since: Option<f64>,
     /// Time since the outage from which what is left of an offset that was found is taken off, s.
@@ -56,26 +64,30 @@ impl AfterOutage {
         AfterOutage {
             nothing: 0.0,
             law: new(Kind::Law { times: 1, unnoticed: false }),
-            offsets: Channel::ALL.map(|channel| new(Kind::Offset(channel))),
+            offsets: Channel::ALL.map(|channel| STARTS.map(|_| new(Kind::Offset(channel)))),
             since: None,
             due: f64::INFINITY,
             taken: None,
         }
     }
 
-    /// An outage ends with a sample of these channels, after which the state is this one. An offset is as large a part
-    /// of the motion as a switch is of the force.
+    /// An outage ends with a sample of these channels, after which the state is this one. An offset may be as large as
+    /// the motion.
     pub fn begin(&mut self, law: &Expected, state: &Filter, measured: [bool; 2]) {
-        let law = &Expected { size: law.size.map(|size| SWITCH_SIZE * size), ..*law };
-        let start = under_law(state);
+        let (start, sizes) = (under_law(state), law.size);
         self.nothing = 0.0;
         self.law.begin(&start, law, 0.0, 0.0, 0.0);
-        for (index, hypothesis) in self.offsets.iter_mut().enumerate() {
-            let (mut start, variance) = (start, law.size[index].powi(2));
-            let covariance = &mut start.covariance;
-            covariance[index][index] += variance;
-            (covariance[index][2], covariance[2][index]) = (-variance, -variance);
-            hypothesis.begin(&start, law, 0.0, 0.0, if measured[index] { 0.0 } else { f64::NEG_INFINITY });
+        for (index, starts) in self.offsets.iter_mut().enumerate() {
+            let odds = if measured[index] { -(STARTS.len() as f64).ln() } else { f64::NEG_INFINITY };
+            for (hypothesis, [offset, about]) in starts.iter_mut().zip(STARTS) {
+                let law = &Expected { size: law.size.map(|size| about * size), ..*law };
+                let (mut start, offset, variance) = (start, offset * sizes[index], law.size[index].powi(2));
+                (start.mean[index], start.mean[2]) = (start.mean[index] - offset, offset);
+                let covariance = &mut start.covariance;
+                covariance[index][index] += variance;
+                (covariance[index][2], covariance[2][index]) = (-variance, -variance);
+                hypothesis.begin(&start, law, 0.0, 0.0, odds);
+            }
         }
         (self.since, self.due, self.taken) = (Some(0.0), f64::INFINITY, None);
     }
@@ -84,7 +96,10 @@ impl AfterOutage {
     pub fn follow(&mut self, law: &Expected, state: &Filter, (channel, variance): (Channel, f64)) {
         self.begin(law, state, [true; 2]);
         let law = &Expected { size: [variance.sqrt(); 2], ..*law };
-        self.offsets[channel as usize].begin(&under_law(state), law, 0.0, 0.0, 0.0);
+        for (place, hypothesis) in self.offsets[channel as usize].iter_mut().enumerate() {
+            let odds = if place == 0 { 0.0 } else { f64::NEG_INFINITY };
+            hypothesis.begin(&under_law(state), law, 0.0, 0.0, odds);
+        }
         (self.due, self.taken) = (0.0, Some((channel, 0.0)));
     }
 
@@ -95,7 +110,13 @@ impl AfterOutage {
     }
 
     fn hypotheses(&mut self) -> impl Iterator<Item = &mut Hypothesis> {
-        std::iter::once(&mut self.law).chain(&mut self.offsets)
+        std::iter::once(&mut self.law).chain(self.offsets.iter_mut().flatten())
+    }
+
+    /// The likeliest of the channel's offsets.
+    fn offset(&self, channel: Channel) -> &Hypothesis {
+        let [first, others @ ..] = &self.offsets[channel as usize];
+        others.iter().fold(first, |best, other| if other.log > best.log { other } else { best })
     }
 
     /// Whether it is asked.
@@ -122,14 +143,21 @@ impl AfterOutage {
         }
         let densities = innovations.iter().flatten().map(|said| working(said.residual, said.precision.recip()));
         self.nothing += densities.sum::<f64>();
-        // what has not made another law likelier says that it may be about to come
-        if self.law.log < self.nothing {
-            self.law.begin(&under_law(state), law, dt, self.nothing, 0.0);
+        // what has not made another law likelier than it was says that it may be about to come, which no outage brings
+        let rare = event(dt).ln();
+        if self.law.log < self.nothing + rare {
+            self.law.begin(&under_law(state), law, dt, self.nothing, rare);
         }
         match self.since.map(|since| since + dt).filter(|since| *since < WITHIN) {
             None => self.end(),
             since => self.since = since,
         }
+    }
+
+    /// Whether an offset is likelier than nothing: the law in use has followed what was read and says little then.
+    pub fn speaks(&self) -> bool {
+        let [q, qd] = Channel::ALL.map(|channel| self.offset(channel).log);
+        self.is_open() && !self.is_found() && q.max(qd) - self.nothing > DECISIVE
     }
 
     /// Whether it is time to take off what is left of an offset.
@@ -151,10 +179,10 @@ impl AfterOutage {
     /// The likelier of the offsets; what is left of one that has been taken off.
     pub fn likeliest(&self) -> Option<Returned> {
         let since = self.since?;
-        let [q, qd] = self.offsets.each_ref().map(|offset| offset.log);
+        let [q, qd] = Channel::ALL.map(|channel| self.offset(channel).log);
         let likelier = if q > qd { Channel::Q } else { Channel::Qd };
         let (channel, taken) = self.taken.unwrap_or((likelier, 0.0));
-        let found = &self.offsets[channel as usize];
+        let found = self.offset(channel);
         let (offset, std) = found.offset();
         let offset = offset - taken;
         let (odds, against_other) = (found.log - self.law.log, (q - qd).abs());
@@ -207,7 +235,7 @@ mod tests {
         let found = returned(8.0).likeliest().unwrap();
         assert_eq!(found.channel, Channel::Q);
         assert!((found.offset - 8.0).abs() < 1.0 && found.odds > 3.0, "{found:?}");
-        assert!(returned(0.0).likeliest().unwrap().odds < 0.0);
+        assert!(returned(0.0).likeliest().unwrap().evidence < 0.0);
     }
 
     #[test]

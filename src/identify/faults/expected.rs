@@ -59,11 +59,6 @@ impl Standing {
 }
 
 impl Expected<'_> {
-    /// Intensity of the white force, N² s, that moves q̇ by its own RMS within an interval of `dt` s.
-    pub fn kick(&self, q: f64, dt: f64) -> f64 {
-        (self.size[1] * self.motion.mass(q)).powi(2) / dt
-    }
-
     /// What F moves at q, kg; infinite where F is not known to move anything.
     fn mass(&self, q: f64) -> f64 {
         self.alone.map_or_else(|| self.motion.mass(q), |alone| alone.inertia.unwrap_or(f64::INFINITY))

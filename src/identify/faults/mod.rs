@@ -41,7 +41,7 @@ mod standing_force;
 mod states;
 mod weighing;
 
-pub use after_outage::{AfterOutage, Returned};
+pub use after_outage::{AfterOutage, DECISIVE, Returned};
 pub use clock::Clock;
 pub use excitation::{ExcitationGate, Stray};
 pub use expected::{Expected, Standing};

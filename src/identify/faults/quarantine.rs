@@ -383,7 +383,7 @@ impl Quarantine {
     fn name(&mut self, place: usize, law: &Expected) {
         let named = self.weighing.hypothesis(place);
         let (kind, offset) = (named.kind, named.offset());
-        let begins = named.age() == self.count;
+        let begins = !self.stance.named(&self.weighing).is_some_and(|before| before.kind.is_kick());
         let mut any = [false; 2];
         for number in 0..self.count {
             let mut reading = self.held[number];
@@ -393,8 +393,9 @@ impl Quarantine {
             (reading.sample.q, reading.sample.qd) =
                 (if faulty[0] { state.q } else { q }, if faulty[1] { state.qd } else { qd });
             reading.faulty = faulty;
+            // what has moved q̇ may have been its sensor: it is asked as after an outage
             if kind.is_kick() && begins && number == 0 && !self.is_alone {
-                reading.unseen += law.kick(state.q, self.interval);
+                reading.unseen = f64::INFINITY;
             }
             any = [any[0] || faulty[0], any[1] || faulty[1]];
             self.let_through(reading);

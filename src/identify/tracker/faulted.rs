@@ -5,7 +5,7 @@ use super::state::{Intake, Tracker};
 use crate::estimation::{Channel, Filter, Innovation, Observation, TWENTY_TO_ONE};
 use crate::evidence::{INERTIA_SPREAD, Suspect};
 use crate::identify::change::LawInUse;
-use crate::identify::faults::{Expected, Found, Returned, Standing, StandingForce};
+use crate::identify::faults::{DECISIVE, Expected, Found, Returned, Standing, StandingForce};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::segment::MotionScales;
@@ -13,10 +13,7 @@ use crate::identify::segment::MotionScales;
 /// A decision between an offset and another law may take this long after an outage, s …
 const UNDECIDED: f64 = 3.0;
 
-/// … and is made before with these log-odds …
-const DECISIVE: f64 = 6.0;
-
-/// … for the offset once the motion has turned by so many radians: what that does stays, and until then what another
+/// … and is made before with decisive log-odds, for the offset once the motion has turned by so many radians: what that does stays, and until then what another
 /// law does may stay too.
 const TURNED: f64 = 2.0;
 
@@ -120,7 +117,7 @@ impl Tracker {
             self.lose_excitation(readings);
             return true;
         }
-        self.is_burst(problem, suspect) || self.is_offset(suspect)
+        self.is_burst(problem, suspect)
     }
 
     /// Whether a burst of readings that were not far enough off to be held, or louder sensors, are as likely as what
@@ -197,11 +194,12 @@ impl Tracker {
 
     /// Whether one offset since the last outage explains what several coefficients would have to change for: what an
     /// outage brings may be the one as well as the other, and until that is decided there is no alarm.
-    fn is_offset(&mut self, suspect: &Suspect) -> bool {
+    pub(super) fn is_offset(&mut self, suspect: &Suspect) -> bool {
         let Some(returned) = self.intake.after_outage.likeliest() else { return false };
+        let is_found = self.intake.after_outage.is_found();
         let odds = (returned.evidence - (1.0 - LINEAR) * suspect.evidence).min(returned.odds);
         let has_turned = returned.since > TURNED * self.segment.scales.natural_time();
-        let told = self.intake.after_outage.is_found() || has_turned && returned.against_other > DECISIVE;
+        let told = is_found || has_turned && returned.against_other > DECISIVE;
         let open = odds.abs() < DECISIVE || odds > 0.0 && !told;
         self.intake.undecided = open && returned.since < UNDECIDED;
         if self.intake.undecided || odds < 0.0 {

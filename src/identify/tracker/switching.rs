@@ -23,11 +23,15 @@ impl Tracker {
         monitor.unusual_since = unusual.then(|| monitor.unusual_since.unwrap_or(end));
         let deviates = self.monitor.prediction.deviates(setup.settings, self.now());
         let alarms = suspect.evidence > threshold || deviates;
-        self.intake.undecided &= alarms;
+        let asks = alarms || self.intake.after_outage.speaks();
+        self.intake.undecided &= asks;
         // in nats of a law that is known for sure, as those are of an effect or a lag
         let excess = (suspect.evidence - threshold) / decision.caution();
         let is_fault = alarms && self.is_fault(setup.problem, suspect);
-        if is_fault || alarms && (self.is_lag(setup.problem, excess) || self.is_effect(excess)) {
+        if is_fault
+            || asks && self.is_offset(suspect)
+            || alarms && (self.is_lag(setup.problem, excess) || self.is_effect(excess))
+        {
             return;
         }
         if alarms {
