@@ -17,8 +17,9 @@ const ALIKE: Range<f64> = 0.4..2.5;
 /// The clock of a stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Clock {
-    /// Last time of the record, s.
+    /// Last time of the record, and the one before, s.
     last: Option<f64>,
+    before: f64,
     /// What is added to a stamp: the clock may have been set back.
     shift: f64,
     /// The usual step, s, and how many it is known from.
@@ -62,7 +63,8 @@ impl Clock {
         }
         (self.first, self.steady) = if agrees { (self.first, self.steady + 1) } else { (stamp, 0) };
         self.stray = Some(stamp);
-        if self.steady < STEADY {
+        // what comes before the last sample alone says that its stamp was ahead
+        if self.steady < STEADY || stamp + self.shift > self.before {
             return None;
         }
         // the clock was set back between the last sample of the record and the first that came before it
@@ -74,6 +76,7 @@ impl Clock {
     pub fn advance(&mut self, t: f64) {
         if let Some(last) = self.last {
             let step = t - last;
+            self.before = last;
             if self.pace == 0.0 || ALIKE.contains(&(step / self.pace)) {
                 self.known = (self.known + 1).min(STEADY);
                 self.pace += if self.pace == 0.0 { step } else { PACE_SHARE * (step - self.pace) };
@@ -116,6 +119,12 @@ mod tests {
     fn one_stamp_far_ahead_is_skipped_alone() {
         let seen = times(stamps(0.0, 50).chain([1e6]).chain(stamps(0.05, 50)));
         assert!(seen.len() == 100 && seen[99] < 0.2, "{seen:?}");
+    }
+
+    #[test]
+    fn after_a_stamp_that_was_a_little_ahead_the_clock_is_what_it_was() {
+        let seen = times(stamps(0.0, 50).chain([0.066]).chain(stamps(0.051, 50)));
+        assert!(seen.is_sorted() && seen[51..].iter().zip(stamps(0.067, 30)).all(|(t, was)| (t - was).abs() < 1e-9));
     }
 
     #[test]
