@@ -52,6 +52,23 @@ fn a_mass_that_rubs_is_said_to() {
     assert_eq!(missing, Some("coulomb_friction"));
 }
 
+/// The motion begins on one side, where a spring that acts there alone is the law's own: four seconds later it crosses
+/// to the other.
+#[test]
+fn what_a_term_of_the_law_does_as_well_is_no_effect_that_it_lacks() {
+    let mut scenario = Builtin::VanDerPolWhite.random(530_187).with_noise(1e-3);
+    scenario.stages.truncate(1);
+    scenario.duration = 8.0;
+    let mut identifier = Identifier::new(&Model::cubic_library(), Settings::default()).unwrap();
+    for Reading { t, q, qd, excitation, .. } in record(&scenario).unwrap() {
+        identifier.step(Sample { t, q, qd, excitation }).unwrap();
+        let output = identifier.output();
+        assert!(output.missing.is_none() || !output.valid, "at {t} s: {output:?}");
+    }
+    let output = identifier.output();
+    assert!(output.valid && output.switch_count == 0 && output.sensors == [SensorState::Ok; 3], "{output:?}");
+}
+
 #[test]
 fn a_complete_law_lacks_nothing() {
     for seed in [1, 2, 3] {

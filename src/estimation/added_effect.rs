@@ -134,6 +134,21 @@ impl AddedEffect {
         (1.0 + self.overlap(solution, active) / information) / information
     }
 
+    /// The same beside any one more of the law's terms, `own` being what they are told with the coefficient held;
+    /// infinite where one leaves nothing of it. `room` is left with what that solves.
+    pub fn variance_beside_another(&self, own: &Information, active: &[bool], room: &mut OwnTerms) -> f64 {
+        let n = own.n;
+        self.widen(0.0, own, &mut room.information);
+        let mut beside = |one_more: usize| {
+            room.active[..n].copy_from_slice(active);
+            (room.active[one_more], room.active[n]) = (true, true);
+            room.solution.solve(&room.information, &room.active);
+            if room.solution.determined[n] { room.solution.variance(n) } else { f64::INFINITY }
+        };
+        // the inertia, which every law has, stands for none
+        (0..n).filter(|index| *index == 0 || !active[*index]).map(&mut beside).fold(0.0, f64::max)
+    }
+
     /// What of the effect is like the law's own terms: by how much these are others for each unit of its coefficient,
     /// n; `solution` as in [`AddedEffect::variance`].
     pub fn likeness(&self, solution: &Solution, active: &[bool], likeness: &mut [f64]) {

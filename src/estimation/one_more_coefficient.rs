@@ -12,8 +12,8 @@ const OWN: f64 = 1e-6;
 /// What a run says of the law's own terms, and of an effect added to them, which comes last.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct OwnTerms {
-    information: Information,
-    solution: Solution,
+    pub(super) information: Information,
+    pub(super) solution: Solution,
     pub(super) active: Vec<bool>,
 }
 

@@ -136,9 +136,10 @@ impl Segment {
         self.missing = found.filter(Missing::is_named);
     }
 
-    /// Log-likelihood that the effect beside the law's own terms gains, nats; none where it has none.
+    /// Log-likelihood that the effect gains beside any one more term that the law may have, nats; none where it has no
+    /// effect. What one of these does in this motion is nothing that the model lacks.
     pub fn effect_gain(&self) -> Option<f64> {
-        let variance = self.fit.overdispersion * self.run.effect.variance(&self.solution, &self.active);
+        let variance = self.fit.overdispersion * self.score_test.beside_another;
         (self.effect() != 0.0).then_some(0.5 * self.effect() * self.effect() / variance)
     }
 }

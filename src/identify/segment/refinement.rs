@@ -10,7 +10,7 @@ use super::judgement::SETTLED;
 use super::motion_scales::MotionScales;
 use super::noise_covariance::UNEXPLAINED;
 use super::prior::{InertiaPrior, Prior};
-use super::state::{Checkpoint, InTheSensors, NOISE_MEMORY, Runs, Segment};
+use super::state::{Checkpoint, InTheSensors, MissingEffects, NOISE_MEMORY, Runs, Segment};
 use crate::estimation::{
     AddedEffect, EffectPosterior, Filter, Lag, LagTest, Noise, Observation, Pass, ScoreTest, TWENTY_TO_ONE,
 };
@@ -225,14 +225,17 @@ impl Segment {
     /// What run and prior say together about the coefficients.
     fn gather_information(&mut self, problem: &Problem) {
         self.information.clone_from_slices(&self.run.filter_run.information);
-        if self.effect() != 0.0 {
-            self.run.effect.leave_open(self.effect(), &mut self.information);
-        }
         self.information.merge(&self.known.information);
         if let (Some(index), Some(prior)) = (problem.free_inertia(), self.known.inertia) {
             let (information, score) = prior.about(self.coefficients[index]);
             self.information.matrix[index * problem.n() + index] += information;
             self.information.score[index] += score;
+        }
+        if self.effect() != 0.0 {
+            let Segment { score_test: MissingEffects { own, beside_another, .. }, run, information, active, .. } = self;
+            *beside_another = run.effect.variance_beside_another(information, active, own);
+            own.clear();
+            run.effect.leave_open(self.all[self.all.len() - 1], information);
         }
     }
 

@@ -156,6 +156,8 @@ pub(super) struct MissingEffects {
     pub(super) candidates: ScoreTest,
     /// What the run says of the law's own terms and of its effect.
     pub(super) own: OwnTerms,
+    /// Variance of that effect's coefficient beside any one more term that the law may have.
+    pub(super) beside_another: f64,
     /// The effect that explained most in the last run, named or not.
     pub(super) likeliest: Option<Lacked>,
     /// What the last run that had settled says of the law's effect, and where it is asked.
@@ -253,6 +255,7 @@ impl Segment {
             score_test: MissingEffects {
                 candidates: ScoreTest::new(&problem.terms, n),
                 own: OwnTerms::none(n),
+                beside_another: f64::INFINITY,
                 likeliest: None,
                 posterior: EffectPosterior::default(),
                 laws: WithAndWithout::none(n),
