@@ -10,6 +10,7 @@ use super::kind::Kind;
 use super::price::{event, working};
 use super::quarantine::ROOM;
 use crate::estimation::{Channel, Filter, Observation};
+use crate::identify::sample::is_outage;
 use crate::identify::window::Window;
 use serde::{Deserialize, Serialize};
 
@@ -82,8 +83,11 @@ impl Hindsight {
             self.burst.take(&law, dt, &drive, values, place);
             self.events.iter_mut().for_each(|event| event.take(&law, dt, &drive, values, place));
         }
-        // less the share of what has no burst
-        let burst = self.burst.log + (-(log - self.burst.log).min(0.0).exp()).ln_1p();
+        // less the share of what has no burst; none lasts for as long as an outage
+        let burst = match lasts(window, self.first) {
+            true => f64::NEG_INFINITY,
+            false => self.burst.log + (-(log - self.burst.log).min(0.0).exp()).ln_1p(),
+        };
         let likeliest = |is_law: bool| {
             let of = self.events.iter().filter(|other| other.kind.is_law() == is_law);
             of.map(|other| other.log).fold(f64::NEG_INFINITY, f64::max)
@@ -112,6 +116,13 @@ impl Hindsight {
         self.burst.clear();
         self.events.iter_mut().for_each(Hypothesis::clear);
     }
+}
+
+/// Whether no reading before sample `first` has counted for as long as an outage.
+fn lasts(window: &Window, first: u64) -> bool {
+    let counts = |number: &u64| window.observation(*number).measured != [None; 2];
+    let last = (window.resumed() + 1..first).rev().find(counts).unwrap_or(window.resumed());
+    is_outage(window.sample(first).t - window.sample(last).t, window.pace())
 }
 
 /// The state before sample `first`.
@@ -186,6 +197,10 @@ mod tests {
     }
 
     fn odds(hindsight: &mut Hindsight, window: &Window, evidence: f64) -> f64 {
+        found(hindsight, window, evidence).odds
+    }
+
+    fn found(hindsight: &mut Hindsight, window: &Window, evidence: f64) -> Found {
         let law = Expected {
             motion: Motion::new(&TERMS, &[1.0, 0.3, 4.0]),
             noise: Noise { sensor: [NOISE * NOISE; 2], process: 1e-9 },
@@ -199,7 +214,7 @@ mod tests {
             parts: 1,
             alone: None,
         };
-        hindsight.weigh(&law, window, (BEFORE_IT, evidence)).odds
+        hindsight.weigh(&law, window, (BEFORE_IT, evidence))
     }
 
     #[test]
@@ -210,6 +225,17 @@ mod tests {
         let of_burst: Vec<u64> =
             (hindsight.first()..BEFORE_IT + 21).filter(|number| hindsight.is_of_burst(*number)[1]).collect();
         assert!(of_burst.len() > 12 && of_burst[0] > BEFORE_IT, "{of_burst:?}");
+    }
+
+    /// What was left out before was so under the same law.
+    #[test]
+    fn no_burst_lasts_for_as_long_as_an_outage() {
+        for (left_out, is_burst) in [(40, true), (60, false)] {
+            let mut window = window(4.0, &[8.0, -8.0, 7.0, -9.0, 8.0]);
+            (BEFORE_IT - left_out..=BEFORE_IT).for_each(|number| window.blame(number, [true; 2]));
+            let found = found(&mut Hindsight::new(), &window, 17.0);
+            assert_eq!(found.is_burst, is_burst, "{left_out}: {found:?}");
+        }
     }
 
     #[test]

@@ -111,6 +111,13 @@ impl Hypothesis {
         }
     }
 
+    /// What its first reading costs: that tells how large an offset is, not that there is one, nats.
+    pub fn learns(&self, law: &Expected) -> f64 {
+        let Kind::Offset(channel) = self.kind else { return 0.0 };
+        let index = channel as usize;
+        0.5 * (law.size[index].powi(2) / law.noise.sensor[index]).ln().max(0.0)
+    }
+
     /// What acts has left F as it is read for as long as that stands still; what that did within the noise went unseen.
     fn suppose_stuck(&mut self, law: &Expected) {
         let Some(standing) = law.stuck else { return self.log += VARIES };

@@ -83,6 +83,11 @@ impl Kind {
         self == Kind::BothLouder || self == Kind::Louder(channel)
     }
 
+    /// Whether it says why the channel reads what is not expected.
+    pub fn explains(self, channel: Channel) -> bool {
+        self.sticks(channel) || self.is_louder(channel) || self == Kind::Offset(channel)
+    }
+
     /// Whether a channel does.
     pub fn is_loud(self) -> bool {
         matches!(self, Kind::Louder(_) | Kind::BothLouder)

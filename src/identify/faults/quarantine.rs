@@ -147,8 +147,8 @@ impl Quarantine {
         self.whole =
             arrival.as_ref().filter(|arrival| is_whole(arrival)).map_or(0.0, |arrival| self.whole + arrival.dt);
         match (against, arrival) {
-            // what brings the readings back may have brought another law as well
-            (_, Some(arrival)) if self.is_released(&arrival) && is_outage(reading.sample.t - self.counted, pace) => {
+            // what brings the readings back may have brought another law as well; no burst lasts for so long
+            (_, Some(arrival)) if self.may_count(&arrival) && is_outage(reading.sample.t - self.counted, pace) => {
                 self.settle();
                 self.let_through(arrival.reading);
             }
@@ -335,6 +335,11 @@ impl Quarantine {
             let varies = arrival.values[channel as usize].is_none_or(|value| value.repeats.is_none());
             named.kind.sticks(channel) && varies
         })
+    }
+
+    /// Whether a reading is set aside by nothing but what is expected of it.
+    fn may_count(&self, arrival: &Arrival) -> bool {
+        self.is_released(arrival) || self.stance.named(&self.weighing).is_some_and(|named| named.kind.is_no_event())
     }
 
     fn begin(&mut self, arrival: &Arrival, law: &Expected, start: &Filter<4>) {

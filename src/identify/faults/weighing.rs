@@ -54,9 +54,12 @@ impl Weighing {
         let nothing = self.nothing();
         let (own, log, start, bursts) = (nothing.kind, nothing.log, nothing.start(law), nothing.bursts);
         for hypothesis in self.hypotheses.iter_mut().filter(|hypothesis| hypothesis.kind != own) {
-            if hypothesis.log - log <= hypothesis.prior || hypothesis.age() >= samples {
+            if hypothesis.log - log <= hypothesis.prior - hypothesis.learns(law) || hypothesis.age() >= samples {
                 hypothesis.begin(&start, law, dt, log, odds(hypothesis.kind, dt));
-                hypothesis.bursts = bursts;
+                // a burst that goes on beside what explains its readings would tell that nothing
+                for channel in Channel::ALL.into_iter().filter(|channel| !hypothesis.kind.explains(*channel)) {
+                    hypothesis.bursts[channel as usize] = bursts[channel as usize];
+                }
             }
         }
     }
