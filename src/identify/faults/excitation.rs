@@ -121,6 +121,11 @@ impl ExcitationGate {
         self.squares[0].sqrt()
     }
 
+    /// What is expected to act of a force that is lost: none that F never is.
+    pub fn expected(&self, force: f64) -> f64 {
+        if force.abs() > BEYOND_CHANCE * self.size() { 0.0 } else { force }
+    }
+
     /// Samples in which F goes as far as it usually is from 0, by what it did before it stood still.
     pub fn pace(&self) -> f64 {
         self.pace

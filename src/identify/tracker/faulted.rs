@@ -179,7 +179,11 @@ impl Tracker {
 
     /// F over the last so many intervals was not what was read, but for a white force of that intensity, N² s.
     pub(super) fn leave_open(&mut self, count: u64, unseen: f64) {
-        let open = |reading: &mut Reading| reading.unseen += unseen;
+        let excitation = self.intake.excitation;
+        let open = |Reading { sample, unseen: open, .. }: &mut Reading| {
+            *open += unseen;
+            sample.excitation = excitation.expected(sample.excitation);
+        };
         let recorded = self.intake.quarantine.amend(count, open);
         self.window.amend(recorded, open);
         self.segment.begin_run(&self.window);

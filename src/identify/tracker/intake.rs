@@ -92,6 +92,7 @@ impl Tracker {
         let varies = self.intake.force.take(reading.sample.excitation, f64::INFINITY, 0.0).is_none();
         if self.intake.force_lost && problem.channels.excitation {
             reading.unseen += self.unknown_excitation();
+            reading.sample.excitation = self.intake.excitation.expected(reading.sample.excitation);
             self.intake.force_lost = !varies || self.intake.excitation.is_away();
             // nothing else says then that it is not what acts
             if !self.monitor.law.running && self.standing_force().is_none() {
@@ -144,10 +145,10 @@ impl Tracker {
 
     /// What the sensors of q, q̇ and F do.
     pub(super) fn sensors(&self) -> [SensorState; 3] {
-        let Intake { excitation, quarantine, force_lost, .. } = &self.intake;
+        let Intake { excitation, quarantine, force, force_lost, .. } = &self.intake;
         let [q, qd, kicked] = quarantine.sensors();
         let force = match (force_lost, excitation.is_faulty()) {
-            (true, _) if !excitation.is_away() => SensorState::Stuck,
+            (true, _) if force.length() > 0 || !excitation.is_away() => SensorState::Stuck,
             (true, _) | (false, true) => SensorState::Outlier,
             (false, false) => kicked,
         };
