@@ -12,8 +12,24 @@ const SIZES: [f64; 6] = [3.0, 10.0, 30.0, 100.0, 300.0, 1000.0];
 /// Samples of a short burst.
 const SHORT: [usize; 5] = [2, 3, 5, 10, 20];
 
+/// Readings of a burst to one side, at most.
+const LONG: usize = 50;
+
 /// An offset that a sensor returns with, m.
 const OFFSET: f64 = 0.05;
+
+/// One of any size, in σ, below the motion's own; the gap before it, s, where there is one.
+const OFFSETS: [f64; 2] = [6.0, 200.0];
+const GAPS: [f64; 2] = [0.1, 4.0];
+
+/// Where a channel is cut off, as a part of its largest value.
+const CUT: [f64; 2] = [0.6, 0.97];
+
+/// How far a stamp is ahead, s.
+const AHEAD: [f64; 2] = [0.01, 0.2];
+
+/// What F reads that is far beyond its range, in its largest value.
+const BEYOND: f64 = -10.0;
 
 /// A glitch of F, in amplitudes.
 const GLITCH: f64 = 2.5;
@@ -43,12 +59,18 @@ pub enum Fault {
     Burst(Of),
     /// 50 readings of both channels are.
     LongBurst,
+    /// Up to 50 readings are off by as much, all to one side.
+    OneSided(Of),
     /// One reading in a hundred of either channel is, to the record's end.
     Flaky,
     /// The reading stays as it is for 1 s.
     Stuck(Of),
     /// The reading is 0 for 1 s.
     Zero(Of),
+    /// The reading stays within a part of its range for 1 s.
+    Cut(Of),
+    /// F is ten times its largest value for 1 s.
+    Far,
     /// One F is 2.5 amplitudes off.
     Glitch,
     /// 2 to 20 of them are, each by its own.
@@ -71,8 +93,12 @@ pub enum Fault {
     Offset,
     /// The displacement is off by 0.05 from a sample on.
     Jump,
+    /// The readings are off by 6 to 200 σ from a sample on, before which 0.1 to 4 s may be missing.
+    Off(Of, bool),
     /// One time stamp is 1e6.
     Stamp,
+    /// One time stamp is 10 to 200 ms ahead.
+    Ahead,
     /// q and q̇ come one sample late against F, throughout.
     Late,
     /// One sample in so many is kept: F moves within the step, and is not held.
@@ -83,12 +109,14 @@ pub enum Fault {
 
 impl Fault {
     /// All of them, in the order of the table.
-    pub const ALL: [Fault; 40] = [
+    pub const ALL: [Fault; 50] = [
         Fault::Clean,
         Fault::Burst(Of::Q),
         Fault::Burst(Of::Qd),
         Fault::Burst(Of::Both),
         Fault::LongBurst,
+        Fault::OneSided(Of::Q),
+        Fault::OneSided(Of::Qd),
         Fault::Flaky,
         Fault::Stuck(Of::Q),
         Fault::Stuck(Of::Qd),
@@ -98,6 +126,9 @@ impl Fault {
         Fault::Zero(Of::Qd),
         Fault::Zero(Of::Both),
         Fault::Zero(Of::F),
+        Fault::Cut(Of::Q),
+        Fault::Cut(Of::Qd),
+        Fault::Far,
         Fault::Glitch,
         Fault::GlitchBurst,
         Fault::HugeForce,
@@ -113,7 +144,12 @@ impl Fault {
         Fault::Repeated(Of::All),
         Fault::Offset,
         Fault::Jump,
+        Fault::Off(Of::Q, true),
+        Fault::Off(Of::Qd, true),
+        Fault::Off(Of::Q, false),
+        Fault::Off(Of::Qd, false),
         Fault::Stamp,
+        Fault::Ahead,
         Fault::Late,
         Fault::Coarse(2),
         Fault::Coarse(5),
@@ -132,9 +168,12 @@ impl Fault {
             Fault::Clean => "clean".into(),
             Fault::Burst(of) => format!("burst of 2 to 20, {}", of.id()),
             Fault::LongBurst => "burst of 50, q and qd".into(),
+            Fault::OneSided(of) => format!("1 to 50 to one side, {}", of.id()),
             Fault::Flaky => "one in 100 of q and qd".into(),
             Fault::Stuck(of) => format!("stuck 1 s, {}", of.id()),
             Fault::Zero(of) => format!("zero 1 s, {}", of.id()),
+            Fault::Cut(of) => format!("cut off 1 s, {}", of.id()),
+            Fault::Far => "far beyond its range 1 s, F".into(),
             Fault::Glitch => "glitch of F".into(),
             Fault::GlitchBurst => "burst of 2 to 20, F".into(),
             Fault::HugeForce => "one F = 1e100".into(),
@@ -146,7 +185,10 @@ impl Fault {
             Fault::Repeated(of) => format!("one in 10 repeats the last, {}", of.id()),
             Fault::Offset => "offset 0.05 of q after a gap".into(),
             Fault::Jump => "offset 0.05 of q".into(),
+            Fault::Off(of, true) => format!("offset of 6 to 200 std after a gap, {}", of.id()),
+            Fault::Off(of, false) => format!("offset of 6 to 200 std, {}", of.id()),
             Fault::Stamp => "one time stamp 1e6".into(),
+            Fault::Ahead => "one time stamp ahead".into(),
             Fault::Late => "q, qd one sample late".into(),
             Fault::Coarse(step) => format!("steps of {step} ms, hold wrong"),
             Fault::Lacks(effect) => format!("lacks {effect}"),
@@ -162,7 +204,7 @@ impl Fault {
     /// How long it lasts, s; nothing where it is not a matter of time.
     fn lasts(self) -> f64 {
         match self {
-            Fault::Stuck(_) | Fault::Zero(_) | Fault::Offset => 1.0,
+            Fault::Stuck(_) | Fault::Zero(_) | Fault::Cut(_) | Fault::Far | Fault::Offset => 1.0,
             Fault::NotANumber => 5.0,
             Fault::Gap(seconds) => f64::from(seconds),
             _ => 0.0,
@@ -185,6 +227,10 @@ impl Fault {
                 end = first + 50;
                 burst(&mut readings[first..end], Of::Both, &mut generator);
             }
+            Fault::OneSided(of) => {
+                end = first + generator.random_range(1..=LONG);
+                to_one_side(&mut readings[first..end], of, &mut generator);
+            }
             Fault::Flaky => {
                 for reading in &mut readings[first..] {
                     for of in [Of::Q, Of::Qd] {
@@ -202,8 +248,17 @@ impl Fault {
                 let zero = Reading { t: 0.0, q: 0.0, qd: 0.0, excitation: 0.0 };
                 readings[first..last].iter_mut().for_each(|reading| of.set(reading, &zero));
             }
+            Fault::Cut(of) => {
+                let most = of.most(readings) * generator.random_range(CUT[0]..CUT[1]);
+                let cut = |reading: &mut Reading| of.change(reading, |value| value.clamp(-most, most));
+                readings[first..last].iter_mut().for_each(cut);
+            }
+            Fault::Far => {
+                let far = BEYOND * Of::F.most(readings);
+                readings[first..last].iter_mut().for_each(|reading| reading.excitation = far);
+            }
             Fault::Glitch | Fault::GlitchBurst => {
-                let most = readings.iter().map(|reading| reading.excitation.abs()).fold(0.0, f64::max);
+                let most = Of::F.most(readings);
                 let many = self == Fault::GlitchBurst;
                 end = first + if many { SHORT[generator.random_range(0..SHORT.len())] } else { 1 };
                 for reading in &mut readings[first..end] {
@@ -238,12 +293,24 @@ impl Fault {
                 readings[first..].iter_mut().for_each(|reading| reading.q += OFFSET);
                 end = first;
             }
+            Fault::Off(of, gap) => {
+                end = first;
+                if gap {
+                    let missing = log_uniform(GAPS, &mut generator);
+                    readings.retain(|reading| !(at..at + missing).contains(&reading.t));
+                }
+                let size = (NOISE * log_uniform(OFFSETS, &mut generator)).min(of.most(readings));
+                let offset = size * sign(&mut generator);
+                readings[first..].iter_mut().for_each(|reading| of.change(reading, |value| value + offset));
+            }
             Fault::Stamp => readings[first].t = 1e6,
+            Fault::Ahead => readings[first].t += log_uniform(AHEAD, &mut generator),
             Fault::Late => late(readings),
             Fault::Coarse(step) => *readings = readings.iter().step_by(step).copied().collect(),
         }
         match self {
-            Fault::Stamp => at,
+            Fault::Stamp | Fault::Ahead => at,
+            Fault::Off(..) => readings[first].t,
             Fault::Hidden(_) | Fault::Gaps | Fault::Repeated(_) => at,
             Fault::Flaky | Fault::Late | Fault::Coarse(_) | Fault::Lacks(_) => at,
             _ => readings[end.clamp(first + 1, readings.len()) - 1].t.min(at + self.lasts().max(0.05)),
@@ -270,6 +337,41 @@ impl Of {
             Of::F => reading.excitation = from.excitation,
             Of::All => *reading = Reading { t: reading.t, ..*from },
         }
+    }
+
+    /// Changes what is read of one channel, or of each.
+    fn change(self, reading: &mut Reading, change: impl Fn(f64) -> f64) {
+        if matches!(self, Of::Q | Of::Both | Of::All) {
+            reading.q = change(reading.q);
+        }
+        if matches!(self, Of::Qd | Of::Both | Of::All) {
+            reading.qd = change(reading.qd);
+        }
+        if matches!(self, Of::F | Of::All) {
+            reading.excitation = change(reading.excitation);
+        }
+    }
+
+    /// The largest value of one channel.
+    fn most(self, readings: &[Reading]) -> f64 {
+        let value = |reading: &Reading| match self {
+            Of::Qd => reading.qd,
+            Of::F => reading.excitation,
+            _ => reading.q,
+        };
+        readings.iter().map(|reading| value(reading).abs()).fold(0.0, f64::max)
+    }
+}
+
+fn log_uniform([from, to]: [f64; 2], generator: &mut ChaCha8Rng) -> f64 {
+    generator.random_range(from.ln()..to.ln()).exp()
+}
+
+fn to_one_side(readings: &mut [Reading], of: Of, generator: &mut ChaCha8Rng) {
+    let size = NOISE * SIZES[generator.random_range(0..SIZES.len())] * sign(generator);
+    for reading in readings {
+        let off = size * generator.random_range(0.5..1.5);
+        of.change(reading, |value| value + off);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Faults of sensors and clocks: none is a switch, none leaves a trace, and `valid` is a promise all the while.
 
 mod before_a_law;
+mod offsets;
 mod outages;
 
 use rand::{RngExt, SeedableRng};
@@ -78,13 +79,17 @@ fn watch(scenario: &Scenario, builtin: Builtin, samples: &[Sample]) -> Seen {
 }
 
 impl Seen {
-    fn take(&mut self, identifier: &Identifier, scenario: &Scenario, t: f64) {
-        let output = identifier.output();
-        for (said, now) in self.sensors.iter_mut().zip(output.sensors) {
+    fn take_state(&mut self, identifier: &Identifier) {
+        for (said, now) in self.sensors.iter_mut().zip(identifier.output().sensors) {
             if said.last() != Some(&now) {
                 said.push(now);
             }
         }
+    }
+
+    fn take(&mut self, identifier: &Identifier, scenario: &Scenario, t: f64) {
+        self.take_state(identifier);
+        let output = identifier.output();
         if !output.valid {
             self.invalid_until = t;
             return;
@@ -110,6 +115,12 @@ fn burst(samples: &mut [Sample], size: f64, generator: &mut ChaCha8Rng) {
         let sign = if generator.random_bool(0.5) { 1.0 } else { -1.0 };
         sample.qd += sign * size * NOISE * generator.random_range(0.5..1.5);
     }
+}
+
+/// Readings of the displacement that are off by about `size` stds, all to one side.
+fn burst_to_one_side(samples: &mut [Sample], size: f64, seed: u64) {
+    let mut generator = ChaCha8Rng::seed_from_u64(seed);
+    samples.iter_mut().for_each(|sample| sample.q += size * NOISE * generator.random_range(0.5..1.5));
 }
 
 #[test]
@@ -497,6 +508,21 @@ fn a_rough_excitation_that_is_stuck_or_misread_is_no_fault_of_the_motion() {
 
 /// Whether the motion follows them or not: under a sine each is small beside what it moves, and all of them are not.
 /// A force that stands still where it turns is what acts for longer than elsewhere.
+/// It says for what acts as little as one that stands still within its range, and is said to be stuck once.
+#[test]
+fn a_rough_excitation_that_is_stuck_far_beyond_its_range_is_no_switch() {
+    for (builtin, seed) in [(Builtin::DuffingWhite, 500_143), (Builtin::VanDerPolWhite, 530_194)] {
+        let scenario = plant(builtin, seed, 1e3, 12.0);
+        let mut samples = samples(&scenario);
+        let most = samples.iter().map(|sample| sample.excitation.abs()).fold(0.0, f64::max);
+        samples[FIRST..FIRST + 1000].iter_mut().for_each(|sample| sample.excitation = -10.0 * most);
+        let seen = watch(&scenario, builtin, &samples);
+        let calm = seen.switches == 0 && seen.valid_at_the_end && seen.worst < BEYOND;
+        let stuck = seen.said(2).iter().filter(|state| **state == SensorState::Stuck).count();
+        assert!(calm && stuck == 1, "{seed}: {seen:?}");
+    }
+}
+
 #[test]
 fn a_force_that_is_stuck_where_it_turns_is_no_switch() {
     use Builtin::{DuffingSine, VanDerPolSine};
