@@ -13,8 +13,8 @@ use crate::identify::segment::MotionScales;
 /// A decision between an offset and another law may take this long after an outage, s …
 const UNDECIDED: f64 = 3.0;
 
-/// … and is made before with decisive log-odds, for the offset once the motion has turned by so many radians: what that does stays, and until then what another
-/// law does may stay too.
+/// … and is made before with decisive log-odds, for the offset once the motion has turned by so many radians: what that
+/// does stays, and until then what another law does may stay too.
 const TURNED: f64 = 2.0;
 
 /// The evidence of a switch is linear in what may be no small change, and is right to this part of itself.
