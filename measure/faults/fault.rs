@@ -216,70 +216,98 @@ impl Fault {
         let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xfa17);
         let first = readings.partition_point(|reading| reading.t < at);
         let last = readings.partition_point(|reading| reading.t < at + self.lasts());
-        let mut end = last;
+        let in_a_row = self.spoil_some(readings, first, &mut generator);
+        self.spoil_for_a_while(readings, first..last, &mut generator);
+        self.lose(readings, at, first..last, &mut generator);
+        self.spoil_for_good(readings, first, &mut generator);
+        self.change_times(readings, first, &mut generator);
         match self {
-            Fault::Clean | Fault::Lacks(_) => {}
-            Fault::Burst(of) => {
-                end = first + SHORT[generator.random_range(0..SHORT.len())];
-                burst(&mut readings[first..end], of, &mut generator);
+            Fault::Stamp | Fault::Ahead | Fault::Hidden(_) | Fault::Gaps | Fault::Repeated(_) => at,
+            Fault::Flaky | Fault::Late | Fault::Coarse(_) | Fault::Lacks(_) => at,
+            Fault::Offset | Fault::Jump | Fault::Off(..) => readings[first].t,
+            _ => {
+                let end = in_a_row.map_or(last, |count| first + count);
+                readings[end.clamp(first + 1, readings.len()) - 1].t.min(at + self.lasts().max(0.05))
             }
-            Fault::LongBurst => {
-                end = first + 50;
-                burst(&mut readings[first..end], Of::Both, &mut generator);
-            }
-            Fault::OneSided(of) => {
-                end = first + generator.random_range(1..=LONG);
-                to_one_side(&mut readings[first..end], of, &mut generator);
-            }
-            Fault::Flaky => {
-                for reading in &mut readings[first..] {
-                    for of in [Of::Q, Of::Qd] {
-                        if generator.random_bool(FLAKY) {
-                            burst(std::slice::from_mut(reading), of, &mut generator);
-                        }
-                    }
+        }
+    }
+
+    /// Some readings in a row; returns how many.
+    fn spoil_some(self, readings: &mut [Reading], first: usize, generator: &mut ChaCha8Rng) -> Option<usize> {
+        let count = match self {
+            Fault::Burst(_) | Fault::GlitchBurst => SHORT[generator.random_range(0..SHORT.len())],
+            Fault::OneSided(_) => generator.random_range(1..=LONG),
+            Fault::LongBurst => LONG,
+            Fault::HugeDisplacement => 10,
+            Fault::Glitch | Fault::HugeForce => 1,
+            _ => return None,
+        };
+        let most = Of::F.most(readings);
+        let some = &mut readings[first..first + count];
+        match self {
+            Fault::Burst(of) => burst(some, of, generator),
+            Fault::OneSided(of) => to_one_side(some, of, generator),
+            Fault::LongBurst => burst(some, Of::Both, generator),
+            Fault::HugeDisplacement => some.iter_mut().for_each(|reading| reading.q = 1e300),
+            Fault::HugeForce => some[0].excitation = 1e100,
+            _ => {
+                for reading in some {
+                    let size = if count > 1 { generator.random_range(0.5..1.5) } else { 1.0 };
+                    reading.excitation += size * GLITCH * most * sign(generator);
                 }
             }
-            Fault::Stuck(of) => {
-                let before = readings[first - 1];
-                readings[first..last].iter_mut().for_each(|reading| of.set(reading, &before));
-            }
-            Fault::Zero(of) => {
-                let zero = Reading { t: 0.0, q: 0.0, qd: 0.0, excitation: 0.0 };
-                readings[first..last].iter_mut().for_each(|reading| of.set(reading, &zero));
-            }
-            Fault::Cut(of) => {
-                let most = of.most(readings) * generator.random_range(CUT[0]..CUT[1]);
-                let cut = |reading: &mut Reading| of.change(reading, |value| value.clamp(-most, most));
-                readings[first..last].iter_mut().for_each(cut);
-            }
-            Fault::Far => {
-                let far = BEYOND * Of::F.most(readings);
-                readings[first..last].iter_mut().for_each(|reading| reading.excitation = far);
-            }
-            Fault::Glitch | Fault::GlitchBurst => {
-                let most = Of::F.most(readings);
-                let many = self == Fault::GlitchBurst;
-                end = first + if many { SHORT[generator.random_range(0..SHORT.len())] } else { 1 };
-                for reading in &mut readings[first..end] {
-                    let size = if many { generator.random_range(0.5..1.5) } else { 1.0 };
-                    reading.excitation += size * GLITCH * most * sign(&mut generator);
-                }
-            }
-            Fault::HugeForce => readings[first].excitation = 1e100,
-            Fault::HugeDisplacement => {
-                end = first + 10;
-                readings[first..end].iter_mut().for_each(|reading| reading.q = 1e300);
-            }
-            Fault::NotANumber => readings[first..last].iter_mut().for_each(|reading| {
-                (reading.q, reading.qd, reading.excitation) = (f64::NAN, f64::NAN, f64::NAN);
-            }),
-            Fault::Gap(_) => drop(readings.drain(first..last)),
+        }
+        Some(count)
+    }
+
+    /// All readings of a while.
+    fn spoil_for_a_while(self, readings: &mut [Reading], of_it: Range<usize>, generator: &mut ChaCha8Rng) {
+        let before = readings[of_it.start - 1];
+        let zero = Reading { t: 0.0, q: 0.0, qd: 0.0, excitation: 0.0 };
+        let most = match self {
+            Fault::Cut(of) => of.most(readings) * generator.random_range(CUT[0]..CUT[1]),
+            _ => Of::F.most(readings),
+        };
+        readings[of_it].iter_mut().for_each(|reading| match self {
+            Fault::Stuck(of) => of.set(reading, &before),
+            Fault::Zero(of) => of.set(reading, &zero),
+            Fault::Cut(of) => of.change(reading, |value| value.clamp(-most, most)),
+            Fault::Far => reading.excitation = BEYOND * most,
+            Fault::NotANumber => Of::All.change(reading, |_| f64::NAN),
+            _ => {}
+        });
+    }
+
+    /// Samples that do not come.
+    fn lose(self, readings: &mut Vec<Reading>, at: f64, of_it: Range<usize>, generator: &mut ChaCha8Rng) {
+        match self {
+            Fault::Gap(_) | Fault::Offset | Fault::Jump => drop(readings.drain(of_it)),
             Fault::Hidden(ms) => {
                 let half = 0.5e-3 * f64::from(ms);
                 readings.retain(|reading| (reading.t - SWITCH).abs() > half);
             }
             Fault::Gaps => readings.retain(|reading| reading.t < at || reading.t.fract() > 0.2),
+            Fault::Off(_, true) => {
+                let missing = log_uniform(GAPS, generator);
+                readings.retain(|reading| !(at..at + missing).contains(&reading.t));
+            }
+            Fault::Coarse(step) => *readings = readings.iter().step_by(step).copied().collect(),
+            _ => {}
+        }
+    }
+
+    /// Readings to the record's end.
+    fn spoil_for_good(self, readings: &mut [Reading], first: usize, generator: &mut ChaCha8Rng) {
+        match self {
+            Fault::Flaky => {
+                for reading in &mut readings[first..] {
+                    for of in [Of::Q, Of::Qd] {
+                        if generator.random_bool(FLAKY) {
+                            burst(std::slice::from_mut(reading), of, generator);
+                        }
+                    }
+                }
+            }
             Fault::Repeated(of) => {
                 for index in first..readings.len() {
                     let before = readings[index - 1];
@@ -288,32 +316,23 @@ impl Fault {
                     }
                 }
             }
-            Fault::Offset | Fault::Jump => {
-                drop(readings.drain(first..last));
-                readings[first..].iter_mut().for_each(|reading| reading.q += OFFSET);
-                end = first;
-            }
-            Fault::Off(of, gap) => {
-                end = first;
-                if gap {
-                    let missing = log_uniform(GAPS, &mut generator);
-                    readings.retain(|reading| !(at..at + missing).contains(&reading.t));
-                }
-                let size = (NOISE * log_uniform(OFFSETS, &mut generator)).min(of.most(readings));
-                let offset = size * sign(&mut generator);
+            Fault::Offset | Fault::Jump => readings[first..].iter_mut().for_each(|reading| reading.q += OFFSET),
+            Fault::Off(of, _) => {
+                let size = (NOISE * log_uniform(OFFSETS, generator)).min(of.most(readings));
+                let offset = size * sign(generator);
                 readings[first..].iter_mut().for_each(|reading| of.change(reading, |value| value + offset));
             }
-            Fault::Stamp => readings[first].t = 1e6,
-            Fault::Ahead => readings[first].t += log_uniform(AHEAD, &mut generator),
-            Fault::Late => late(readings),
-            Fault::Coarse(step) => *readings = readings.iter().step_by(step).copied().collect(),
+            _ => {}
         }
+    }
+
+    /// Stamps, and channels that come late.
+    fn change_times(self, readings: &mut [Reading], first: usize, generator: &mut ChaCha8Rng) {
         match self {
-            Fault::Stamp | Fault::Ahead => at,
-            Fault::Off(..) => readings[first].t,
-            Fault::Hidden(_) | Fault::Gaps | Fault::Repeated(_) => at,
-            Fault::Flaky | Fault::Late | Fault::Coarse(_) | Fault::Lacks(_) => at,
-            _ => readings[end.clamp(first + 1, readings.len()) - 1].t.min(at + self.lasts().max(0.05)),
+            Fault::Stamp => readings[first].t = 1e6,
+            Fault::Ahead => readings[first].t += log_uniform(AHEAD, generator),
+            Fault::Late => late(readings),
+            _ => {}
         }
     }
 }

@@ -111,9 +111,8 @@ impl Hypothesis {
         }
     }
 
-    /// What its first reading costs: that tells how large an offset is, not that there is one, nats.
-    pub fn learns(&self, law: &Expected) -> f64 {
-        let Kind::Offset(channel) = self.kind else { return 0.0 };
+    /// What the first reading of an offset costs: it tells how large that is, not that there is one, nats.
+    pub fn learns(&self, channel: Channel, law: &Expected) -> f64 {
         let index = channel as usize;
         0.5 * (law.size[index].powi(2) / law.noise.sensor[index]).ln().max(0.0)
     }

@@ -64,8 +64,6 @@ pub struct Quarantine {
     #[serde(with = "packed_readings")]
     held: Vec<Reading>,
     count: usize,
-    /// Time from the last sample that was as expected to the first one held, s.
-    interval: f64,
     /// Readings let through and not taken yet.
     through: Queue,
     /// What is expected without a law, and whether that is what readings are held against.
@@ -111,7 +109,6 @@ impl Quarantine {
             stance: Stance::Calm,
             held: vec![Reading::default(); ROOM],
             count: 0,
-            interval: 0.0,
             through: Queue::new(2 * ROOM),
             motion: MotionAlone::new(),
             is_alone: false,
@@ -290,7 +287,6 @@ impl Quarantine {
             }
             Stance::Named(place) if self.count == 0 && self.weighing.hypothesis(place).kind.is_no_event() => {
                 self.weighing.renew(law, arrival.dt, ROOM);
-                self.interval = arrival.dt;
                 self.hold(arrival, law);
             }
             Stance::Doubt | Stance::Named(_) => self.hold(arrival, law),
@@ -344,7 +340,7 @@ impl Quarantine {
 
     fn begin(&mut self, arrival: &Arrival, law: &Expected, start: &Filter<4>) {
         self.weighing.begin(start, law, arrival.dt, arrival.runs);
-        (self.stance, self.interval) = (Stance::Doubt, arrival.dt);
+        self.stance = Stance::Doubt;
         self.hold(arrival, law);
     }
 
@@ -388,7 +384,9 @@ impl Quarantine {
     fn name(&mut self, place: usize, law: &Expected) {
         let named = self.weighing.hypothesis(place);
         let (kind, offset) = (named.kind, named.offset());
-        let begins = !self.stance.named(&self.weighing).is_some_and(|before| before.kind.is_kick());
+        // under a law the reading before those held may have passed for chance
+        let before = usize::from(!self.is_alone);
+        let begins = named.age() <= self.count + before && self.stance != Stance::Named(place);
         let mut any = [false; 2];
         for number in 0..self.count {
             let mut reading = self.held[number];

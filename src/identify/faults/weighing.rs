@@ -54,7 +54,12 @@ impl Weighing {
         let nothing = self.nothing();
         let (own, log, start, bursts) = (nothing.kind, nothing.log, nothing.start(law), nothing.bursts);
         for hypothesis in self.hypotheses.iter_mut().filter(|hypothesis| hypothesis.kind != own) {
-            if hypothesis.log - log <= hypothesis.prior - hypothesis.learns(law) || hypothesis.age() >= samples {
+            let learns = match hypothesis.kind {
+                // each reading of a burst is as cheap as the next, the first of an offset is not
+                Kind::Offset(channel) if bursts[channel as usize].is_on() => hypothesis.learns(channel, law),
+                _ => 0.0,
+            };
+            if hypothesis.log - log <= hypothesis.prior - learns || hypothesis.age() >= samples {
                 hypothesis.begin(&start, law, dt, log, odds(hypothesis.kind, dt));
                 // a burst that goes on beside what explains its readings would tell that nothing
                 for channel in Channel::ALL.into_iter().filter(|channel| !hypothesis.kind.explains(*channel)) {
