@@ -139,14 +139,14 @@ impl AddedEffect {
     pub fn variance_beside_another(&self, own: &Information, active: &[bool], room: &mut OwnTerms) -> f64 {
         let n = own.n;
         self.widen(0.0, own, &mut room.information);
-        let mut beside = |one_more: usize| {
+        let mut beside = |one_more: Option<usize>| {
             room.active[..n].copy_from_slice(active);
-            (room.active[one_more], room.active[n]) = (true, true);
+            one_more.into_iter().chain([n]).for_each(|index| room.active[index] = true);
             room.solution.solve(&room.information, &room.active);
             if room.solution.determined[n] { room.solution.variance(n) } else { f64::INFINITY }
         };
-        // the inertia, which every law has, stands for none
-        (0..n).filter(|index| *index == 0 || !active[*index]).map(&mut beside).fold(0.0, f64::max)
+        let own = beside(None);
+        (0..n).filter(|index| !active[*index]).map(|index| beside(Some(index))).fold(own, f64::max)
     }
 
     /// What of the effect is like the law's own terms: by how much these are others for each unit of its coefficient,

@@ -1,4 +1,5 @@
-//! What an outage has brought: nothing, a sensor that is off from then on, or another law.
+//! What an outage has brought, or a kick, which is one of no length: nothing, a sensor that is off from then on, or
+//! another law.
 //!
 //! Each is a filter from the first sample after the outage on, scored on the same readings. What was said of the motion
 //! before says nothing of it any more, so that of a channel that came back with an offset u the state is what was read

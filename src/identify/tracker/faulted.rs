@@ -199,11 +199,12 @@ impl Tracker {
     /// Whether one offset since the last outage explains what several coefficients would have to change for: what an
     /// outage brings may be the one as well as the other, and until that is decided there is no alarm.
     pub(super) fn is_offset(&mut self, suspect: &Suspect) -> bool {
-        let Some(returned) = self.intake.after_outage.likeliest() else { return false };
-        let is_found = self.intake.after_outage.is_found();
+        // what an outage brought is not followed under a law that does not explain its record
+        let asked = self.intake.after_outage.likeliest().filter(|_| self.monitor.law.explains);
+        let Some(returned) = asked else { return false };
         let odds = (returned.evidence - (1.0 - LINEAR) * suspect.evidence).min(returned.odds);
         let has_turned = returned.since > TURNED * self.segment.scales.natural_time();
-        let told = is_found || has_turned && returned.against_other > DECISIVE;
+        let told = self.intake.after_outage.is_found() || has_turned && returned.against_other > DECISIVE;
         let open = odds.abs() < DECISIVE || odds > 0.0 && !told;
         self.intake.undecided = open && returned.since < UNDECIDED;
         if self.intake.undecided || odds < 0.0 {
