@@ -1,5 +1,6 @@
 //! When F acted: between samples, and against q and q̇. What is assumed of it is left where the motion tells otherwise.
 
+use super::faults::Lateness;
 use super::report::SensorState;
 use super::sample::Sample;
 use super::settings::Channels;
@@ -7,9 +8,9 @@ use crate::estimation::{Lag, TWENTY_TO_ONE, log_sum};
 use crate::law::Hold;
 use serde::{Deserialize, Serialize};
 
-/// Samples that F may act later and earlier than it comes: by one, and by what a hold adds to that.
-const LATEST: f64 = 1.5;
-const EARLIEST: f64 = -1.0;
+/// Samples that F may act later and earlier than it comes: by two, and by what a hold adds to that.
+const LATEST: f64 = 2.5;
+const EARLIEST: f64 = -2.0;
 
 /// Std of a lag that nobody has told yet, in samples: that of a hold.
 const UNTOLD: f64 = 0.5;
@@ -18,8 +19,8 @@ const UNTOLD: f64 = 0.5;
 /// better, and without noise a record would tell a lag of that size.
 const EXACT: f64 = 0.01;
 
-/// What else than is assumed F may do: six multiples of half a sample, and any lag.
-const RIVALS: usize = 7;
+/// What else than is assumed F may do: ten multiples of half a sample, and any lag.
+const RIVALS: usize = 11;
 
 /// What is assumed of F.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -46,6 +47,14 @@ impl Timing {
     /// is one that does and acts half a sample late.
     pub fn late(&self) -> f64 {
         self.lag + if self.hold == Hold::Zero { 0.5 } else { 0.0 }
+    }
+
+    /// What is assumed once a channel has begun to come late, after so many samples of the record; none of what is more
+    /// than can be set right, or where F is interpolated from samples to come.
+    pub fn moved(&self, late: &Lateness, samples: u64) -> Option<Timing> {
+        let lag = self.lag + late.later as f64;
+        let is_told = self.hold != Hold::BandLimited && (EARLIEST..=LATEST).contains(&lag);
+        is_told.then_some(Timing { lag, told_by: samples, is_confirmed: true, ..*self })
     }
 
     /// What is assumed once a record of so many samples tells of a lag.
@@ -150,29 +159,34 @@ impl Rival {
     }
 }
 
+/// Samples that F is read from: the present one and as many before as F may act later, and one.
+const RECENT: usize = 4;
+
 /// Samples of which F is that of the same instant as q and q̇.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Alignment {
-    last: Option<Sample>,
-    /// F of the one before that, N.
-    excitation_before: f64,
+    /// The last samples, the newest first; before there were so many, the first.
+    recent: [Sample; RECENT],
     /// Time of the last sample that was given, s.
     given: Option<f64>,
+    has_begun: bool,
 }
 
 impl Alignment {
     /// The sample with the F that acted at its instant; none where that is still to come.
     pub fn align(&mut self, lag: f64, sample: Sample) -> Option<Sample> {
-        let last = self.last.replace(sample).unwrap_or(sample);
-        let before = std::mem::replace(&mut self.excitation_before, last.excitation);
-        let [now, last_one] = [sample, last].map(|sample| sample.excitation);
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.recent = [sample; RECENT];
+        }
+        self.recent.rotate_right(1);
+        self.recent[0] = sample;
+        // where F comes late that of the present instant is still to come
+        let behind = (-lag).max(0.0).ceil();
+        let (whole, share) = ((behind + lag).floor(), (behind + lag).fract());
+        let excitation = |back: f64| self.recent[(back as usize).min(RECENT - 1)].excitation;
         // a mean of two, which is finite and at its ends exact whatever a sensor sends
-        let between = |share: f64, from: f64, to: f64| (1.0 - share) * from + share * to;
-        let aligned = match lag {
-            0.0..=1.0 => Sample { excitation: between(lag, now, last_one), ..sample },
-            1.0.. => Sample { excitation: between(lag - 1.0, last_one, before), ..sample },
-            _ => Sample { excitation: between(1.0 + lag, now, last_one), ..last },
-        };
+        let excitation = (1.0 - share) * excitation(whole) + share * excitation(whole + 1.0);
+        let aligned = Sample { excitation, ..self.recent[behind as usize] };
         let is_new = self.given.is_none_or(|given| aligned.t > given);
         is_new.then(|| {
             self.given = Some(aligned.t);
@@ -228,7 +242,7 @@ mod tests {
     fn what_is_left_open_is_the_prior_before_a_record_and_the_lag_itself_after_it() {
         let held = Timing::new(Hold::Zero);
         let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.01;
-        assert!(near(held.left_open(&Lag::UNKNOWN), 0.2169), "{}", held.left_open(&Lag::UNKNOWN));
+        assert!(near(held.left_open(&Lag::UNKNOWN), 0.2220), "{}", held.left_open(&Lag::UNKNOWN));
         assert!(near(held.left_open(&found(0.3)), 0.09), "{}", held.left_open(&found(0.3)));
         assert!(near(held.left_open(&found(0.0)), 0.043 * 0.0223_f64.powi(2)), "{}", held.left_open(&found(0.0)));
         let told = held.corrected(&found(-0.25), 1000).unwrap();

@@ -169,7 +169,12 @@ impl Window {
     /// From now on F is taken to do this between samples, and to act so many samples later than it did.
     pub fn set_timing(&mut self, hold: Hold, later: f64) {
         self.hold = hold;
-        let range = self.oldest()..self.end();
+        self.set_later(self.oldest(), later);
+    }
+
+    /// From sample `first` on F is taken to act so many samples later than it did.
+    pub fn set_later(&mut self, first: u64, later: f64) {
+        let range = first.max(self.oldest())..self.end();
         match later > 0.0 {
             _ if later == 0.0 || range.is_empty() => {}
             // each is made of older ones
@@ -223,8 +228,19 @@ impl Window {
     /// Sample `number` and the excitation since the one before it; both must be in the window.
     #[inline]
     pub fn observation(&self, number: u64) -> Observation {
+        self.observation_under(number, self.drive(number))
+    }
+
+    /// The same with the excitation of so many samples before, as far as it is in the window.
+    pub fn observation_with(&self, number: u64, later: i64) -> Observation {
+        let known = |number: u64| number.saturating_add_signed(-later).clamp(self.oldest(), self.end() - 1);
+        let [before, after] = [number - 1, number].map(known);
+        self.observation_under(number, self.drive_between(before, after))
+    }
+
+    #[inline]
+    fn observation_under(&self, number: u64, drive: Drive) -> Observation {
         let (before, after) = (self.sample(number - 1), self.sample(number));
-        let drive = self.drive(number);
         let Reading { faulty: [q_faulty, qd_faulty], unseen, .. } = self.ring[self.slot(number)];
         let counts = [self.channels.q && !q_faulty, self.channels.qd && !qd_faulty];
         let measured = [counts[0].then_some(after.q), counts[1].then_some(after.qd)];
@@ -234,12 +250,19 @@ impl Window {
 
     /// The excitation since the sample before sample `number`.
     fn drive(&self, number: u64) -> Drive {
-        let [before, after] = [number - 1, number].map(|number| self.sample(number).excitation);
+        match self.hold {
+            Hold::BandLimited if self.channels.excitation => self.interpolate(number - 1),
+            _ => self.drive_between(number - 1, number),
+        }
+    }
+
+    /// The excitation from one sample to another, held or straight.
+    fn drive_between(&self, before: u64, after: u64) -> Drive {
+        let [before, after] = [before, after].map(|number| self.sample(number).excitation);
         match self.hold {
             _ if !self.channels.excitation => Drive::Held(0.0),
             Hold::Zero => Drive::Held(before),
-            Hold::Linear => Drive::Line(before, after),
-            Hold::BandLimited => self.interpolate(number - 1),
+            Hold::Linear | Hold::BandLimited => Drive::Line(before, after),
         }
     }
 

@@ -193,6 +193,12 @@ impl LawInUse {
         Law { information: whole, sensitivity: &run.sensitivity, effect, open, own, explains }
     }
 
+    /// What was told of when F acted was of another time.
+    pub fn forget_lag(&mut self) {
+        self.lag.begin();
+        self.effects.end();
+    }
+
     /// Tells when F acted, by all of its record up to now.
     pub fn tell_lag(&mut self) {
         let has_effect = self.effect() != 0.0;

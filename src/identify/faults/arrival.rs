@@ -2,6 +2,7 @@
 
 use super::expected::Expected;
 use super::hypothesis::Value;
+use super::kind::Kind;
 use super::repetition::Repetition;
 use crate::estimation::{Channel, Filter, OUTLYING};
 use crate::identify::reading::Reading;
@@ -18,12 +19,23 @@ pub struct Arrival {
     pub reading: Reading,
     pub dt: f64,
     pub drive: Drive,
+    /// What it is where F acts a sample earlier, and a sample later, than it came until now.
+    shifted: [Drive; 2],
     pub values: [Option<Value>; 2],
     /// What the repetitions before this one have cost by channel, nats; 0 where it is none.
     pub runs: [f64; 2],
 }
 
 impl Arrival {
+    /// The drive if that has happened.
+    pub fn drive_by(&self, kind: Kind) -> &Drive {
+        match kind {
+            Kind::Late(-1) => &self.shifted[0],
+            Kind::Late(_) => &self.shifted[1],
+            _ => &self.drive,
+        }
+    }
+
     /// Whether its readings are as near to what is foreseen as chance leaves them.
     pub fn is_near<const N: usize>(&self, law: &Expected, foreseen: &Filter<N>) -> bool {
         Channel::ALL.into_iter().all(|channel| match self.values[channel as usize] {
@@ -70,6 +82,8 @@ impl Course {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Arrivals {
     pub last: Option<Sample>,
+    /// F of the sample before that, N.
+    excitation_before: f64,
     repetitions: [Repetition; 2],
 }
 
@@ -87,10 +101,15 @@ impl Arrivals {
         let before = self.last.replace(sample)?;
         let repeats = sample.q == before.q || sample.qd == before.qd;
         let Course { moved, scatter } = if repeats { course(&before) } else { Course::UNKNOWN };
-        let drive = match hold {
-            Hold::Zero => Drive::Held(before.excitation),
-            Hold::Linear | Hold::BandLimited => Drive::Line(before.excitation, sample.excitation),
+        let drive = |from: f64, to: f64| match hold {
+            Hold::Zero => Drive::Held(from),
+            Hold::Linear | Hold::BandLimited => Drive::Line(from, to),
         };
+        let [now, last] = [sample.excitation, before.excitation];
+        let older = std::mem::replace(&mut self.excitation_before, last);
+        // what comes next nobody knows
+        let shifted = [drive(now, now), drive(older, last)];
+        let drive = drive(last, now);
         let mut runs = [0.0; 2];
         let values = Channel::ALL.map(|channel| {
             let index = channel as usize;
@@ -100,6 +119,6 @@ impl Arrivals {
             runs[index] = if repeats.is_some() { run } else { 0.0 };
             measured[index].then_some(Value { value, repeats })
         });
-        Some(Arrival { reading, dt: sample.t - before.t, drive, values, runs })
+        Some(Arrival { reading, dt: sample.t - before.t, drive, shifted, values, runs })
     }
 }

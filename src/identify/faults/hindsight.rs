@@ -45,6 +45,8 @@ pub struct Hindsight {
 pub struct Found {
     /// Its log-odds against another law.
     pub odds: f64,
+    /// Log-odds of another law against nothing.
+    pub law: f64,
     /// Whether it is a burst, whose readings do not count, or louder sensors.
     pub is_burst: bool,
 }
@@ -61,7 +63,7 @@ impl Hindsight {
     pub fn weigh(&mut self, law: &Expected, window: &Window, (switch, evidence): (u64, f64)) -> Found {
         let oldest = (window.resumed() + 2).max(window.ready().saturating_sub(ROOM as u64));
         if oldest >= window.ready() {
-            return Found { odds: f64::NEG_INFINITY, is_burst: false };
+            return Found { odds: f64::NEG_INFINITY, law: f64::INFINITY, is_burst: false };
         }
         self.first = switch.saturating_sub(BEFORE).max(oldest);
         let rare = event(window.pace()).ln();
@@ -93,7 +95,7 @@ impl Hindsight {
             of.map(|other| other.log).fold(f64::NEG_INFINITY, f64::max)
         };
         let (law, louder) = (likeliest(true).max(log + evidence + rare), likeliest(false));
-        Found { odds: burst.max(louder) - law, is_burst: burst > louder }
+        Found { odds: burst.max(louder) - law, law: law - log, is_burst: burst > louder }
     }
 
     /// Number of the first sample weighed.
@@ -126,7 +128,7 @@ fn lasts(window: &Window, first: u64) -> bool {
 }
 
 /// The state before sample `first`.
-fn settled(law: &Expected, window: &Window, first: u64) -> Filter {
+pub fn settled(law: &Expected, window: &Window, first: u64) -> Filter {
     let begin = first.saturating_sub(SETTLE).max(window.resumed());
     let sample = window.sample(begin);
     let known = window.observation(begin + 1).measured;
@@ -148,7 +150,7 @@ fn settled(law: &Expected, window: &Window, first: u64) -> Filter {
 }
 
 /// Goes on to a sample; returns the log-density of its readings.
-fn take(law: &Expected, observation: &Observation, filter: &mut Filter) -> f64 {
+pub(super) fn take(law: &Expected, observation: &Observation, filter: &mut Filter) -> f64 {
     *filter = law.carry(filter, observation.dt, &observation.drive);
     let mut log = 0.0;
     for channel in Channel::ALL {

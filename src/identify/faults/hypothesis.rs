@@ -210,7 +210,7 @@ impl Hypothesis {
 
     /// Goes over an interval.
     pub fn predict(&mut self, law: &Expected, dt: f64, drive: &Drive) {
-        let drive = if self.kind == Kind::Glitch && self.age == 0 { &Drive::Held(0.0) } else { drive };
+        let drive = if self.kind.is_unread() && self.age == 0 { &Drive::Held(0.0) } else { drive };
         let act = match self.kind {
             _ if law.alone.is_some() => [true; 2],
             Kind::Law { .. } => [true; 2],

@@ -20,6 +20,8 @@ pub enum Kind {
     Glitch,
     /// F, which stands still, is not what acts: that goes on as F did before.
     ForceStuck,
+    /// F acts so many samples later than it did.
+    Late(i8),
     /// A channel has an offset.
     Offset(Channel),
     /// A channel repeats its value.
@@ -34,7 +36,7 @@ pub enum Kind {
 
 impl Kind {
     /// Every one of them, the least first.
-    pub const ALL: [Kind; 16] = [
+    pub const ALL: [Kind; 18] = [
         Kind::Readings,
         Kind::Misfit,
         Kind::Law { times: 1, unnoticed: false },
@@ -43,6 +45,8 @@ impl Kind {
         Kind::Kick,
         Kind::Glitch,
         Kind::ForceStuck,
+        Kind::Late(-1),
+        Kind::Late(1),
         Kind::Offset(Channel::Q),
         Kind::Offset(Channel::Qd),
         Kind::Stuck(Channel::Q),
@@ -61,7 +65,7 @@ impl Kind {
     /// Whether it can be told where no law is known: a change of law is one of q̈ there. An offset moves slowly in one
     /// channel, as its own course may, and a rest repeats both.
     pub fn can_be_told_by_motion(self) -> bool {
-        !matches!(self, Kind::Misfit | Kind::ForceStuck | Kind::Offset(_) | Kind::BothStuck)
+        !matches!(self, Kind::Misfit | Kind::ForceStuck | Kind::Late(_) | Kind::Offset(_) | Kind::BothStuck)
     }
 
     /// Whether it can be told apart where these channels are measured: a sensor that is not there does not fail.
@@ -98,6 +102,17 @@ impl Kind {
         matches!(self, Kind::Kick | Kind::Glitch)
     }
 
+    /// Whether F acts at another time.
+    pub fn is_late(self) -> bool {
+        matches!(self, Kind::Late(_))
+    }
+
+    /// Whether what acts in its own interval is not what was read of F: of the one in which a channel begins to come late
+    /// nobody knows that either.
+    pub fn is_unread(self) -> bool {
+        self == Kind::Glitch || self.is_late()
+    }
+
     /// Intensity of the white acceleration that it adds in its own interval, the `first`, for when in it that was
     /// nobody knows, and what u₀ moves by in a second, as a variance.
     pub fn unknown(self, law: &Expected, inputs: [f64; 2], dt: f64, first: bool) -> [f64; 2] {
@@ -110,7 +125,7 @@ impl Kind {
             }
             Kind::Misfit => [0.0, law.misfit() * law.rate],
             Kind::Kick if first => [law.size[1] * law.size[1] / dt, 0.0],
-            Kind::Glitch if first => [law.drive * law.drive * dt, 0.0],
+            _ if first && self.is_unread() => [law.drive * law.drive * dt, 0.0],
             _ => [0.0; 2],
         }
     }

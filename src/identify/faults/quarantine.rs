@@ -7,7 +7,7 @@ use super::kind::Kind;
 use super::motion_alone::{MotionAlone, Surroundings};
 use super::queue::Queue;
 use super::states::States;
-use super::weighing::Weighing;
+use super::weighing::{CERTAIN, Weighing};
 use crate::estimation::{Channel, Filter, OUTLYING, UNLIKELY};
 use crate::identify::packed_readings;
 use crate::identify::reading::Reading;
@@ -24,13 +24,9 @@ pub const ROOM: usize = 64;
 /// standard scenarios takes 8 to 28 samples (medians at σ = 0.01).
 const DECIDED: u32 = 200;
 
-/// An offset is known once its std is below this part of the sensor's noise, so that what is left of it widens a
+/// An offset is taken off once its std is below this part of the sensor's noise, so that what is left of it widens a
 /// reading's scatter by an eighth at most.
 const OFFSET_KNOWN: f64 = 0.5;
-
-/// … and is taken off for good at these log-odds: a motion that was kicked is told from it by q alone, which takes
-/// time.
-const CERTAIN: f64 = 10.0;
 
 /// Samples that the size of the motion is known from: some periods of most motions.
 const MEMORY: f64 = 10_000.0;
@@ -87,6 +83,8 @@ pub struct Quarantine {
     force_stuck: bool,
     /// Whether something has just been found to have moved q̇ that was not read of F.
     kicked: bool,
+    /// By how many samples F has just been found to act later than it did, and since how many samples.
+    late: Option<(i8, usize)>,
     states: States,
 }
 
@@ -122,6 +120,7 @@ impl Quarantine {
             found: None,
             force_stuck: false,
             kicked: false,
+            late: None,
             states: States::default(),
         }
     }
@@ -346,7 +345,7 @@ impl Quarantine {
 
     fn hold(&mut self, arrival: &Arrival, law: &Expected) {
         self.held[self.count] = arrival.reading;
-        self.weighing.take(law, arrival.dt, &arrival.drive, arrival.values, self.count);
+        self.weighing.take(law, arrival, self.count);
         self.count += 1;
         let full = self.count == ROOM;
         // louder sensors are told from a burst of small readings by their going on alone
@@ -383,7 +382,7 @@ impl Quarantine {
     /// What was held enters the record as the named hypothesis has it.
     fn name(&mut self, place: usize, law: &Expected) {
         let named = self.weighing.hypothesis(place);
-        let (kind, offset) = (named.kind, named.offset());
+        let (kind, offset, age) = (named.kind, named.offset(), named.age());
         // under a law the reading before those held may have passed for chance
         let before = usize::from(!self.is_alone);
         let begins = named.age() <= self.count + before && self.stance != Stance::Named(place);
@@ -414,6 +413,10 @@ impl Quarantine {
             // the law in use follows how loud the sensors are
             Kind::Law { .. } | Kind::Louder(_) | Kind::BothLouder => {
                 (self.stance, self.decided) = (Stance::Calm, DECIDED)
+            }
+            Kind::Late(later) => {
+                (self.stance, self.decided) = (Stance::Calm, DECIDED);
+                self.late = Some((later, age));
             }
             Kind::ForceStuck => (self.stance, self.force_stuck) = (Stance::Calm, true),
             Kind::Kick | Kind::Glitch => self.kicked = begins,
@@ -446,6 +449,11 @@ impl Quarantine {
     /// Whether F has just been found stuck.
     pub fn found_stuck_force(&mut self) -> bool {
         std::mem::take(&mut self.force_stuck)
+    }
+
+    /// By how many samples F has just been found to act later than it did, and since how many samples.
+    pub fn found_late(&mut self) -> Option<(i8, usize)> {
+        self.late.take()
     }
 
     /// Whether something has just been found to have moved q̇ that was not read of F.

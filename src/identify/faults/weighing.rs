@@ -1,12 +1,16 @@
 //! All hypotheses on the same readings: whether the law or a sensor is the likelier, and by how much.
 
+use super::arrival::Arrival;
 use super::expected::Expected;
-use super::hypothesis::{Hypothesis, Value};
+use super::hypothesis::Hypothesis;
 use super::kind::Kind;
 use super::price::event;
 use crate::estimation::{Channel, Filter, TWENTY_TO_ONE, log_sum};
-use crate::law::Drive;
 use serde::{Deserialize, Serialize};
+
+/// What is told for good needs these log-odds: an offset that is taken off, from a motion that was kicked, and a channel
+/// that comes late, from a burst that looks like it for two readings.
+pub const CERTAIN: f64 = 10.0;
 
 /// Log-odds of what begins in an interval of `dt` s against either of those by which nothing happens. Those share what
 /// is likely of nothing, and the changes of a law what is of one.
@@ -88,8 +92,10 @@ impl Weighing {
     }
 
     /// Takes a sample.
-    pub fn take(&mut self, law: &Expected, dt: f64, drive: &Drive, values: [Option<Value>; 2], place: usize) {
-        self.hypotheses.iter_mut().for_each(|hypothesis| hypothesis.take(law, dt, drive, values, place));
+    pub fn take(&mut self, law: &Expected, arrival: &Arrival, place: usize) {
+        for hypothesis in &mut self.hypotheses {
+            hypothesis.take(law, arrival.dt, arrival.drive_by(hypothesis.kind), arrival.values, place);
+        }
     }
 
     /// The samples held have been let through.
@@ -107,19 +113,32 @@ impl Weighing {
     }
 
     /// The place of what is named: the law against all faults, or one fault against the law and all others. A force
-    /// that was not read and one that was misread leave the same record: neither has to be told from the other.
+    /// that was not read and one that was misread leave the same record: neither has to be told from the other, nor from
+    /// a channel that begins to come late, which has to be told from them.
     pub fn named(&self) -> Option<usize> {
         let odds = self.law_against_fault();
         if odds.is_nan() || odds.abs() < TWENTY_TO_ONE {
             return None;
         }
-        let best = self.likeliest(odds > 0.0);
+        let best = self.unless_kicked(self.likeliest(odds > 0.0));
         let own = &self.hypotheses[best];
+        let begins_alike = |other: Kind| own.kind.is_kick() && other.is_late();
         let alike = [Kind::is_kick, Kind::is_no_event];
-        let same = |other: Kind| other == own.kind || alike.iter().any(|is| is(other) && is(own.kind));
+        let same =
+            |other: Kind| other == own.kind || begins_alike(other) || alike.iter().any(|is| is(other) && is(own.kind));
         let others = self.hypotheses.iter().filter(|other| !other.kind.is_law() && !same(other.kind));
         let rival = others.map(|other| other.log).fold(f64::NEG_INFINITY, log_sum);
-        (odds > 0.0 || own.log - rival > TWENTY_TO_ONE).then_some(best)
+        let least = if own.kind.is_late() { CERTAIN } else { TWENTY_TO_ONE };
+        (odds > 0.0 || own.log - rival > least).then_some(best)
+    }
+
+    /// What begins as a force that was not read is that until it is told from it.
+    fn unless_kicked(&self, best: usize) -> usize {
+        let kicks = self.hypotheses.iter().enumerate().filter(|(_, other)| other.kind.is_kick());
+        let kick = kicks.max_by(|a, b| a.1.log.total_cmp(&b.1.log));
+        let own = &self.hypotheses[best];
+        let is_kick = |kick: &Hypothesis| own.kind.is_late() && own.log - kick.log < TWENTY_TO_ONE;
+        kick.filter(|(_, kick)| is_kick(kick)).map_or(best, |(place, _)| place)
     }
 
     /// Log-odds of the hypothesis of this place against all others.

@@ -5,7 +5,7 @@ use super::state::{Intake, Tracker};
 use crate::estimation::{Channel, Filter, Innovation, Observation, TWENTY_TO_ONE};
 use crate::evidence::{INERTIA_SPREAD, Suspect};
 use crate::identify::change::LawInUse;
-use crate::identify::faults::{DECISIVE, Expected, Found, Returned, Standing, StandingForce};
+use crate::identify::faults::{DECISIVE, Expected, Found, Lateness, Returned, Standing, StandingForce, settled};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::segment::MotionScales;
@@ -117,12 +117,13 @@ impl Tracker {
             self.lose_excitation(readings);
             return true;
         }
-        self.is_burst(problem, suspect)
+        self.intake.late.is_some() || self.is_late_or_burst(problem, suspect)
     }
 
-    /// Whether a burst of readings that were not far enough off to be held, or louder sensors, are as likely as what
-    /// speaks for a switch, as rare as that: what is a burst's does not count, and what cannot be told yet waits.
-    fn is_burst(&mut self, problem: &Problem, suspect: &Suspect) -> bool {
+    /// Whether channels that have begun to come late, a burst of readings that were not far enough off to be held, or
+    /// louder sensors, are as likely as what speaks for a switch, as rare as that: what is a burst's does not count, and
+    /// what cannot be told yet waits.
+    fn is_late_or_burst(&mut self, problem: &Problem, suspect: &Suspect) -> bool {
         self.monitor.bank.look_at_all();
         let suspect = self.monitor.bank.suspect().unwrap_or(*suspect);
         let caution = self.decision().caution();
@@ -130,15 +131,34 @@ impl Tracker {
         let law = &monitor.law;
         let expected = expected(problem, law, caution, &segment.scales, intake.quarantine.size());
         let switch = (suspect.start, suspect.evidence / caution);
-        let Found { odds, is_burst } = intake.hindsight.weigh(&expected, window, switch);
-        if odds > TWENTY_TO_ONE {
+        let Found { odds, law, is_burst } = intake.hindsight.weigh(&expected, window, switch);
+        let late = intake.late_channels.weigh(&expected, window, (suspect.start, law), monitor.unusual_since);
+        let late = late.filter(|(late, own)| *own > odds && problem.timing.moved(late, 0).is_some());
+        intake.late = late.filter(|(_, odds)| *odds > TWENTY_TO_ONE).map(|(late, _)| late);
+        if late.is_none() && odds > TWENTY_TO_ONE {
             if is_burst {
                 self.leave_out_burst();
             }
             self.restart_law(self.as_read());
         }
         self.intake.hindsight.clear();
-        odds > -TWENTY_TO_ONE
+        late.map_or(odds, |(_, odds)| odds) > -TWENTY_TO_ONE
+    }
+
+    /// A channel has begun to come late: so it does in the record from then on, and the law stays.
+    pub(super) fn begin_late(&mut self, problem: &mut Problem, late: &Lateness) {
+        let Some(moved) = problem.timing.moved(late, self.record_length()) else { return };
+        problem.timing = moved;
+        self.window.set_later(late.first, late.later as f64);
+        let caution = self.decision().caution();
+        let Tracker { intake, window, monitor, segment, .. } = self;
+        let expected = expected(problem, &monitor.law, caution, &segment.scales, intake.quarantine.size());
+        let filter = settled(&expected, window, window.ready());
+        monitor.law.forget_lag();
+        segment.begin_run(window);
+        self.weak_form.restart();
+        self.weak_row_drift.restart(self.window.end());
+        self.restart_law(filter);
     }
 
     fn leave_out_burst(&mut self) {

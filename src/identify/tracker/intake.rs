@@ -3,7 +3,7 @@
 use super::faulted::expected;
 use super::state::{Fitting, Intake, Setup, Tracker};
 use crate::estimation::OUTLYING;
-use crate::identify::faults::{Against, Expected, Stray};
+use crate::identify::faults::{Against, Expected, Lateness, Stray};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::report::{SensorState, Status};
@@ -130,6 +130,10 @@ impl Tracker {
         let by_law = matches!(against, Against::Law(..));
         intake.quarantine.take(reading, problem.timing.hold, window.pace(), against);
         let (in_doubt, is_stuck) = (intake.quarantine.is_in_doubt(), intake.quarantine.found_stuck_force());
+        if let Some((later, since)) = intake.quarantine.found_late() {
+            let first = window.end() + intake.quarantine.behind() as u64 - since as u64;
+            intake.late = Some(Lateness { later: later.into(), first });
+        }
         let kicked = intake.quarantine.found_kick() && !by_law;
         match intake.excitation.left().filter(|_| !intake.force_lost) {
             Some(readings) if by_law && in_doubt => {

@@ -51,6 +51,12 @@ impl Tracker {
 
     /// What is assumed of when F acted follows what the record of the present law tells.
     pub fn correct_timing(&mut self, problem: &mut Problem) {
+        self.intake.late = self.intake.late.filter(|_| self.monitor.law.running);
+        // what is still held will be in the record as it was read
+        if let Some(late) = self.intake.late.filter(|_| self.intake.quarantine.behind() == 0) {
+            self.intake.late = None;
+            return self.begin_late(problem, &late);
+        }
         let Some(corrected) = self.corrected_timing(problem, &self.segment.timing.told.lag) else { return };
         let before = std::mem::replace(&mut problem.timing, corrected);
         self.window.set_timing(corrected.hold, corrected.lag - before.lag);

@@ -7,7 +7,9 @@ use crate::estimation::{DifferenceNoise, KnownEffect};
 use crate::evidence::{Bank, INERTIA_SPREAD, SWITCH_SIZE};
 use crate::identify::change::{LawInUse, Prediction, false_alarm_level};
 use crate::identify::drift::{AugmentedDrift, WeakRowDrift};
-use crate::identify::faults::{AfterOutage, ExcitationGate, Hindsight, Quarantine, Repetition, StandingForce};
+use crate::identify::faults::{
+    AfterOutage, ExcitationGate, Hindsight, LateChannels, Lateness, Quarantine, Repetition, StandingForce,
+};
 use crate::identify::functional::WeakForm;
 use crate::identify::problem::Problem;
 use crate::identify::segment::{MotionScales, Prior, Segment, WeakStart};
@@ -82,6 +84,9 @@ pub(super) struct Intake {
     pub(super) motion_known: bool,
     pub(super) after_outage: AfterOutage,
     pub(super) hindsight: Hindsight,
+    pub(super) late_channels: LateChannels,
+    /// Since when one comes late, as has just been found.
+    pub(super) late: Option<Lateness>,
     /// Whether an alarm waits for the decision between another law and an offset.
     pub(super) undecided: bool,
     /// How often F repeats its value.
@@ -193,6 +198,8 @@ impl Tracker {
                 motion_known: false,
                 after_outage: AfterOutage::new(),
                 hindsight: Hindsight::new(),
+                late_channels: LateChannels::default(),
+                late: None,
                 undecided: false,
                 force: Repetition::default(),
                 force_lost: false,
