@@ -1,6 +1,6 @@
 //! When the excitation acted: samples that come late, and a hold that is said wrongly.
 
-use switchid::identify::{Identifier, Sample, SensorState, Settings};
+use switchid::identify::{Identifier, Output, Sample, SensorState, Settings};
 use switchid::law::{Given, Hold, Model};
 use switchid::limits::SETTLED_ERROR;
 use switchid::simulate::{Builtin, Scenario, record};
@@ -68,6 +68,42 @@ fn a_force_that_is_found_to_come_late_leaves_no_kick_in_the_record() {
             let (t, named) = (pair[1].t, output.missing.map(|missing| missing.effect().id));
             assert!(t < 3.0 || output.valid && named.is_none(), "{seed}: {named:?} at {t}, {output:?}");
         }
+    }
+}
+
+/// With a sample in mid-stream F, or q and q̇, begin to come late: the law is the one it was, and its next switch counts.
+#[test]
+fn a_channel_that_begins_to_come_late_is_no_switch_and_hides_none() {
+    let late = SensorState::Late;
+    let (of_motion, of_force) = ([late, late, SensorState::Ok], [SensorState::Ok, SensorState::Ok, late]);
+    for (builtin, seed, noise, late_force, by, said) in [
+        (Builtin::DuffingWhite, 560_676, 0.001, true, 1, of_force),
+        (Builtin::VanDerPolWhite, 561_207, 0.01, true, 1, of_force),
+        (Builtin::VanDerPolWhite, 560_186, 0.1, true, 2, of_force),
+        (Builtin::VanDerPolSine, 564_213, 0.001, false, 1, of_motion),
+        (Builtin::DuffingWhite, 564_295, 0.001, false, 1, of_motion),
+    ] {
+        let mut scenario = builtin.random(seed).with_noise(noise);
+        scenario.stages.truncate(2);
+        (scenario.stages[1].start, scenario.duration) = (20.0, 24.0);
+        let read = samples(&scenario);
+        let model = Model::of("plant", builtin.terms().into_iter().map(|term| (term, Given::Fit)));
+        let mut identifier = Identifier::new(&model, Settings::default()).unwrap();
+        for (index, sample) in read.iter().enumerate() {
+            let before = if index > 12_000 { &read[index - by] } else { sample };
+            let Sample { q, qd, .. } = before;
+            identifier
+                .step(match late_force {
+                    true => Sample { excitation: before.excitation, ..*sample },
+                    false => Sample { q: *q, qd: *qd, ..*sample },
+                })
+                .unwrap();
+            let Output { switch_count, sensors, valid, .. } = identifier.output();
+            assert!(*switch_count == 0 || sample.t >= 20.0, "{seed}: a switch at {}", sample.t);
+            assert!(sample.t != 19.0 || *valid && *sensors == said, "{seed}: {:?}", identifier.output());
+        }
+        let output = identifier.output();
+        assert!(output.switch_count == 1 && output.detection_time.unwrap() < 20.5, "{seed}: {output:?}");
     }
 }
 

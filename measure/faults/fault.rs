@@ -101,6 +101,8 @@ pub enum Fault {
     Ahead,
     /// q and q̇ come one sample late against F, throughout.
     Late,
+    /// Channels come so many samples late from a sample on.
+    ComesLate(Of, usize),
     /// One sample in so many is kept: F moves within the step, and is not held.
     Coarse(usize),
     /// The plant has this effect throughout, and the law lacks it.
@@ -109,7 +111,7 @@ pub enum Fault {
 
 impl Fault {
     /// All of them, in the order of the table.
-    pub const ALL: [Fault; 50] = [
+    pub const ALL: [Fault; 53] = [
         Fault::Clean,
         Fault::Burst(Of::Q),
         Fault::Burst(Of::Qd),
@@ -151,6 +153,9 @@ impl Fault {
         Fault::Stamp,
         Fault::Ahead,
         Fault::Late,
+        Fault::ComesLate(Of::F, 1),
+        Fault::ComesLate(Of::F, 2),
+        Fault::ComesLate(Of::Both, 1),
         Fault::Coarse(2),
         Fault::Coarse(5),
         Fault::Coarse(10),
@@ -190,6 +195,7 @@ impl Fault {
             Fault::Stamp => "one time stamp 1e6".into(),
             Fault::Ahead => "one time stamp ahead".into(),
             Fault::Late => "q, qd one sample late".into(),
+            Fault::ComesLate(of, by) => format!("{} {by} late from then on", of.id()),
             Fault::Coarse(step) => format!("steps of {step} ms, hold wrong"),
             Fault::Lacks(effect) => format!("lacks {effect}"),
         }
@@ -223,7 +229,7 @@ impl Fault {
         self.change_times(readings, first, &mut generator);
         match self {
             Fault::Stamp | Fault::Ahead | Fault::Hidden(_) | Fault::Gaps | Fault::Repeated(_) => at,
-            Fault::Flaky | Fault::Late | Fault::Coarse(_) | Fault::Lacks(_) => at,
+            Fault::Flaky | Fault::Late | Fault::ComesLate(..) | Fault::Coarse(_) | Fault::Lacks(_) => at,
             Fault::Offset | Fault::Jump | Fault::Off(..) => readings[first].t,
             _ => {
                 let end = in_a_row.map_or(last, |count| first + count);
@@ -331,7 +337,8 @@ impl Fault {
         match self {
             Fault::Stamp => readings[first].t = 1e6,
             Fault::Ahead => readings[first].t += log_uniform(AHEAD, generator),
-            Fault::Late => late(readings),
+            Fault::Late => come_late(readings, 1, Of::Both, 1),
+            Fault::ComesLate(of, by) => come_late(readings, first, of, by),
             _ => {}
         }
     }
@@ -407,10 +414,10 @@ fn burst(readings: &mut [Reading], of: Of, generator: &mut ChaCha8Rng) {
     }
 }
 
-fn late(readings: &mut [Reading]) {
-    let indices: Range<usize> = 1..readings.len();
-    for index in indices.rev() {
-        (readings[index].q, readings[index].qd) = (readings[index - 1].q, readings[index - 1].qd);
+fn come_late(readings: &mut [Reading], first: usize, of: Of, by: usize) {
+    for index in (first..readings.len()).rev() {
+        let from = readings[index - by];
+        of.set(&mut readings[index], &from);
     }
 }
 

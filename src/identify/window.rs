@@ -172,6 +172,13 @@ impl Window {
         self.set_later(self.oldest(), later);
     }
 
+    /// With sample `number` the motion goes on from another state than it had.
+    pub fn break_off(&mut self, number: u64) {
+        let slot = self.slot(number);
+        self.ring[slot].unseen = f64::INFINITY;
+        self.resumed = self.resumed.max(number);
+    }
+
     /// From sample `first` on F is taken to act so many samples later than it did.
     pub fn set_later(&mut self, first: u64, later: f64) {
         let range = first.max(self.oldest())..self.end();

@@ -215,6 +215,7 @@ mod tests {
             unnoticed: 0.0,
             stuck: None,
             parts: 1,
+            lag: 0.0,
             alone: None,
         };
         let mut after = AfterOutage::new();

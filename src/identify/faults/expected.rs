@@ -27,6 +27,8 @@ pub struct Expected<'a> {
     pub stuck: Option<Standing>,
     /// Parts of an interval between two samples.
     pub parts: usize,
+    /// Samples that F acts later than it comes, as is assumed.
+    pub lag: f64,
     /// Where no law is known: `motion` is a free mass of 1 kg then, whose acceleration the unknowns are.
     pub alone: Option<Roughness>,
 }
@@ -68,6 +70,11 @@ impl Expected<'_> {
     pub fn misfit(&self) -> f64 {
         let [acceleration, _] = self.switch;
         SETTLED_ERROR * acceleration * acceleration
+    }
+
+    /// Samples by which q and q̇ come later than before where F acts that much later: the rest is F's, come earlier.
+    pub fn delay(&self, later: f64) -> f64 {
+        (self.lag + later).max(0.0) - self.lag.max(0.0)
     }
 
     /// The filter of (q, q̇) after an interval of the law in use.

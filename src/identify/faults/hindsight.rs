@@ -214,6 +214,7 @@ mod tests {
             unnoticed: 0.0,
             stuck: None,
             parts: 1,
+            lag: 0.0,
             alone: None,
         };
         hindsight.weigh(&law, window, (BEFORE_IT, evidence))

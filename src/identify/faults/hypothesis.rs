@@ -106,6 +106,12 @@ impl Hypothesis {
             }
             Kind::Misfit => covariance[2][2] = law.misfit(),
             Kind::ForceStuck => self.suppose_stuck(law),
+            // a motion that comes late has stood still
+            Kind::Late(later) => {
+                // a motion that begins to come late is where it was
+                let [q, qd, ..] = &mut self.believed.mean;
+                *q -= law.delay(f64::from(later)) * dt * *qd;
+            }
             Kind::Offset(channel) => covariance[2][2] = law.size[channel as usize].powi(2),
             _ => {}
         }

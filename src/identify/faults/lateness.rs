@@ -10,6 +10,7 @@ use super::hindsight::{settled, take};
 use super::price::event;
 use crate::estimation::{Filter, Observation};
 use crate::identify::window::Window;
+use crate::law::State;
 use serde::{Deserialize, Serialize};
 
 /// Samples by which F may act later from one sample to the next.
@@ -71,7 +72,8 @@ fn likeliest(law: &Expected, window: &Window, first: u64) -> Option<(Lateness, f
     for number in first..window.ready() {
         // what has not become likelier than it was is about to begin (Page 1954)
         for own in shifted.iter_mut().filter(|own| own.log <= log + rare) {
-            (own.since.first, own.filter, own.log) = (number - 1, nothing, log + rare);
+            let filter = delayed(law, window, number, own.since.later, &nothing);
+            (own.since.first, own.filter, own.log) = (number - 1, filter, log + rare);
         }
         log += step(law, &window.observation(number), &mut nothing);
         for Shifted { since, filter, log } in &mut shifted {
@@ -80,6 +82,14 @@ fn likeliest(law: &Expected, window: &Window, first: u64) -> Option<(Lateness, f
     }
     let best = shifted.into_iter().max_by(|a, b| a.log.total_cmp(&b.log));
     best.map(|best| (best.since, best.log - log))
+}
+
+/// The filter before sample `number` of a motion that begins to come late with it: where that was so long before.
+fn delayed(law: &Expected, window: &Window, number: u64, later: i64, filter: &Filter) -> Filter {
+    let time = law.delay(later as f64) * window.pace();
+    let State { q, qd } = filter.state();
+    let qdd = law.motion.acceleration(State { q, qd }, window.sample(number - 1).excitation);
+    Filter { mean: [q - time * qd, qd - time * qdd], ..*filter }
 }
 
 /// A filter under which F acts at another time since a sample, and its log-likelihood.
@@ -92,4 +102,70 @@ struct Shifted {
 fn step(law: &Expected, observation: &Observation, filter: &mut Filter) -> f64 {
     let law = Expected { noise: law.noise_with(observation.unseen, filter.mean[0]), ..*law };
     take(&law, observation, filter)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimation::Noise;
+    use crate::identify::sample::Sample;
+    use crate::identify::settings::Channels;
+    use crate::law::{Hold, Motion, Term};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::StandardNormal;
+
+    const TERMS: [Term; 3] = [Term::Inertia, Term::power(0, 1), Term::power(1, 0)];
+    const LAW: [f64; 3] = [1.0, 0.3, 4.0];
+    const NOISE: f64 = 0.01;
+    const BEGINS: usize = 300;
+
+    /// An oscillator under white noise, from a sample on with F that comes so many samples late.
+    fn window(late: usize) -> Window {
+        let mut window = Window::new(1000, Channels::ALL, Hold::Zero);
+        let mut generator = ChaCha8Rng::seed_from_u64(18);
+        let (mut state, mut forces) = (State { q: 1.0, qd: 0.0 }, vec![0.0]);
+        for number in 0..BEGINS + 100 {
+            state = Motion::new(&TERMS, &LAW).step_linear(state, 1e-3, forces[number], forces[number]);
+            let mut noise = || generator.sample::<f64, _>(StandardNormal);
+            let (q, qd) = (state.q + NOISE * noise(), state.qd + NOISE * noise());
+            forces.push(20.0 * noise());
+            let read = if number > BEGINS { number + 1 - late } else { number + 1 };
+            window.push(Sample { t: 1e-3 * number as f64, q, qd, excitation: forces[read] });
+        }
+        window
+    }
+
+    fn found(window: &Window) -> (Lateness, f64) {
+        let law = Expected {
+            motion: Motion::new(&TERMS, &LAW),
+            noise: Noise { sensor: [NOISE * NOISE; 2], process: 1e-9 },
+            caution: 1.0,
+            switch: [4.0, 0.5],
+            rate: 2.0,
+            size: [1.0, 2.0],
+            drive: 1.0,
+            unnoticed: 0.0,
+            stuck: None,
+            parts: 1,
+            lag: 0.0,
+            alone: None,
+        };
+        LateChannels::default().weigh(&law, window, (BEGINS as u64, 0.0), None).unwrap()
+    }
+
+    #[test]
+    fn a_force_that_begins_to_come_late_is_found_with_the_sample_at_which_it_does() {
+        for late in [1, 2] {
+            let (own, odds) = found(&window(late));
+            assert!(own.later == -(late as i64) && own.first.abs_diff(BEGINS as u64) < 4, "{own:?}");
+            assert!(odds > 20.0, "{odds}");
+        }
+    }
+
+    #[test]
+    fn nothing_comes_late_where_nothing_happens() {
+        let (own, odds) = found(&window(0));
+        assert!(odds < -10.0, "{own:?} {odds}");
+    }
 }

@@ -53,3 +53,4 @@ pub use quarantine::{Against, Quarantine};
 pub use repetition::Repetition;
 pub use sender::Sender;
 pub use standing_force::StandingForce;
+pub use weighing::CERTAIN;

@@ -140,6 +140,7 @@ impl MotionAlone {
             unnoticed: 0.0,
             stuck: None,
             parts: 1,
+            lag: 0.0,
             alone: Some(roughness),
         };
         Expected { noise: expected.noise_with(unseen, 0.0), ..expected }

@@ -5,7 +5,9 @@ use super::state::{Intake, Tracker};
 use crate::estimation::{Channel, Filter, Innovation, Observation, TWENTY_TO_ONE};
 use crate::evidence::{INERTIA_SPREAD, Suspect};
 use crate::identify::change::LawInUse;
-use crate::identify::faults::{DECISIVE, Expected, Found, Lateness, Returned, Standing, StandingForce, settled};
+use crate::identify::faults::{
+    CERTAIN, DECISIVE, Expected, Found, Lateness, Returned, Standing, StandingForce, settled,
+};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::segment::MotionScales;
@@ -40,6 +42,7 @@ pub(super) fn expected<'a>(
         unnoticed: 0.0,
         stuck: None,
         parts: law.run.parts,
+        lag: problem.timing.lag,
         alone: None,
     }
 }
@@ -127,14 +130,16 @@ impl Tracker {
         self.monitor.bank.look_at_all();
         let suspect = self.monitor.bank.suspect().unwrap_or(*suspect);
         let caution = self.decision().caution();
-        let Tracker { intake, window, monitor, segment, .. } = self;
+        let Tracker { intake, window, monitor, segment, regime, .. } = self;
         let law = &monitor.law;
         let expected = expected(problem, law, caution, &segment.scales, intake.quarantine.size());
         let switch = (suspect.start, suspect.evidence / caution);
         let Found { odds, law, is_burst } = intake.hindsight.weigh(&expected, window, switch);
         let late = intake.late_channels.weigh(&expected, window, (suspect.start, law), monitor.unusual_since);
+        // a law that may be another one says nothing of when F acted
+        let late = late.filter(|_| !regime.is_unconfirmed());
         let late = late.filter(|(late, own)| *own > odds && problem.timing.moved(late, 0).is_some());
-        intake.late = late.filter(|(_, odds)| *odds > TWENTY_TO_ONE).map(|(late, _)| late);
+        intake.late = late.filter(|(_, odds)| *odds > CERTAIN).map(|(late, _)| late);
         if late.is_none() && odds > TWENTY_TO_ONE {
             if is_burst {
                 self.leave_out_burst();
@@ -148,8 +153,13 @@ impl Tracker {
     /// A channel has begun to come late: so it does in the record from then on, and the law stays.
     pub(super) fn begin_late(&mut self, problem: &mut Problem, late: &Lateness) {
         let Some(moved) = problem.timing.moved(late, self.record_length()) else { return };
+        let delay = moved.delay() - problem.timing.delay();
         problem.timing = moved;
         self.window.set_later(late.first, late.later as f64);
+        // a motion whose readings begin to come late has stood still in them
+        if delay != 0.0 && late.first + 1 < self.window.end() {
+            self.window.break_off(late.first + 1);
+        }
         let caution = self.decision().caution();
         let Tracker { intake, window, monitor, segment, .. } = self;
         let expected = expected(problem, &monitor.law, caution, &segment.scales, intake.quarantine.size());
