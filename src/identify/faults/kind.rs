@@ -107,8 +107,8 @@ impl Kind {
         matches!(self, Kind::Late(_))
     }
 
-    /// Whether what acts in its own interval is not what was read of F: of the one in which a channel begins to come late
-    /// nobody knows that either.
+    /// Whether what acts in its own interval is not what was read of F: of the one in which a channel begins to come
+    /// late nobody knows that either.
     pub fn is_unread(self) -> bool {
         self == Kind::Glitch || self.is_late()
     }

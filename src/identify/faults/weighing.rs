@@ -8,8 +8,8 @@ use super::price::event;
 use crate::estimation::{Channel, Filter, TWENTY_TO_ONE, log_sum};
 use serde::{Deserialize, Serialize};
 
-/// What is told for good needs these log-odds: an offset that is taken off, from a motion that was kicked, and a channel
-/// that comes late, from a burst that looks like it for two readings.
+/// What is told for good needs these log-odds: an offset that is taken off, from a motion that was kicked, and a
+/// channel that comes late, from a burst that looks like it for two readings.
 pub const CERTAIN: f64 = 10.0;
 
 /// Log-odds of what begins in an interval of `dt` s against either of those by which nothing happens. Those share what
@@ -113,8 +113,8 @@ impl Weighing {
     }
 
     /// The place of what is named: the law against all faults, or one fault against the law and all others. A force
-    /// that was not read and one that was misread leave the same record: neither has to be told from the other, nor from
-    /// a channel that begins to come late, which has to be told from them.
+    /// that was not read and one that was misread leave the same record: neither has to be told from the other, nor
+    /// from a channel that begins to come late, which has to be told from them.
     pub fn named(&self) -> Option<usize> {
         let odds = self.law_against_fault();
         if odds.is_nan() || odds.abs() < TWENTY_TO_ONE {

@@ -124,8 +124,8 @@ impl Tracker {
     }
 
     /// Whether channels that have begun to come late, a burst of readings that were not far enough off to be held, or
-    /// louder sensors, are as likely as what speaks for a switch, as rare as that: what is a burst's does not count, and
-    /// what cannot be told yet waits.
+    /// louder sensors, are as likely as what speaks for a switch, as rare as that: what is a burst's does not count,
+    /// and what cannot be told yet waits.
     fn is_late_or_burst(&mut self, problem: &Problem, suspect: &Suspect) -> bool {
         self.monitor.bank.look_at_all();
         let suspect = self.monitor.bank.suspect().unwrap_or(*suspect);
