@@ -71,7 +71,8 @@ fn a_force_that_is_found_to_come_late_leaves_no_kick_in_the_record() {
     }
 }
 
-/// With a sample in mid-stream F, or q and q̇, begin to come late: the law is the one it was, and its next switch counts.
+/// With a sample in mid-stream F, or q and q̇, begin to come late: the law is the one it was, and its next switch
+/// counts.
 #[test]
 fn a_channel_that_begins_to_come_late_is_no_switch_and_hides_none() {
     let late = SensorState::Late;
