@@ -8,9 +8,12 @@ use crate::estimation::{Lag, TWENTY_TO_ONE, log_sum};
 use crate::law::Hold;
 use serde::{Deserialize, Serialize};
 
-/// Samples that F may act later and earlier than it comes: by two, and by what a hold adds to that.
-const LATEST: f64 = 2.5;
-const EARLIEST: f64 = -2.0;
+/// Samples that F may be told to act later and earlier than it comes: by one, and by what a hold adds to that.
+const LATEST: f64 = 1.5;
+const EARLIEST: f64 = -1.0;
+
+/// Samples that are kept for an F that acts at another time: where it begins to it may by one more.
+const FARTHEST: f64 = 2.0;
 
 /// Std of a lag that nobody has told yet, in samples: that of a hold.
 const UNTOLD: f64 = 0.5;
@@ -19,8 +22,8 @@ const UNTOLD: f64 = 0.5;
 /// better, and without noise a record would tell a lag of that size.
 const EXACT: f64 = 0.01;
 
-/// What else than is assumed F may do: ten multiples of half a sample, and any lag.
-const RIVALS: usize = 11;
+/// What else than is assumed F may do: six multiples of half a sample, and any lag.
+const RIVALS: usize = 7;
 
 /// What is assumed of F.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,7 +61,7 @@ impl Timing {
     /// than can be set right, or where F is interpolated from samples to come.
     pub fn moved(&self, late: &Lateness, samples: u64) -> Option<Timing> {
         let lag = self.lag + late.later as f64;
-        let is_told = self.hold != Hold::BandLimited && (EARLIEST..=LATEST).contains(&lag);
+        let is_told = self.hold != Hold::BandLimited && lag.abs() <= FARTHEST;
         is_told.then_some(Timing { lag, told_by: samples, is_confirmed: true, ..*self })
     }
 
@@ -247,7 +250,7 @@ mod tests {
     fn what_is_left_open_is_the_prior_before_a_record_and_the_lag_itself_after_it() {
         let held = Timing::new(Hold::Zero);
         let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.01;
-        assert!(near(held.left_open(&Lag::UNKNOWN), 0.2220), "{}", held.left_open(&Lag::UNKNOWN));
+        assert!(near(held.left_open(&Lag::UNKNOWN), 0.2169), "{}", held.left_open(&Lag::UNKNOWN));
         assert!(near(held.left_open(&found(0.3)), 0.09), "{}", held.left_open(&found(0.3)));
         assert!(near(held.left_open(&found(0.0)), 0.043 * 0.0223_f64.powi(2)), "{}", held.left_open(&found(0.0)));
         let told = held.corrected(&found(-0.25), 1000).unwrap();
