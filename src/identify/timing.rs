@@ -52,11 +52,6 @@ impl Timing {
         self.lag + if self.hold == Hold::Zero { 0.5 } else { 0.0 }
     }
 
-    /// Samples that q and q̇ come late by.
-    pub fn delay(&self) -> f64 {
-        self.lag.max(0.0)
-    }
-
     /// What is assumed once a channel has begun to come late, after so many samples of the record; none of what is more
     /// than can be set right, or where F is interpolated from samples to come.
     pub fn moved(&self, late: &Lateness, samples: u64) -> Option<Timing> {

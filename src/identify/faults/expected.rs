@@ -72,11 +72,6 @@ impl Expected<'_> {
         SETTLED_ERROR * acceleration * acceleration
     }
 
-    /// Samples by which q and q̇ come later than before where F acts that much later: the rest is F's, come earlier.
-    pub fn delay(&self, later: f64) -> f64 {
-        (self.lag + later).max(0.0) - self.lag.max(0.0)
-    }
-
     /// The filter of (q, q̇) after an interval of the law in use.
     pub fn carry(&self, filter: &Filter, dt: f64, drive: &Drive) -> Filter {
         let mut filter = *filter;
@@ -146,6 +141,12 @@ impl Expected<'_> {
         let mass = self.mass(q);
         Noise { process: self.noise.process + unseen / (mass * mass), ..self.noise }
     }
+}
+
+/// Samples by which q and q̇ come later than before where F, which acts so many samples later than it comes, does so by
+/// `later` more: what is left of that is F's, which comes earlier.
+pub fn delay(lag: f64, later: f64) -> f64 {
+    (lag + later).max(0.0) - lag.max(0.0)
 }
 
 /// What an interval makes of a small change of (q, q̇), where q̈ changes so by them.

@@ -6,7 +6,7 @@
 //! it was as F did. Under "a channel has an offset" u₀ is the offset. Where no law is known q̈ is u₀ + u₁ F under all
 //! of them (`motion_alone`).
 
-use super::expected::Expected;
+use super::expected::{Expected, delay};
 use super::kind::Kind;
 use super::price::{Burst, SCATTER, event, faulty, working};
 use crate::estimation::{Channel, Filter};
@@ -106,11 +106,10 @@ impl Hypothesis {
             }
             Kind::Misfit => covariance[2][2] = law.misfit(),
             Kind::ForceStuck => self.suppose_stuck(law),
-            // a motion that comes late has stood still
             Kind::Late(later) => {
-                // a motion that begins to come late is where it was
+                // a motion that begins to come late has stood still
                 let [q, qd, ..] = &mut self.believed.mean;
-                *q -= law.delay(f64::from(later)) * dt * *qd;
+                *q -= delay(law.lag, f64::from(later)) * dt * *qd;
             }
             Kind::Offset(channel) => covariance[2][2] = law.size[channel as usize].powi(2),
             _ => {}

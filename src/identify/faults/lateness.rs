@@ -5,7 +5,7 @@
 //! as it comes and shifted by whole samples from some instant on, are scored on the same readings, and what the shifted
 //! ones gain is set against the log-odds of another law.
 
-use super::expected::Expected;
+use super::expected::{Expected, delay};
 use super::hindsight::{settled, take};
 use super::price::event;
 use crate::estimation::{Filter, Observation};
@@ -86,7 +86,7 @@ fn likeliest(law: &Expected, window: &Window, first: u64) -> Option<(Lateness, f
 
 /// The filter before sample `number` of a motion that begins to come late with it: where that was so long before.
 fn delayed(law: &Expected, window: &Window, number: u64, later: i64, filter: &Filter) -> Filter {
-    let time = law.delay(later as f64) * window.pace();
+    let time = delay(law.lag, later as f64) * window.pace();
     let State { q, qd } = filter.state();
     let qdd = law.motion.acceleration(State { q, qd }, window.sample(number - 1).excitation);
     Filter { mean: [q - time * qd, qd - time * qdd], ..*filter }

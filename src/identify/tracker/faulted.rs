@@ -6,7 +6,7 @@ use crate::estimation::{Channel, Filter, Innovation, Observation, TWENTY_TO_ONE}
 use crate::evidence::{INERTIA_SPREAD, Suspect};
 use crate::identify::change::LawInUse;
 use crate::identify::faults::{
-    CERTAIN, DECISIVE, Expected, Found, Lateness, Returned, Standing, StandingForce, settled,
+    CERTAIN, DECISIVE, Expected, Found, Lateness, Returned, Standing, StandingForce, delay, settled,
 };
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
@@ -153,12 +153,14 @@ impl Tracker {
     /// A channel has begun to come late: so it does in the record from then on, and the law stays.
     pub(super) fn begin_late(&mut self, problem: &mut Problem, late: &Lateness) {
         let Some(moved) = problem.timing.moved(late, self.record_length()) else { return };
-        let delay = moved.delay() - problem.timing.delay();
-        problem.timing = moved;
-        self.window.set_later(late.first, late.later as f64);
+        let later = late.later as f64;
         // a motion whose readings begin to come late has stood still in them
-        if delay != 0.0 && late.first + 1 < self.window.end() {
-            self.window.break_off(late.first + 1);
+        let stood_still = delay(problem.timing.lag, later) != 0.0;
+        problem.timing = moved;
+        self.window.set_later(late.first, later);
+        let goes_on = late.first + 1;
+        if stood_still && (self.window.oldest()..self.window.end()).contains(&goes_on) {
+            self.window.break_off(goes_on);
         }
         let caution = self.decision().caution();
         let Tracker { intake, window, monitor, segment, .. } = self;

@@ -131,7 +131,7 @@ impl Tracker {
         intake.quarantine.take(reading, problem.timing.hold, window.pace(), against);
         let (in_doubt, is_stuck) = (intake.quarantine.is_in_doubt(), intake.quarantine.found_stuck_force());
         if let Some((later, since)) = intake.quarantine.found_late() {
-            let first = window.end() + intake.quarantine.behind() as u64 - since as u64;
+            let first = (window.end() + intake.quarantine.behind() as u64).saturating_sub(since as u64);
             intake.late = Some(Lateness { later: later.into(), first });
         }
         let kicked = intake.quarantine.found_kick() && !by_law;
