@@ -143,6 +143,27 @@ impl Expected<'_> {
     }
 }
 
+#[cfg(test)]
+impl<'a> Expected<'a> {
+    /// A law known for sure of 2 rad/s, in a motion of size 1 under sensors of that std, where nothing is open.
+    pub fn of_oscillator(motion: Motion<'a>, noise: f64) -> Expected<'a> {
+        Expected {
+            motion,
+            noise: Noise { sensor: [noise * noise; 2], process: 1e-9 },
+            caution: 1.0,
+            switch: [4.0, 0.5],
+            rate: 2.0,
+            size: [1.0, 2.0],
+            drive: 1.0,
+            unnoticed: 0.0,
+            stuck: None,
+            parts: 1,
+            lag: 0.0,
+            alone: None,
+        }
+    }
+}
+
 /// Samples by which q and q̇ come later than before where F, which acts so many samples later than it comes, does so by
 /// `later` more: what is left of that is F's, which comes earlier.
 pub fn delay(lag: f64, later: f64) -> f64 {

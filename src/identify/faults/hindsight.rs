@@ -166,7 +166,6 @@ pub(super) fn take(law: &Expected, observation: &Observation, filter: &mut Filte
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimation::Noise;
     use crate::identify::sample::Sample;
     use crate::identify::settings::Channels;
     use crate::law::{Hold, Motion, State, Term};
@@ -203,20 +202,7 @@ mod tests {
     }
 
     fn found(hindsight: &mut Hindsight, window: &Window, evidence: f64) -> Found {
-        let law = Expected {
-            motion: Motion::new(&TERMS, &[1.0, 0.3, 4.0]),
-            noise: Noise { sensor: [NOISE * NOISE; 2], process: 1e-9 },
-            caution: 1.0,
-            switch: [4.0, 0.5],
-            rate: 2.0,
-            size: [1.0, 2.0],
-            drive: 1.0,
-            unnoticed: 0.0,
-            stuck: None,
-            parts: 1,
-            lag: 0.0,
-            alone: None,
-        };
+        let law = Expected::of_oscillator(Motion::new(&TERMS, &[1.0, 0.3, 4.0]), NOISE);
         hindsight.weigh(&law, window, (BEFORE_IT, evidence))
     }
 

@@ -107,7 +107,6 @@ fn step(law: &Expected, observation: &Observation, filter: &mut Filter) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimation::Noise;
     use crate::identify::sample::Sample;
     use crate::identify::settings::Channels;
     use crate::law::{Hold, Motion, Term};
@@ -137,20 +136,7 @@ mod tests {
     }
 
     fn found(window: &Window) -> (Lateness, f64) {
-        let law = Expected {
-            motion: Motion::new(&TERMS, &LAW),
-            noise: Noise { sensor: [NOISE * NOISE; 2], process: 1e-9 },
-            caution: 1.0,
-            switch: [4.0, 0.5],
-            rate: 2.0,
-            size: [1.0, 2.0],
-            drive: 1.0,
-            unnoticed: 0.0,
-            stuck: None,
-            parts: 1,
-            lag: 0.0,
-            alone: None,
-        };
+        let law = Expected::of_oscillator(Motion::new(&TERMS, &LAW), NOISE);
         LateChannels::default().weigh(&law, window, (BEGINS as u64, 0.0), None).unwrap()
     }
 
