@@ -4,7 +4,7 @@ use super::check::BuildError;
 use super::identifier::Identifier;
 use super::library::SavedLaws;
 use super::recording::Recording;
-use super::report::{ByQuantity, CHANNELS, Coefficient, SensorState};
+use super::report::{ByQuantity, CHANNELS, Coefficient, SensorState, Status};
 use super::sample::Skipped;
 use super::settings::{Method, Settings};
 use crate::estimation::Missing;
@@ -234,6 +234,7 @@ fn follow(
         watch(&identifier, index);
     }
     present.unidentifiable = identifier.unidentifiable();
+    present.valid = identifier.output().valid;
     found.stages.push(present);
     found.known_laws = identifier.known_laws();
     let (now, before) = (identifier.output().noise, found.noise);
@@ -273,7 +274,11 @@ fn renew(stage: &mut Stage, identifier: &Identifier, t: f64) {
     let output = identifier.output();
     stage.identified = output.identified_time;
     (stage.law_number, stage.recognised) = (output.law_number, output.recognised);
-    (stage.drifting, stage.valid, stage.explained) = (output.drifting, output.valid, output.explained);
+    (stage.drifting, stage.explained) = (output.drifting, output.explained);
+    // what is held while a switch is suspected may be of the next stage
+    if output.status != Status::SwitchSuspected {
+        stage.valid = output.valid;
+    }
     stage.missing = output.missing;
     stage.coefficients.copy_from_slice(identifier.coefficients());
 }

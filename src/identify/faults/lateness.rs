@@ -7,7 +7,7 @@
 
 use super::expected::{Expected, delay};
 use super::hindsight::{settled, take};
-use super::price::event;
+use super::price::delay_changes;
 use crate::estimation::{Filter, Observation};
 use crate::identify::window::Window;
 use crate::law::State;
@@ -16,11 +16,11 @@ use serde::{Deserialize, Serialize};
 /// Samples by which F may act later from one sample to the next.
 const LATER: [i64; 4] = [-2, -1, 1, 2];
 
+/// Samples after one until all of F is known that may act there.
+const FARTHEST: u64 = 2;
+
 /// Samples before the suspected instant in which a channel may have begun to come late, at least.
 const BEFORE: u64 = 8;
-
-/// A suspicion that lasts is weighed again once it is longer by this part of itself.
-const AGAIN: u64 = 8;
 
 /// Since when F acts at another time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -31,15 +31,13 @@ pub struct Lateness {
     pub first: u64,
 }
 
-/// Whether a channel has begun to come late, as last weighed.
+/// Whether a channel has begun to come late while a switch is suspected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LateChannels {
-    /// The likeliest, and its log-odds against another law.
-    found: Option<(Lateness, f64)>,
-    /// Since when a switch was suspected then.
+    /// Since when a switch is suspected.
     suspected: Option<u64>,
-    /// Number of the sample at which that is weighed again.
-    again: u64,
+    /// What the readings say up to where all of F is known that may act.
+    weighed: Option<Weighed>,
 }
 
 impl LateChannels {
@@ -52,36 +50,76 @@ impl LateChannels {
         (switch, odds): (u64, f64),
         suspected: Option<u64>,
     ) -> Option<(Lateness, f64)> {
-        if self.suspected != suspected || window.end() >= self.again {
-            // what came later than it began may be what speaks for another law most
-            let since = window.ready().saturating_sub(switch).max(BEFORE);
-            let found = likeliest(law, window, switch.saturating_sub(since));
-            self.found = found.map(|(late, gain)| (late, gain - odds));
-            (self.suspected, self.again) = (suspected, window.end() + since / AGAIN);
-        }
-        self.found
+        let ready = window.ready();
+        // what came later than it began may be what speaks for another law most
+        let since = ready.saturating_sub(switch).max(BEFORE);
+        let first = switch.saturating_sub(since).max(window.resumed() + 1);
+        let goes_on = self.weighed.filter(|weighed| self.suspected == suspected && weighed.may_begin_in(first, switch));
+        let mut weighed = goes_on.unwrap_or_else(|| Weighed::begin(law, window, first));
+        weighed.go_on(law, window, ready.saturating_sub(FARTHEST));
+        *self = LateChannels { suspected, weighed: Some(weighed) };
+        weighed.go_on(law, window, ready);
+        weighed.likeliest().map(|(late, gain)| (late, gain - odds))
     }
 }
 
-/// The likeliest from sample `first` on, and what it gains on a law under which nothing comes late, nats.
-fn likeliest(law: &Expected, window: &Window, first: u64) -> Option<(Lateness, f64)> {
-    let first = first.max(window.resumed() + 1);
-    let rare = event(window.pace()).ln();
-    let (mut nothing, mut log) = (settled(law, window, first), 0.0);
-    let mut shifted = LATER.map(|later| Shifted { since: Lateness { later, first }, filter: nothing, log: rare });
-    for number in first..window.ready() {
-        // what has not become likelier than it was is about to begin (Page 1954)
-        for own in shifted.iter_mut().filter(|own| own.log <= log + rare) {
-            let filter = delayed(law, window, number, own.since.later, &nothing);
-            (own.since.first, own.filter, own.log) = (number - 1, filter, log + rare);
-        }
-        log += step(law, &window.observation(number), &mut nothing);
-        for Shifted { since, filter, log } in &mut shifted {
-            *log += step(law, &window.observation_with(number, since.later), filter);
-        }
+/// What readings say of channels that have begun to come late in them.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Weighed {
+    /// Numbers of the first of them, and of the one to come.
+    numbers: [u64; 2],
+    /// Under a law in which nothing comes late.
+    nothing: Filter,
+    log: f64,
+    shifted: [Shifted; LATER.len()],
+}
+
+/// A filter under which F acts at another time since a sample, and its log-likelihood.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Shifted {
+    since: Lateness,
+    filter: Filter,
+    log: f64,
+}
+
+impl Weighed {
+    fn begin(law: &Expected, window: &Window, first: u64) -> Weighed {
+        let nothing = settled(law, window, first);
+        let log = delay_changes(window.pace()).ln();
+        let shifted = LATER.map(|later| Shifted { since: Lateness { later, first }, filter: nothing, log });
+        Weighed { numbers: [first; 2], nothing, log: 0.0, shifted }
     }
-    let best = shifted.into_iter().max_by(|a, b| a.log.total_cmp(&b.log));
-    best.map(|best| (best.since, best.log - log))
+
+    /// Whether a channel that begins to come late from sample `first` on is weighed, or before a switch at the latest,
+    /// in readings that go on.
+    fn may_begin_in(&self, first: u64, switch: u64) -> bool {
+        let [begun, next] = self.numbers;
+        begun <= switch && first <= next
+    }
+
+    /// Takes the window's readings up to one before sample `end`.
+    fn go_on(&mut self, law: &Expected, window: &Window, end: u64) {
+        let Weighed { numbers: [_, next], nothing, log, shifted } = self;
+        let rare = delay_changes(window.pace()).ln();
+        for number in *next..end {
+            // what has not become likelier than it was is about to begin (Page 1954)
+            for own in shifted.iter_mut().filter(|own| own.log <= *log + rare) {
+                let filter = delayed(law, window, number, own.since.later, nothing);
+                (own.since.first, own.filter, own.log) = (number - 1, filter, *log + rare);
+            }
+            *log += step(law, &window.observation(number), nothing);
+            for Shifted { since, filter, log } in &mut *shifted {
+                *log += step(law, &window.observation_with(number, since.later), filter);
+            }
+        }
+        *next = end.max(*next);
+    }
+
+    /// The likeliest, and what it gains on a law under which nothing comes late, nats.
+    fn likeliest(&self) -> Option<(Lateness, f64)> {
+        let best = self.shifted.iter().max_by(|a, b| a.log.total_cmp(&b.log));
+        best.map(|best| (best.since, best.log - self.log))
+    }
 }
 
 /// The filter before sample `number` of a motion that begins to come late with it: where that was so long before.
@@ -90,13 +128,6 @@ fn delayed(law: &Expected, window: &Window, number: u64, later: i64, filter: &Fi
     let State { q, qd } = filter.state();
     let qdd = law.motion.acceleration(State { q, qd }, window.sample(number - 1).excitation);
     Filter { mean: [q - time * qd, qd - time * qdd], ..*filter }
-}
-
-/// A filter under which F acts at another time since a sample, and its log-likelihood.
-struct Shifted {
-    since: Lateness,
-    filter: Filter,
-    log: f64,
 }
 
 fn step(law: &Expected, observation: &Observation, filter: &mut Filter) -> f64 {

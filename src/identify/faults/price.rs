@@ -19,6 +19,12 @@ pub fn event(dt: f64) -> f64 {
     (dt / SELDOM).min(UNLIKELY)
 }
 
+/// Probability that a channel begins to come late in an interval of `dt` s: delays are set with a rig and its clocks,
+/// and change in mid-stream a hundred times less often than a law or a reading.
+pub fn delay_changes(dt: f64) -> f64 {
+    1e-2 * event(dt)
+}
+
 /// Log-density of a Gaussian residual.
 pub fn working(residual: f64, variance: f64) -> f64 {
     -0.5 * (residual * residual / variance + (TAU * variance).ln())

@@ -4,7 +4,7 @@ use super::arrival::Arrival;
 use super::expected::Expected;
 use super::hypothesis::Hypothesis;
 use super::kind::Kind;
-use super::price::event;
+use super::price::{delay_changes, event};
 use crate::estimation::{Channel, Filter, TWENTY_TO_ONE, log_sum};
 use serde::{Deserialize, Serialize};
 
@@ -20,6 +20,7 @@ fn odds(kind: Kind, dt: f64) -> f64 {
         kind if kind.is_no_event() => 0.0,
         // a switch that is so many times as large is so many times as rare
         Kind::Law { times, .. } => (event(dt) * many(Kind::is_no_event) / (many(Kind::is_law) * f64::from(times))).ln(),
+        Kind::Late(_) => (delay_changes(dt) * many(Kind::is_no_event)).ln(),
         _ => (event(dt) * many(Kind::is_no_event)).ln(),
     }
 }
