@@ -36,6 +36,16 @@ fn converted_values_are_si() {
 }
 
 #[test]
+fn a_stage_is_valid_whatever_is_held_for_the_next() {
+    let bench = Bench::new("held");
+    bench.write("model.toml", MODEL);
+    bench.json(&["simulate", "duffing-sine", "--noise", "0.001", "-o", "record.csv", "--json"]);
+    let found = bench.json(&["identify", "record.csv", "--model", "model.toml", "--json"]);
+    let valid: Vec<_> = found["stages"].as_array().unwrap().iter().map(|stage| &stage["valid"]).collect();
+    assert_eq!(valid, [true; 5]);
+}
+
+#[test]
 fn a_record_without_excitation_is_free_motion_and_says_so() {
     let bench = Bench::new("free");
     bench.write("zero.csv", &csv("t,q,qd,F", 500, |_, cells| cells[3] = "0".into()));
