@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 const LATER: [i64; 4] = [-2, -1, 1, 2];
 
 /// Samples after one until all of F is known that may act there.
-const FARTHEST: u64 = 2;
+const AHEAD: u64 = LATER[LATER.len() - 1] as u64;
 
 /// Samples before the suspected instant in which a channel may have begun to come late, at least.
 const BEFORE: u64 = 8;
@@ -56,7 +56,7 @@ impl LateChannels {
         let first = switch.saturating_sub(since).max(window.resumed() + 1);
         let goes_on = self.weighed.filter(|weighed| self.suspected == suspected && weighed.may_begin_in(first, switch));
         let mut weighed = goes_on.unwrap_or_else(|| Weighed::begin(law, window, first));
-        weighed.go_on(law, window, ready.saturating_sub(FARTHEST));
+        weighed.go_on(law, window, ready.saturating_sub(AHEAD));
         *self = LateChannels { suspected, weighed: Some(weighed) };
         weighed.go_on(law, window, ready);
         weighed.likeliest().map(|(late, gain)| (late, gain - odds))
@@ -150,12 +150,12 @@ mod tests {
     const NOISE: f64 = 0.01;
     const BEGINS: usize = 300;
 
-    /// An oscillator under white noise, from a sample on with F that comes so many samples late.
-    fn window(late: usize) -> Window {
+    /// An oscillator under white noise, from a sample on with F that comes so many samples late, and so many after it.
+    fn window(late: usize, after: usize) -> Window {
         let mut window = Window::new(1000, Channels::ALL, Hold::Zero);
         let mut generator = ChaCha8Rng::seed_from_u64(18);
         let (mut state, mut forces) = (State { q: 1.0, qd: 0.0 }, vec![0.0]);
-        for number in 0..BEGINS + 100 {
+        for number in 0..BEGINS + after {
             state = Motion::new(&TERMS, &LAW).step_linear(state, 1e-3, forces[number], forces[number]);
             let mut noise = || generator.sample::<f64, _>(StandardNormal);
             let (q, qd) = (state.q + NOISE * noise(), state.qd + NOISE * noise());
@@ -174,15 +174,29 @@ mod tests {
     #[test]
     fn a_force_that_begins_to_come_late_is_found_with_the_sample_at_which_it_does() {
         for late in [1, 2] {
-            let (own, odds) = found(&window(late));
+            let (own, odds) = found(&window(late, 100));
             assert!(own.later == -(late as i64) && own.first.abs_diff(BEGINS as u64) < 4, "{own:?}");
             assert!(odds > 20.0, "{odds}");
         }
     }
 
     #[test]
+    fn readings_that_come_one_by_one_say_what_they_say_together() {
+        let law = Expected::of_oscillator(Motion::new(&TERMS, &LAW), NOISE);
+        for late in [1, 2] {
+            let last = |afters: &[usize]| {
+                let mut channels = LateChannels::default();
+                let mut weigh = |after| channels.weigh(&law, &window(late, after), (BEGINS as u64, 0.0), Some(0));
+                afters.iter().map(|after| weigh(*after).unwrap()).last().unwrap()
+            };
+            let each: Vec<usize> = (20..=100).collect();
+            assert_eq!(last(&each), last(&[20, 100]));
+        }
+    }
+
+    #[test]
     fn nothing_comes_late_where_nothing_happens() {
-        let (own, odds) = found(&window(0));
+        let (own, odds) = found(&window(0, 100));
         assert!(odds < -10.0, "{own:?} {odds}");
     }
 }
