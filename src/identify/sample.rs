@@ -9,7 +9,7 @@ pub const GAP: f64 = 4.5;
 
 /// Readings that do not come, or do not count, for so many usual distances are an outage: the law may have switched
 /// within, and nothing says when.
-const OUTAGE: f64 = 50.0;
+pub const OUTAGE: f64 = 50.0;
 
 /// Share of an interval in the usual one: that follows another rate of sampling within 20 samples.
 pub const PACE_SHARE: f64 = 0.05;

@@ -1,6 +1,6 @@
 //! Time stamps: one that is far ahead alone is none; a clock that was set back goes on from where it was.
 
-use crate::identify::sample::{PACE_SHARE, Skipped};
+use crate::identify::sample::{OUTAGE, PACE_SHARE, Skipped};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -25,6 +25,9 @@ pub struct Clock {
     /// The usual step, s, and how many it is known from.
     pace: f64,
     known: u32,
+    /// Another step, s, and how many have been like it since one was like the usual.
+    other: f64,
+    others: u32,
     /// The last stamp that was not believed, the first of those that it goes on from, and how many there are.
     stray: Option<f64>,
     first: f64,
@@ -67,8 +70,9 @@ impl Clock {
         if self.steady < STEADY || stamp + self.shift > self.before {
             return None;
         }
-        // the clock was set back between the last sample of the record and the first that came before it
-        self.shift = last + self.pace - self.first;
+        // when between the last sample of the record and the first that came before it nobody knows: a sender that
+        // starts again may have been away, and whatever an outage brings may have come
+        self.shift = last + OUTAGE * self.pace - self.first;
         Some(stamp + self.shift)
     }
 
@@ -77,14 +81,24 @@ impl Clock {
         if let Some(last) = self.last {
             let step = t - last;
             self.before = last;
-            if self.pace == 0.0 || ALIKE.contains(&(step / self.pace)) {
-                self.known = (self.known + 1).min(STEADY);
-                self.pace += if self.pace == 0.0 { step } else { PACE_SHARE * (step - self.pace) };
-            } else if self.known < STEADY {
-                (self.pace, self.known) = (step, 0);
-            }
+            self.follow_pace(step);
         }
         (self.last, self.stray, self.first, self.steady) = (Some(t), None, 0.0, 0);
+    }
+
+    /// Steps in a row that are alike and not like the usual one are the new clock.
+    fn follow_pace(&mut self, step: f64) {
+        let is_alike = |other: f64| ALIKE.contains(&(step / other));
+        if self.pace == 0.0 || is_alike(self.pace) {
+            self.known = (self.known + 1).min(STEADY);
+            self.pace += if self.pace == 0.0 { step } else { PACE_SHARE * (step - self.pace) };
+            self.others = 0;
+        } else {
+            (self.other, self.others) = if is_alike(self.other) { (self.other, self.others + 1) } else { (step, 0) };
+            if self.known < STEADY || self.others >= STEADY {
+                (self.pace, self.known, self.others) = (step, 0, 0);
+            }
+        }
     }
 
     /// Whether the record has had no sample for longer than is usual, at a stamp that was skipped: it is later than the
@@ -98,6 +112,7 @@ impl Clock {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identify::sample::is_outage;
 
     fn times(stamps: impl IntoIterator<Item = f64>) -> Vec<f64> {
         let mut clock = Clock::default();
@@ -150,6 +165,24 @@ mod tests {
         assert!(!clock.is_stale(0.051) && clock.is_stale(0.0525) && !clock.is_stale(f64::NAN));
         [0.011, 0.012].into_iter().for_each(|stamp| assert!(clock.time(stamp, 1e-3).is_err()));
         assert!(clock.is_stale(0.012));
+    }
+
+    /// A sender that is four times as slow from then on is not for ever late.
+    #[test]
+    fn another_rate_becomes_the_usual_one() {
+        let mut clock = Clock::default();
+        let slower = (1..50).map(|index| 0.049 + 4e-3 * f64::from(index));
+        for stamp in stamps(0.0, 50).chain(slower) {
+            let t = clock.time(stamp, 1e-3).unwrap();
+            clock.advance(t);
+        }
+        assert!(!clock.is_stale(0.245 + 6e-3) && clock.is_stale(0.245 + 12e-3));
+    }
+
+    #[test]
+    fn a_sender_that_starts_again_may_have_been_away() {
+        let seen = times(stamps(7.0, 50).chain(stamps(0.0, 50)));
+        assert!(seen.windows(2).any(|pair| is_outage(pair[1] - pair[0], 1e-3)), "{seen:?}");
     }
 
     #[test]
