@@ -3,6 +3,7 @@
 mod before_a_law;
 mod offsets;
 mod outages;
+mod silence;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -228,6 +228,11 @@ impl Quarantine {
         self.arrivals.last.map_or(0.0, |sample| sample.t)
     }
 
+    /// Time for which no reading has counted, s.
+    pub fn silence(&self) -> f64 {
+        self.now() - self.counted
+    }
+
     /// RMS of q and q̇.
     pub fn size(&self) -> [f64; 2] {
         self.squares.map(f64::sqrt)

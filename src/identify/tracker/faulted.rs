@@ -120,7 +120,26 @@ impl Tracker {
             self.lose_excitation(readings);
             return true;
         }
-        self.intake.late.is_some() || self.is_late_or_burst(problem, suspect)
+        self.stood_still(suspect) || self.intake.late.is_some() || self.is_late_or_burst(problem, suspect)
+    }
+
+    /// Whether F stood still, where it varied before, when what speaks for a switch began: it may have been stuck, and
+    /// what acted then is not known.
+    fn stood_still(&mut self, suspect: &Suspect) -> bool {
+        let began = self.window.sample(suspect.start).t;
+        let Some([from, to]) = self.intake.stood_still.filter(|[from, to]| (*from..=*to).contains(&began)) else {
+            return false;
+        };
+        self.intake.stood_still = None;
+        let count = self.count_since(from) + self.intake.quarantine.behind() as u64;
+        self.leave_open(count, to + 1.5 * self.window.pace(), self.unknown_excitation());
+        true
+    }
+
+    /// Samples of the window since that time, s.
+    fn count_since(&self, time: f64) -> u64 {
+        let numbers = (self.window.oldest()..self.window.end()).rev();
+        numbers.take_while(|number| self.window.sample(*number).t >= time).count() as u64
     }
 
     /// Whether channels that have begun to come late, a burst of readings that were not far enough off to be held, or
@@ -206,15 +225,18 @@ impl Tracker {
     /// F has not been what acts for so many readings, so that it is not known.
     pub(super) fn lose_excitation(&mut self, readings: u64) {
         self.intake.force_lost = true;
-        self.leave_open(readings, self.unknown_excitation());
+        self.leave_open(readings, f64::INFINITY, self.unknown_excitation());
     }
 
-    /// F over the last so many intervals was not what was read, but for a white force of that intensity, N² s.
-    pub(super) fn leave_open(&mut self, count: u64, unseen: f64) {
+    /// F over the last so many intervals, up to time `until`, was not what was read, but for a white force of that
+    /// intensity, N² s.
+    pub(super) fn leave_open(&mut self, count: u64, until: f64, unseen: f64) {
         let excitation = self.intake.excitation;
         let open = |Reading { sample, unseen: open, .. }: &mut Reading| {
-            *open += unseen;
-            sample.excitation = excitation.expected(sample.excitation);
+            if sample.t <= until {
+                *open += unseen;
+                sample.excitation = excitation.expected(sample.excitation);
+            }
         };
         let recorded = self.intake.quarantine.amend(count, open);
         self.window.amend(recorded, open);
@@ -251,11 +273,7 @@ impl Tracker {
         let is_first = !self.intake.after_outage.is_found();
         self.intake.quarantine.take_off(channel, offset);
         self.intake.after_outage.correct(returned);
-        let (now, since) = (self.now(), since + 0.5 * self.window.pace());
-        let first = (self.window.oldest()..self.window.end())
-            .rev()
-            .take_while(|number| now - self.window.sample(*number).t <= since);
-        let count = first.count() as u64;
+        let count = self.count_since(self.now() - since - 0.5 * self.window.pace());
         let take_off = |Reading { sample, .. }: &mut Reading| match channel {
             Channel::Q => sample.q -= offset,
             Channel::Qd => sample.qd -= offset,

@@ -2,7 +2,7 @@
 
 use super::faulted::expected;
 use super::state::{Fitting, Intake, Setup, Tracker};
-use crate::estimation::OUTLYING;
+use crate::estimation::{OUTLYING, TWENTY_TO_ONE};
 use crate::identify::faults::{Against, Expected, Lateness, Stray};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
@@ -82,14 +82,18 @@ impl Tracker {
             reading.unseen += square * dt;
             self.intake.excitation.blame();
             if readings > 1 {
-                self.leave_open(u64::from(readings - 1), square * dt);
+                self.leave_open(u64::from(readings - 1), f64::INFINITY, square * dt);
             }
         }
     }
 
     /// An F that is lost says nothing until it varies again, on its course.
     fn follow_excitation(&mut self, problem: &Problem, reading: &mut Reading) {
+        let (run, length, last) = (self.intake.force.run(), self.intake.force.length(), self.intake.quarantine.now());
         let varies = self.intake.force.take(reading.sample.excitation, f64::INFINITY, 0.0).is_none();
+        if varies && run > TWENTY_TO_ONE && !self.intake.force_lost {
+            self.intake.stood_still = Some([last - length as f64 * self.window.pace(), last]);
+        }
         if self.intake.force_lost && problem.channels.excitation {
             reading.unseen += self.unknown_excitation();
             reading.sample.excitation = self.intake.excitation.expected(reading.sample.excitation);
@@ -141,7 +145,7 @@ impl Tracker {
                 self.lose_excitation(u64::from(readings));
             }
             // without a law F as it is read may act in many ways, but not where it left its course beside a kick
-            Some(readings) if kicked => self.leave_open(u64::from(readings), self.unknown_excitation()),
+            Some(readings) if kicked => self.leave_open(u64::from(readings), f64::INFINITY, self.unknown_excitation()),
             _ if is_stuck => self.lose_excitation(self.intake.force.length()),
             _ => {}
         }
@@ -159,9 +163,12 @@ impl Tracker {
         [q, qd, force]
     }
 
-    /// Whether the law in use has been held against the last samples, and nothing is as likely as it.
+    /// Whether the law in use has been held against the last samples, of which readings counted and F was known, and
+    /// nothing is as likely as it.
     pub(super) fn is_fresh(&self) -> bool {
-        self.intake.quarantine.behind() <= FRESH && !self.intake.undecided
+        let Intake { quarantine, force_lost, undecided, .. } = &self.intake;
+        let silence = (FRESH as f64 + 0.5) * self.window.pace();
+        quarantine.behind() <= FRESH && quarantine.silence() < silence && !force_lost && !undecided
     }
 
     /// The status with what is being held: a switch is suspected as soon as that speaks for one.

@@ -91,6 +91,8 @@ pub(super) struct Intake {
     pub(super) undecided: bool,
     /// How often F repeats its value.
     pub(super) force: Repetition,
+    /// First and last time at which it did so last where it varied before, s.
+    pub(super) stood_still: Option<[f64; 2]>,
     /// Whether F has been found stuck and has not varied since.
     pub(super) force_lost: bool,
     /// Whether it acts as it is read again all the same.
@@ -202,6 +204,7 @@ impl Tracker {
                 late: None,
                 undecided: false,
                 force: Repetition::default(),
+                stood_still: None,
                 force_lost: false,
                 standing_force: StandingForce::default(),
             },
