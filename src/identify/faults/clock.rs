@@ -1,4 +1,5 @@
-//! Time stamps: one that is far ahead alone is none; a clock that was set back goes on from where it was.
+//! Time stamps: one that is far ahead alone is none; a clock that was set back goes on from where it was, after an
+//! outage.
 
 use crate::identify::sample::{OUTAGE, PACE_SHARE, Skipped};
 use serde::{Deserialize, Serialize};
