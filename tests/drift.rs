@@ -9,9 +9,14 @@ const SAMPLE_TIME: f64 = 4e-3;
 /// A Duffing oscillator under a sine for `duration` s whose linear stiffness is this function of time, in steps of 50
 /// ms.
 fn duffing(duration: f64, stiffness: impl Fn(f64) -> f64) -> Scenario {
+    moving(duration, |t| [1.0, 0.3, stiffness(t), 2.0])
+}
+
+/// One of which all coefficients are.
+fn moving(duration: f64, coefficients: impl Fn(f64) -> [f64; 4]) -> Scenario {
     let stage = |step: u32| {
         let start = 0.05 * f64::from(step);
-        Stage { start, coefficients: vec![1.0, 0.3, stiffness(start), 2.0], amplitude: 2.0, omega: 1.5 }
+        Stage { start, coefficients: coefficients(start).to_vec(), amplitude: 2.0, omega: 1.5 }
     };
     let stages = (0..(20.0 * duration) as u32).map(stage).collect();
     let mut scenario = Scenario::new("drift", Builtin::DuffingSine.terms(), stages, duration);
@@ -93,6 +98,59 @@ fn what_has_drifted_comes_to_rest() {
     let (_, last, known, truth) = after.last().unwrap();
     assert!(last.valid && !last.drifting, "{last:?}");
     assert!((known[2].value / truth[2] - 1.0).abs() < 0.02, "{known:?}");
+}
+
+/// From 20 s on for `duration` s the law moves from one to the other.
+fn between(duration: f64, [from, to]: [[f64; 4]; 2]) -> impl Fn(f64) -> [f64; 4] {
+    move |t| {
+        let part = ((t - 20.0) / duration).clamp(0.0, 1.0);
+        std::array::from_fn(|index| from[index] + part * (to[index] - from[index]))
+    }
+}
+
+/// Seconds for which it is valid and wrong, but for the first after each of these switches.
+fn wrong_for(after: &[After], switches: &[f64]) -> f64 {
+    let is_wrong = |(t, output, known, truth): &&After| {
+        let error = |(known, truth): (&Coefficient, &f64)| (known.value - truth).powi(2);
+        let e = known.iter().zip(truth).map(error).sum::<f64>() / truth.iter().map(|truth| truth * truth).sum::<f64>();
+        output.valid && e > 0.05 * 0.05 && !switches.iter().any(|switch| (*switch..switch + 1.0).contains(t))
+    };
+    SAMPLE_TIME * after.iter().filter(is_wrong).count() as f64
+}
+
+const SETTLED: [f64; 4] = [1.0, 0.3, 4.0, 2.0];
+const WORN: [[f64; 4]; 3] = [[1.25, 0.27, 4.5, 2.1], [0.85, 0.4, 4.0, 1.5], [1.1, 0.3, 5.0, 2.6]];
+
+/// Nothing in the motion under one sine tells all coefficients apart while they move: what it does not tell is not
+/// valid.
+#[test]
+fn a_law_that_moves_as_a_whole_is_not_valid_and_wrong_and_left_once_it_rests() {
+    for (seed, to) in (70..).zip(WORN) {
+        let duration = if seed == 70 { 15.0 } else { 25.0 };
+        let after = run(&moving(65.0, between(duration, [SETTLED, to])).with_seed(seed));
+        let wrong = wrong_for(&after, &[]);
+        assert!(wrong < 1.0, "{seed}: valid and wrong for {wrong} s");
+        let drifted = after.iter().rev().find(|(_, output, ..)| output.drifting).map(|(t, ..)| *t);
+        assert!(drifted.is_some_and(|t| t < 20.0 + duration + 12.0), "{seed}: until {drifted:?}");
+        assert!(after.last().unwrap().1.valid, "{seed}");
+    }
+}
+
+#[test]
+fn a_switch_within_a_drift_is_seen_at_once_and_counted() {
+    for (seed, to) in (80..).zip(WORN) {
+        let (at, drift) = (33.0, between(25.0, [SETTLED, to]));
+        let law = |t: f64| if t < at { drift(t) } else { [1.0, 0.5, 5.5, 1.2] };
+        let after = run(&moving(60.0, law).with_seed(seed));
+        assert!(after.iter().any(|(t, output, ..)| *t < at && output.drifting), "{seed}");
+        let count = |time: f64| after.iter().rev().find(|(t, ..)| *t < time).unwrap().1.switch_count;
+        let last = &after.last().unwrap().1;
+        assert_eq!(count(at + 0.5), count(at) + 1, "{seed}");
+        assert!((last.switch_time - at).abs() < 0.4, "{seed}: {last:?}");
+        assert_eq!(last.switch_count, count(at + 0.5), "{seed}");
+        let wrong = wrong_for(&after, &[at]);
+        assert!(wrong < 1.0 && last.valid && !last.drifting, "{seed}: {wrong} s, {last:?}");
+    }
 }
 
 #[test]

@@ -62,14 +62,16 @@ impl Timing {
 
     /// What is assumed once a record of so many samples tells of a lag.
     pub fn corrected(&self, found: &Lag, samples: u64) -> Option<Timing> {
-        if samples < 2 * self.told_by || self.hold == Hold::BandLimited || self.odds(found) < TWENTY_TO_ONE {
+        if samples < 2 * self.told_by || self.odds(found) < TWENTY_TO_ONE {
             return None;
         }
         let likeliest = self.likeliest(found);
         let (late, std) = (self.late() + likeliest.moved, likeliest.std);
         let hold = if (late - 0.5).fract() == 0.0 { Hold::Zero } else { Hold::Linear };
         let lag = late - if hold == Hold::Zero { 0.5 } else { 0.0 };
-        let is_new = (EARLIEST..=LATEST).contains(&lag);
+        // what is interpolated from samples to come is held instead, or comes in time
+        let is_possible = self.hold != Hold::BandLimited || hold == Hold::Zero && lag == 0.0;
+        let is_new = (EARLIEST..=LATEST).contains(&lag) && is_possible;
         is_new.then_some(Timing { hold, lag, std, told_by: samples, is_confirmed: false })
     }
 
@@ -218,6 +220,7 @@ mod tests {
         assert_eq!(own, Some((Hold::Linear, 25.0)), "a force that is late by a time of its own");
         assert_eq!(after(held, 0.05), None, "chance");
         assert_eq!(after(held, 5.0), None, "more than can be set right");
+        assert_eq!(after(Timing::new(Hold::BandLimited), 0.5), Some((Hold::Zero, 0.0)));
         assert_eq!(after(Timing::new(Hold::BandLimited), 1.0), None);
     }
 

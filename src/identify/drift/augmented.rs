@@ -9,9 +9,12 @@
 //!
 //! When slow wandering has won, its filters go on with the stream: their mean by weight is the law, their covariance
 //! its std. A filter whose coefficients have ceased to wander is begun again and again from the likeliest of them,
-//! until for some periods it loses nothing: the coefficients rest.
+//! until for some periods it loses nothing: the coefficients rest. So are filters whose coefficients switch, each at
+//! another sample, until one explains more than chance does: the law has switched while it wandered.
 
-use crate::estimation::{AugmentedFilter, Channel, InnovationGate, Noise, Observation, Start, Unknowns};
+use crate::estimation::{
+    AugmentedFilter, Channel, InnovationGate, KnownEffect, Noise, Observation, Start, Unknowns, log_sum,
+};
 use crate::evidence::SWITCH_SIZE;
 use crate::identify::problem::Problem;
 use crate::identify::window::Window;
@@ -45,6 +48,9 @@ const WITHIN: [f64; 2] = [0.5, 0.866];
 
 /// Samples that every filter takes in a step, until all are taken: 11 filters of 4 samples bound the step's work.
 const BUDGET: usize = 4;
+
+/// A switch within a drift is looked for from this part of a natural period on to the next.
+const BETWEEN: f64 = 0.125;
 
 /// What decides a trial, nats (odds of 160 000 to one) …
 const DECIDED: f64 = 12.0;
@@ -102,6 +108,9 @@ pub struct Before<'a> {
 pub struct AugmentedDrift {
     course: Course,
     terms: Vec<Term>,
+    /// Places of the free coefficients and of the effect that the model lacks, n + 1, and their terms.
+    free: Vec<usize>,
+    free_terms: Vec<Term>,
     rivals: Vec<AugmentedFilter>,
     sound: Vec<bool>,
     weights: Vec<f64>,
@@ -110,6 +119,12 @@ pub struct AugmentedDrift {
     parts: usize,
     period: f64,
     switch: [u64; INSTANTS],
+    /// Logarithm of what the walks together predicted, and by how much each filter that switched was ahead of that when
+    /// it did.
+    predicted: f64,
+    ahead: [f64; INSTANTS],
+    /// As which walk each filter wanders.
+    walk: [usize; RIVALS],
     gate: InnovationGate,
     next: u64,
     /// Since which sample the trial speaks for a drift.
@@ -123,10 +138,14 @@ pub struct AugmentedDrift {
 impl AugmentedDrift {
     /// Nothing is on trial.
     pub fn new(problem: &Problem) -> AugmentedDrift {
-        let n = problem.n();
+        let n = problem.n() + 1;
+        let terms = problem.terms_and_effect();
+        let free: Vec<usize> = problem.free.iter().copied().chain([problem.terms.len()]).collect();
         AugmentedDrift {
             course: Course::Idle,
-            terms: problem.terms_and_effect(),
+            free_terms: free.iter().map(|place| terms[*place]).collect(),
+            terms,
+            free,
             rivals: vec![AugmentedFilter::new(problem.known.len(), n); RIVALS],
             sound: vec![true; RIVALS],
             weights: vec![0.0; INTENSITIES.len()],
@@ -135,12 +154,15 @@ impl AugmentedDrift {
             parts: 1,
             period: 1.0,
             switch: [0; INSTANTS],
+            predicted: 0.0,
+            ahead: [0.0; INSTANTS],
+            walk: [0; RIVALS],
             gate: InnovationGate::default(),
             next: 0,
             leading_since: None,
             rest: (0, 0),
-            coefficients: vec![0.0; n],
-            variances: vec![0.0; n],
+            coefficients: vec![0.0; problem.n()],
+            variances: vec![0.0; problem.n()],
         }
     }
 
@@ -168,19 +190,24 @@ impl AugmentedDrift {
 
     /// Puts a drift on trial against a switch.
     pub fn begin(&mut self, problem: &Problem, window: &Window, before: &Before) {
+        let effect = problem.n();
         self.terms.copy_from_slice(before.terms);
-        let unknowns = unknowns(problem, &self.terms);
-        self.reach.copy_from_slice(before.reach);
+        self.free_terms[effect] = self.terms[problem.terms.len()];
+        self.reach[..effect].copy_from_slice(before.reach);
         if let Some(index) = problem.free_inertia() {
             self.reach[index] = before.all[problem.inertia];
         }
+        // what the law was said to lack may have been the drift that began: it may be nothing
+        self.reach[effect] = before.all[problem.terms.len()].abs() / SWITCH_SIZE;
+        let unknowns = unknowns(problem, &self.terms, &self.free, &self.free_terms);
         let first = window.initial_state(before.start, &before.noise);
         let start = Start { all: before.all, reach: &self.reach, width: SWITCH_SIZE, first };
         self.rivals.iter_mut().for_each(|rival| rival.begin(&unknowns, &start));
         self.sound.fill(true);
         self.weights.fill(0.0);
+        self.walk = std::array::from_fn(|index| if index < CONSTANT { index } else { RIVALS });
         (self.noise, self.parts, self.period) = (before.noise, before.parts, before.period);
-        (self.switch, self.next) = (before.switch, before.start + 1);
+        (self.switch, self.next, self.predicted) = (before.switch, before.start + 1, 0.0);
         (self.course, self.leading_since, self.gate) = (Course::Trial, None, InnovationGate::default());
     }
 
@@ -200,7 +227,10 @@ impl AugmentedDrift {
             self.next += 1;
             match self.course {
                 Course::Trial => self.decide(),
-                _ => self.look_for_rest(problem),
+                _ => {
+                    self.look_for_rest();
+                    self.look_for_switch();
+                }
             }
         }
         if self.course != Course::Idle {
@@ -212,16 +242,15 @@ impl AugmentedDrift {
     /// Every filter takes a sample, which may be one after an outage in which the motion was lost; those that have left
     /// what can be computed fall out.
     fn take(&mut self, problem: &Problem, observation: &Observation, lost: bool) {
-        let unknowns = unknowns(problem, &self.terms);
-        let count = if self.course == Course::Trial { RIVALS } else { CONSTANT + 1 };
-        let switched = self.rivals[SWITCHED..count.max(SWITCHED)].iter_mut().zip(&self.switch);
+        let unknowns = unknowns(problem, &self.terms, &self.free, &self.free_terms);
+        let switched = self.rivals[SWITCHED..].iter_mut().zip(&self.switch);
         for (rival, instant) in switched {
             let part = self.next.checked_sub(*instant).and_then(|since| WITHIN.get(since as usize));
             part.into_iter().for_each(|part| rival.wander(&unknowns, &self.reach, [part * SWITCH_SIZE; 2]));
         }
         let before: [f64; SLOW + 1] = std::array::from_fn(|index| self.rivals[index].log_likelihood);
-        for (index, rival) in self.rivals[..count].iter_mut().enumerate().filter(|(index, _)| self.sound[*index]) {
-            if let Some(intensity) = INTENSITIES.get(index) {
+        for (index, rival) in self.rivals.iter_mut().enumerate().filter(|(index, _)| self.sound[*index]) {
+            if let Some(intensity) = INTENSITIES.get(self.walk[index]) {
                 rival.wander(&unknowns, &self.reach, intensity.map(|std| std / self.period.sqrt()));
             }
             match lost {
@@ -236,10 +265,10 @@ impl AugmentedDrift {
             if !self.gate.admits(channel, residual, total) {
                 continue;
             }
-            let sound = self.rivals[..count].iter_mut().zip(&self.sound).filter(|(_, sound)| **sound);
+            let sound = self.rivals.iter_mut().zip(&self.sound).filter(|(_, sound)| **sound);
             sound.for_each(|(rival, _)| rival.update(channel, measured, variance));
         }
-        for (rival, sound) in self.rivals[..count].iter().zip(&mut self.sound) {
+        for (rival, sound) in self.rivals.iter().zip(&mut self.sound) {
             *sound &= rival.is_sound(&unknowns);
         }
         self.weigh(before);
@@ -248,10 +277,15 @@ impl AugmentedDrift {
     /// Weights of the walks, as logarithms: what they predicted, with a memory.
     fn weigh(&mut self, before: [f64; SLOW + 1]) {
         let kept = 1.0 - (MEMORY * self.period).recip();
+        let (mut all, mut all_with) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
         for (index, weight) in self.weights.iter_mut().enumerate() {
             let gain = self.rivals[index].log_likelihood - before[index];
-            *weight = if self.sound[index] { *weight * kept + gain } else { f64::NEG_INFINITY };
+            *weight = if self.sound[index] { *weight * kept } else { f64::NEG_INFINITY };
+            all = log_sum(all, *weight);
+            *weight += gain;
+            all_with = log_sum(all_with, *weight);
         }
+        self.predicted += all_with - all;
         let largest = self.weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         match largest.is_finite() {
             true => self.weights.iter_mut().for_each(|weight| *weight -= largest),
@@ -268,6 +302,11 @@ impl AugmentedDrift {
         let largest = (0..SLOW).map(|index| self.log_likelihood(index)).fold(f64::NEG_INFINITY, f64::max);
         let rival = (SLOW..RIVALS).map(|index| self.log_likelihood(index)).fold(f64::NEG_INFINITY, f64::max);
         largest - (SLOW as f64).ln() - rival
+    }
+
+    /// What speaks for a drift that is on trial, nats; none where none is.
+    pub fn evidence(&self) -> Option<f64> {
+        self.is_on_trial().then(|| self.lead())
     }
 
     /// Ends a trial that is lost, or that has gone on for too long.
@@ -292,6 +331,58 @@ impl AugmentedDrift {
     pub fn follow(&mut self) {
         self.course = Course::Following;
         self.begin_rest();
+        (0..INSTANTS).for_each(|slot| self.begin_switch(slot));
+    }
+
+    /// The coefficients may switch at the next sample, from those of the likeliest walk, and wander on as it does.
+    fn begin_switch(&mut self, slot: usize) {
+        let likeliest = self.likeliest();
+        let (walks, others) = self.rivals.split_at_mut(SWITCHED);
+        others[slot].copy_from(&walks[likeliest]);
+        self.sound[SWITCHED + slot] = true;
+        (self.switch[slot], self.walk[SWITCHED + slot]) = (self.next, likeliest);
+        self.ahead[slot] = others[slot].log_likelihood - self.predicted;
+    }
+
+    /// Evidence that the law has switched as that filter does, against all that it may have done else, nats.
+    fn switch_evidence(&self, slot: usize) -> f64 {
+        self.log_likelihood(SWITCHED + slot) - self.predicted - self.ahead[slot]
+    }
+
+    /// The filter that has switched and explains most.
+    fn likeliest_switch(&self) -> usize {
+        let evidence = |slot: &usize| self.switch_evidence(*slot);
+        (0..INSTANTS).max_by(|a, b| evidence(a).total_cmp(&evidence(b))).unwrap_or(0)
+    }
+
+    /// Where it is time for another, the filter that has switched and explains least begins anew.
+    fn look_for_switch(&mut self) {
+        let last = self.switch.iter().copied().max().unwrap_or(0);
+        if (self.next - last) as f64 > BETWEEN * self.period {
+            let evidence = |slot: &usize| self.switch_evidence(*slot);
+            let least = (0..INSTANTS).min_by(|a, b| evidence(a).total_cmp(&evidence(b)));
+            least.into_iter().for_each(|slot| self.begin_switch(slot));
+        }
+    }
+
+    /// The sample at which the law has switched while it is followed, by evidence above that level, nats.
+    pub fn switched_since(&self, level: f64) -> Option<u64> {
+        let slot = self.likeliest_switch();
+        (self.is_following() && self.switch_evidence(slot) > level).then_some(self.switch[slot])
+    }
+
+    /// The law since then: `free` become its free coefficients, n; returns the effect that it has beside them.
+    pub fn switched_law(&self, problem: &Problem, free: &mut [f64]) -> Option<KnownEffect> {
+        self.law(problem, SWITCHED + self.likeliest_switch(), free)
+    }
+
+    fn law(&self, problem: &Problem, rival: usize, free: &mut [f64]) -> Option<KnownEffect> {
+        let unknowns = unknowns(problem, &self.terms, &self.free, &self.free_terms);
+        let coefficient = |index: usize| self.rivals[rival].coefficient(&unknowns, index).0;
+        free.iter_mut().enumerate().for_each(|(index, value)| *value = coefficient(index));
+        let effect = coefficient(free.len());
+        let term = self.free_terms[free.len()];
+        (effect != 0.0).then_some(KnownEffect { term, coefficient: effect, precision: 0.0 })
     }
 
     fn likeliest(&self) -> usize {
@@ -310,9 +401,9 @@ impl AugmentedDrift {
         self.log_likelihood(CONSTANT) - self.log_likelihood(self.rest.1)
     }
 
-    fn look_for_rest(&mut self, problem: &Problem) {
+    fn look_for_rest(&mut self) {
         let quiet = self.quiet();
-        if quiet.is_nan() || quiet < -WANDERED || !self.rivals[CONSTANT].is_sound(&unknowns(problem, &self.terms)) {
+        if quiet.is_nan() || quiet < -WANDERED || !self.sound[CONSTANT] {
             self.begin_rest();
         }
     }
@@ -323,9 +414,14 @@ impl AugmentedDrift {
         (self.is_following() && long && self.quiet() > 0.0).then_some(self.rest.0)
     }
 
+    /// The law at rest: `free` become its free coefficients, n; returns the effect that it has beside them.
+    pub fn resting_law(&self, problem: &Problem, free: &mut [f64]) -> Option<KnownEffect> {
+        self.law(problem, CONSTANT, free)
+    }
+
     /// Mean and variance over all walks.
     fn mix(&mut self, problem: &Problem) {
-        let unknowns = unknowns(problem, &self.terms);
+        let unknowns = unknowns(problem, &self.terms, &self.free, &self.free_terms);
         let sum: f64 = self.weights.iter().map(|weight| weight.exp()).sum();
         for free in 0..self.coefficients.len() {
             let (mut mean, mut square) = (0.0, 0.0);
@@ -337,7 +433,10 @@ impl AugmentedDrift {
                 square += share * ((value - centre).powi(2) + variance);
             }
             self.coefficients[free] = centre + mean;
-            self.variances[free] = (square - mean * mean).max(0.0);
+            // how fast a slow drift is the record tells, not how fast what it does not tell of may be
+            let (fastest, open) = self.rivals[SLOW - 1].coefficient(&unknowns, free);
+            let open = if self.sound[SLOW - 1] { open + (fastest - centre - mean).powi(2) } else { 0.0 };
+            self.variances[free] = (square - mean * mean).max(open);
         }
     }
 
@@ -352,12 +451,12 @@ impl AugmentedDrift {
     }
 }
 
-fn unknowns<'a>(problem: &'a Problem, terms: &'a [Term]) -> Unknowns<'a> {
+fn unknowns<'a>(problem: &'a Problem, terms: &'a [Term], free: &'a [usize], free_terms: &'a [Term]) -> Unknowns<'a> {
     Unknowns {
         terms,
         own: &problem.own,
-        free: &problem.free,
-        free_terms: &problem.free_terms,
+        free,
+        free_terms,
         inertia: problem.inertia,
         free_inertia: problem.free_inertia(),
     }

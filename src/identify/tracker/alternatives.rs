@@ -45,14 +45,15 @@ impl Tracker {
         let (end, since) = (self.window.end(), self.schedule.rows_from);
         let due = match self.fitting {
             Fitting::Starting => since + self.window.capacity() as u64,
-            Fitting::Refining if self.is_mixed() => {
-                since.max(self.history.refuted_at) + self.history.convergence_length
-            }
+            _ if self.is_mixed() => since.max(self.history.refuted_at) + self.history.convergence_length,
             Fitting::Refining => since + FRESH_START * universal(self.schedule.afresh + 1),
             Fitting::Contested => return,
         };
         if end < due {
             return;
+        }
+        if self.fitting == Fitting::Contested {
+            self.fitting = Fitting::Refining;
         }
         self.start.begin(end);
         self.schedule.rows_from = end;

@@ -2,14 +2,16 @@
 
 use super::regime::{Event, Follower};
 use super::state::{Fitting, Setup, Tracker};
+use crate::estimation::KnownEffect;
 use crate::evidence::SWITCH_SIZE;
 use crate::identify::drift::{Before, INSTANTS};
 use crate::identify::problem::Problem;
 use crate::identify::validation::TRUSTED;
 use std::f64::consts::TAU;
 
-/// A trial begins this many natural periods before the switch that an alarm found.
-const BEFORE: f64 = 2.0;
+/// A trial begins this many natural periods before the switch that an alarm found: a drift has begun before, and the
+/// longer the law had stood still, the less likely it is that it ever moves (docs/decisions/drift.md).
+const BEFORE: f64 = 0.5;
 
 /// Natural periods after which a constant law that explains them is no chance: what moves as slowly is no drift yet.
 const OUTLASTS: f64 = 3.0;
@@ -77,7 +79,7 @@ impl Tracker {
         }
         let drift = &self.augmented_drift;
         let explained = self.segment.effect() != 0.0 && self.segment.settled() && self.segment.is_beyond_doubt();
-        if drift.found_drift() && !self.regime.is_drifting() && drift.stated_error() < TRUSTED && !explained {
+        if drift.found_drift() && !self.regime.is_drifting() && !explained {
             self.augmented_drift.follow();
             self.begin_drift(Follower::AugmentedFilters);
         }
@@ -86,9 +88,13 @@ impl Tracker {
             self.published.set(setup.problem, |free, _| Some(drift.coefficient(free)));
             let known = drift.stated_error() < TRUSTED;
             self.enter(Event::DriftValidated(known));
+            let level = self.false_alarm_level(setup.settings);
+            if let Some(instant) = self.augmented_drift.switched_since(level) {
+                return self.switch_within_drift(setup.problem, instant);
+            }
             match (self.is_resting(), self.augmented_drift.rests_since()) {
                 (true, None) => self.enter(Event::DriftRests(false)),
-                (false, Some(since)) => self.seek_rest(since),
+                (false, Some(since)) => self.seek_rest(setup.problem, since),
                 _ => {}
             }
         }
@@ -161,12 +167,31 @@ impl Tracker {
         self.regime.followed().is_some_and(|drift| drift.resting)
     }
 
-    /// The coefficients have come to rest: a constant law is sought in the record since then.
-    fn seek_rest(&mut self, since: u64) {
-        let since = since.max(self.window.oldest());
+    /// The coefficients have come to rest: a constant law is sought in the record since then, from those that have.
+    fn seek_rest(&mut self, problem: &Problem, since: u64) {
+        let effect = self.augmented_drift.resting_law(problem, &mut self.belief.from);
         self.enter(Event::DriftRests(true));
-        self.fitting = Fitting::Starting;
-        self.begin_weak_rows(since);
+        self.begin_law_after_drift(problem, since, effect);
+    }
+
+    /// The law has switched at this sample or somewhat later, while its coefficients moved: only what comes now is the
+    /// new one's for sure.
+    fn switch_within_drift(&mut self, problem: &Problem, instant: u64) {
+        let effect = self.augmented_drift.switched_law(problem, &mut self.belief.from);
+        self.begin_law_after_drift(problem, self.window.ready() - 1, effect);
+        self.count_switch(instant, None);
+        self.enter(Event::SwitchFound(None));
+    }
+
+    /// A constant law is sought in the record from sample `start` on, from the coefficients believed.
+    fn begin_law_after_drift(&mut self, problem: &Problem, start: u64, effect: Option<KnownEffect>) {
+        let start = start.max(self.window.oldest());
+        self.belief.effect = effect;
+        self.belief.centre.copy_from_slice(&self.belief.from);
+        self.set_spread(problem);
+        self.begin_new_law(problem, start);
+        self.fitting = Fitting::Refining;
+        self.begin_weak_rows(start);
     }
 
     fn publish_weak_rows(&mut self, problem: &Problem) {

@@ -8,6 +8,7 @@ use crate::identify::problem::Problem;
 use crate::identify::segment::NOISE_MEMORY;
 use crate::identify::timing::Timing;
 use crate::identify::validation::SURE;
+use crate::law::Hold;
 
 /// The prior of a new law is this much wider than the switch that is looked for.
 pub(super) const PRIOR_WIDTH: f64 = 3.0;
@@ -67,9 +68,12 @@ impl Tracker {
     /// by its own evidence or by a trial that is still to end.
     pub(super) fn corrected_timing(&self, problem: &Problem, lag: &Lag) -> Option<Timing> {
         let on_trial = self.has_effect_on_trial() || self.segment.untried.is_some();
-        let lacks = self.segment.effect_evidence() > lag.evidence || on_trial;
+        let drifts = self.augmented_drift.evidence().is_some_and(|evidence| evidence > lag.evidence);
+        let lacks = self.segment.effect_evidence() > lag.evidence || on_trial || drifts;
         let corrected = problem.timing.corrected(lag, self.record_length());
-        corrected.filter(|_| self.is_refining() && !lacks && !self.regime.is_moving())
+        // of a force chosen by a whole record's likelihood a short one tells what the law still lacks
+        let young = problem.timing.hold == Hold::BandLimited && self.youth() > 1.0;
+        corrected.filter(|_| self.is_refining() && !lacks && !young && !self.regime.is_moving())
     }
 
     /// F acts so many samples later than was assumed: the laws move along, and the record is fitted anew.

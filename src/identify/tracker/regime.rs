@@ -141,9 +141,7 @@ impl Regime {
             (Tracking { law, recognition, .. }, SuspicionRaised) => Tracking { law, recognition, suspected: true },
             (Tracking { law, recognition, .. }, SuspicionCleared) => Tracking { law, recognition, suspected: false },
 
-            (Drifting { drift }, SwitchFound(_) | LawRefuted | StateLost) => {
-                Drifting { drift: Followed { known: false, ..drift } }
-            }
+            (Drifting { drift }, LawRefuted | StateLost) => Drifting { drift: Followed { known: false, ..drift } },
             (_, SwitchFound(post_alarm)) => ReIdentifying { post_alarm },
             (ReIdentifying { .. }, PostAlarmEnded) => ReIdentifying { post_alarm: None },
             (_, LawRefuted) => ReIdentifying { post_alarm: None },
@@ -305,7 +303,7 @@ mod tests {
             ("recognition refuted, none before", "atasaid"),
             ("suspicion raised", "assssid"),
             ("suspicion cleared", "atrtrid"),
-            ("switch found", "iiiiiid"),
+            ("switch found", "iiiiiii"),
             ("post-alarm window ended", "atrssid"),
             ("law refuted", "iiiiiid"),
             ("state lost", "aaaaaad"),

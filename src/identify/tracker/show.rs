@@ -5,11 +5,12 @@ use crate::identify::problem::Problem;
 use crate::identify::report::{ByQuantity, Coefficient, Output};
 use crate::identify::segment::GROWTH;
 use crate::identify::settings::Settings;
-use crate::identify::validation::{DOUBTED, TRUSTED};
+use crate::identify::validation::{DOUBTED, TRUSTED, VALIDATED};
 
 impl Tracker {
     /// Writes every output. Of a record whose law cannot state an honest std, the coefficients of the weak form stand
-    /// in place of its own: they are not validated; nor is a constant law of which some std is not known.
+    /// in place of its own: they are not validated; nor is a law of which some std is not known, nor one that moves and
+    /// does not state e below the bound.
     pub fn show(&mut self, problem: &Problem, settings: &Settings, shown: &mut [Coefficient], output: &mut Output) {
         self.foretell(problem);
         shown.copy_from_slice(&self.published.coefficients);
@@ -18,6 +19,7 @@ impl Tracker {
         let unknown = shown.iter().any(|coefficient| coefficient.std.is_none());
         output.valid &= !unknown;
         if output.drifting {
+            output.valid &= self.published.stated_error() < VALIDATED;
             return;
         }
         output.valid &= self.segment.doubt() < DOUBTED;

@@ -131,7 +131,7 @@ impl Tracker {
     }
 
     fn refine(&mut self, setup: Setup) {
-        let young = !self.regime.is_valid() || self.record_length() < YOUNG;
+        let young = self.regime.law().is_none() || self.record_length() < YOUNG;
         let converging = self.segment.fit.explains && !self.segment.settled();
         let budget = BUDGET[usize::from(young || converging)];
         if self.may_be_off() || !self.segment.refine(setup.problem, setup.settings, &self.window, budget) {

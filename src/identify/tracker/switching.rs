@@ -132,7 +132,7 @@ impl Tracker {
         }
     }
 
-    fn count_switch(&mut self, instant: u64, distance: Option<f64>) {
+    pub(super) fn count_switch(&mut self, instant: u64, distance: Option<f64>) {
         let interval = self.last_interval();
         let switches = &mut self.published.switches;
         switches.count += 1;
