@@ -15,6 +15,10 @@ const STEADY: u32 = 10;
 /// nothing that is said holds for the present.
 const ALIKE: Range<f64> = 0.4..2.5;
 
+/// What rounding leaves of the distance of two stamps, as a part of the later one: a step that is half of `sample_time`
+/// is not sooner than that.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// The clock of a stream.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Clock {
@@ -50,7 +54,7 @@ impl Clock {
                 .set_back(stamp, agrees, last)
                 .ok_or(Skipped::NotLater { t: stamp, previous: last - self.shift });
         }
-        if step < 0.5 * sample_time {
+        if step + ROUNDING * t.abs() < 0.5 * sample_time {
             return Err(Skipped::TooSoon { t: stamp });
         }
         if self.known >= STEADY && step > AHEAD * self.pace && !agrees {
@@ -184,6 +188,17 @@ mod tests {
     fn a_sender_that_starts_again_may_have_been_away() {
         let seen = times(stamps(7.0, 50).chain(stamps(0.0, 50)));
         assert!(seen.windows(2).any(|pair| is_outage(pair[1] - pair[0], 1e-3)), "{seen:?}");
+    }
+
+    #[test]
+    fn steps_of_half_a_sample_time_are_all_taken() {
+        for (from, h) in [(0.0, 5e-4), (1234.5, 5e-4), (1e6, 5e-4)] {
+            let summed = std::iter::successors(Some(from), |t| Some(t + h)).take(5000);
+            let exact = (0..5000).map(|index| from + h * f64::from(index));
+            assert_eq!([times(summed).len(), times(exact).len()], [5000; 2], "{from}");
+        }
+        let sooner = (0..5000).map(|index| 1234.5 + 4.9e-4 * f64::from(index));
+        assert_eq!(times(sooner).len(), 2500);
     }
 
     #[test]
