@@ -96,14 +96,11 @@ fn check_lengths(source: &Source, stored: &[Stored]) -> Result<(), DataError> {
 
 fn cell(source: &Source, stored: &[Stored], column: &Column, index: usize) -> Result<f64, DataError> {
     let values = stored.iter().find(|stored| stored.column == column).map_or(&[][..], |stored| &stored.values);
-    match values.get(index) {
-        Some(value) if Recording::is_reading(*value) => Ok(value * column.factor),
-        value => Err(DataError::NotFinite {
-            file: source.file.clone(),
-            kind: source.kind,
-            row: index as u64 + 1,
-            column: column.header.clone(),
-            value: value.map_or_else(|| "missing".into(), f64::to_string),
-        }),
+    let value = values.get(index).copied().unwrap_or(f64::NAN);
+    if Recording::is_reading(value) {
+        return Ok(value * column.factor);
     }
+    let (file, kind, column) = (source.file.clone(), source.kind, column.header.clone());
+    let error = DataError::NotFinite { file, kind, row: index as u64 + 1, column, value: value.to_string() };
+    Err(if value.is_nan() { error.missing() } else { error })
 }

@@ -122,7 +122,9 @@ impl<'a> Reader<'a> {
         if let TimeBase::Grid(step) = self.layout.time_base {
             return Ok(index as f64 * step);
         }
-        let Some(clock) = &mut self.clock else { return cell(self.source, self.dialect, cells, column, line) };
+        let Some(clock) = &mut self.clock else {
+            return cell(self.source, self.dialect, cells, column, line);
+        };
         let text = cells.get(column.index).copied().unwrap_or_default();
         let (file, header) = (self.source.file.clone(), column.header.clone());
         let instant =
@@ -133,16 +135,16 @@ impl<'a> Reader<'a> {
 
 fn cell(source: &Source, dialect: &Dialect, cells: &[&str], column: &Column, line: u64) -> Result<f64, DataError> {
     let text = cells.get(column.index).copied().unwrap_or_default();
-    match number(text, dialect.decimal) {
-        Some(number) if Recording::is_reading(number) => Ok(number * column.factor),
-        _ if text.is_empty() => {
-            Err(DataError::EmptyCell { file: source.file.clone(), line, column: column.header.clone() })
-        }
-        _ => {
-            let (file, column) = (source.file.clone(), column.header.clone());
-            Err(DataError::Cell { file, line, column, text: text.into() })
-        }
+    let number = number(text, dialect.decimal);
+    if let Some(reading) = number.filter(|number| Recording::is_reading(*number)) {
+        return Ok(reading * column.factor);
     }
+    let (file, column) = (source.file.clone(), column.header.clone());
+    Err(match number {
+        _ if text.is_empty() => DataError::EmptyCell { file, line, column }.missing(),
+        Some(number) if number.is_nan() => DataError::Cell { file, line, column, text: text.into() }.missing(),
+        _ => DataError::Cell { file, line, column, text: text.into() },
+    })
 }
 
 /// The first numbers of every column; NaN where there is none.

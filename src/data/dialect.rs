@@ -183,9 +183,8 @@ fn without_blank_ends(mut headers: Vec<String>) -> Vec<String> {
 /// Whether cells are names or units of that many columns and no numbers.
 fn is_heading(cells: &[String], columns: usize, decimal: Decimal) -> bool {
     let told = cells.iter().filter(|cell| !cell.is_empty()).count();
-    let is_value = |cell: &String| number(cell, decimal).is_some() || Instant::parse(cell).is_some();
     let near = cells.len() + 1 >= columns.min(3) && cells.len() > 1;
-    near && told > 0 && !cells.iter().any(is_value)
+    near && told > 0 && !cells.iter().any(|cell| is_value(cell, decimal))
 }
 
 /// Whether cells are the units of columns: one at least is one, and so are half of those that are not empty, or stand
@@ -227,7 +226,12 @@ impl Shape {
             rows.iter().filter(is_row).filter(|row| row.1 == columns).map(|row| row.2 * row.2).sum::<f64>()
         };
         let columns = rows.iter().filter(is_row).map(|row| row.1).max_by(|a, b| score(*a).total_cmp(&score(*b)))?;
-        let first = rows.iter().filter(is_row).find(|row| row.1 == columns)?.0;
+        let first = rows.iter().position(|row| is_row(&row) && row.1 == columns)?;
+        let begun = rows[..first].iter().rev().take_while(|(index, count, _)| {
+            separator.split(lines[*index].text, &mut cells);
+            *count == columns && is_value(cells[0], decimal) && cells[1..].iter().all(|cell| cell.is_empty())
+        });
+        let first = rows[first - begun.count()].0;
         Some(Shape { separator, decimal, columns, score: score(columns), first })
     }
 
@@ -240,8 +244,11 @@ impl Shape {
 /// Share of the cells that are numbers or instants; an empty last one does not count.
 fn share(cells: &[&str], decimal: Decimal) -> f64 {
     let cells = cells.strip_suffix(&[""]).unwrap_or(cells);
-    let is_value = |cell: &&&str| number(cell, decimal).is_some() || Instant::parse(cell).is_some();
-    cells.iter().filter(is_value).count() as f64 / cells.len().max(1) as f64
+    cells.iter().filter(|cell| is_value(cell, decimal)).count() as f64 / cells.len().max(1) as f64
+}
+
+fn is_value(cell: &str, decimal: Decimal) -> bool {
+    number(cell, decimal).is_some() || Instant::parse(cell).is_some()
 }
 
 #[cfg(test)]
@@ -265,6 +272,8 @@ mod tests {
             ("Rig 3, run 5\nby: M\n\nt|q\ns|mm\n1|2.5\n2|3\n", Mark('|'), Point, Some(4), 6),
             ("\"t\",\"q\"\n\"0,1\",\"2,5\"\n", Mark(','), Comma, Some(1), 2),
             ("t,q\n12:00:00.1,2\n12:00:00.2,3\n", Mark(','), Point, Some(1), 2),
+            // the first rows may be times alone
+            ("t,q,qd,F\n0,,,\n1,,,\n2,3,4,5\n", Mark(','), Point, Some(1), 2),
         ];
         for (text, separator, decimal, header, first) in cases {
             let found = of(text);

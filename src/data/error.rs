@@ -4,6 +4,7 @@ use super::kind::FileKind;
 use crate::identify::{RecordingError, SavedLawsError};
 use crate::law::ModelError;
 use crate::simulate::ScenarioError;
+use std::mem::discriminant;
 use thiserror::Error;
 
 /// Why a file cannot be used. `file` is its name as the user wrote it, `line` counts from 1 with the header as line 1,
@@ -170,6 +171,9 @@ pub enum DataError {
         /// What stands there.
         value: String,
     },
+    /// A reading that the sensor did not give, where every one is needed.
+    #[error("{0}; `switchid identify` alone takes it as a reading that is missing, and goes on")]
+    Missing(Box<DataError>),
     /// A sample time or sampling rate that is none.
     #[error(
         "{file}: variable \"{variable}\" is {found}: as the distance of two samples (dt, Ts in s) or the sampling rate (fs in Hz) it must be one positive number"
@@ -410,6 +414,21 @@ pub enum DataError {
         /// The times that the file holds, s; where a section was asked for.
         span: Option<(f64, f64)>,
     },
+    /// A column without any reading.
+    #[error(
+        "{file}: {0} \"{column}\" has no value at all: check the sensor or the export, or map another {0} to {channel}",
+        kind.column()
+    )]
+    NoReading {
+        /// The file.
+        file: String,
+        /// What kind of file it is.
+        kind: FileKind,
+        /// The header.
+        column: String,
+        /// The quantity.
+        channel: &'static str,
+    },
     /// A column that never changes.
     #[error(
         "{file}: {0} \"{column}\" is {value} in every {1}: a motion that stands still determines no law. Check the sensor, or map another {0} to {channel}",
@@ -472,14 +491,28 @@ pub enum DataError {
 impl DataError {
     /// Whether it is the same fault of the same column in another row.
     pub(super) fn is_like(&self, other: &DataError) -> bool {
-        fn column(error: &DataError) -> Option<&str> {
-            match error {
-                DataError::Cell { column, .. } | DataError::EmptyCell { column, .. } => Some(column),
-                DataError::NotFinite { column, .. } | DataError::NoInstant { column, .. } => Some(column),
-                _ => None,
-            }
+        match (self, other) {
+            (DataError::Missing(one), DataError::Missing(other)) => one.is_like(other),
+            _ => discriminant(self) == discriminant(other) && self.column() == other.column(),
         }
-        std::mem::discriminant(self) == std::mem::discriminant(other) && column(self) == column(other)
+    }
+
+    /// The fault of a cell in which the sensor gave no reading.
+    pub(super) fn missing(self) -> DataError {
+        DataError::Missing(Box::new(self))
+    }
+
+    /// The same fault of a time, which no command takes as missing.
+    pub(super) fn of_time(self) -> DataError {
+        if let DataError::Missing(error) = self { *error } else { self }
+    }
+
+    fn column(&self) -> Option<&str> {
+        match self {
+            DataError::Cell { column, .. } | DataError::EmptyCell { column, .. } => Some(column),
+            DataError::NotFinite { column, .. } | DataError::NoInstant { column, .. } => Some(column),
+            _ => None,
+        }
     }
 }
 

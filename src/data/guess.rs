@@ -101,8 +101,11 @@ pub(super) fn by_content(columns: &[Vec<f64>]) -> Option<Columns> {
     let name = |index: usize| Some((index + 1).to_string());
     let rises = |values: &[f64]| values.len() > 2 && values.windows(2).all(|pair| pair[1] > pair[0]);
     let time = columns.iter().position(|values| rises(values))?;
-    let moving =
-        |values: &[f64]| values.iter().any(|value| *value != values[0]) && values.iter().all(|value| value.is_finite());
+    // readings may be missing, but not most of them
+    let moving = |values: &[f64]| {
+        let numbers = || values.iter().filter(|value| value.is_finite());
+        2 * numbers().count() > values.len() && numbers().any(|value| numbers().next() != Some(value))
+    };
     let others: Vec<usize> = (0..columns.len()).filter(|index| *index != time && moving(&columns[*index])).collect();
     let named = Columns { t: name(time), ..Columns::default() };
     if let [only] = others[..] {
@@ -121,7 +124,7 @@ fn likeness(t: &[f64], q: &[f64], qd: &[f64]) -> f64 {
     let count = t.len().min(q.len()).min(qd.len());
     let pairs = (1..count.saturating_sub(1)).map(|at| ((q[at + 1] - q[at - 1]) / (t[at + 1] - t[at - 1]), qd[at]));
     let [mut xy, mut xx, mut yy] = [0.0; 3];
-    for (x, y) in pairs {
+    for (x, y) in pairs.filter(|(x, y)| x.is_finite() && y.is_finite()) {
         xy += x * y;
         xx += x * x;
         yy += y * y;
@@ -138,12 +141,16 @@ mod tests {
         let of = |f: fn(f64) -> f64| (0..500).map(|n| f(0.01 * f64::from(n))).collect::<Vec<f64>>();
         let [t, q, qd, force] =
             [of(|t| t), of(|t| (3.0 * t).sin()), of(|t| 3.0 * (3.0 * t).cos()), of(|t| (7.0 * t).cos())];
-        let found = by_content(&[t.clone(), force.clone(), qd, q.clone()]).unwrap();
+        let found = by_content(&[t.clone(), force.clone(), qd.clone(), q.clone()]).unwrap();
         assert_eq!(found.t.as_deref(), Some("1"));
         assert_eq!(
             (found.q.as_deref(), found.qd.as_deref(), found.excitation.as_deref()),
             (Some("4"), Some("3"), Some("2"))
         );
+        let mut lacking = q.clone();
+        lacking[100..300].fill(f64::NAN);
+        let found = by_content(&[t.clone(), force.clone(), qd, lacking]).unwrap();
+        assert_eq!([found.q, found.qd, found.excitation], ["4", "3", "2"].map(|name| Some(name.to_string())));
         assert_eq!(by_content(&[t, q, force]), None);
     }
 }

@@ -41,5 +41,5 @@ mod text;
 pub use error::DataError;
 pub use files::{open_laws, open_model, open_scenario};
 pub use kind::FileKind;
-pub use open::{Opened, Taken, open_recording};
+pub use open::{Opened, Taken, open_recording, open_stream};
 pub use section::Section;

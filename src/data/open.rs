@@ -44,7 +44,20 @@ pub struct Taken {
 /// # Errors
 /// [`DataError`] names file, line and column (or variable and sample), and what would mend it.
 pub fn open_recording(data: &str, model: &Model) -> Result<Opened, DataError> {
-    let (source, content) = Source::open(data)?;
+    open(data, model, false)
+}
+
+/// The same for a stream, which goes on where a sensor gives no reading: an empty cell, NaN, or what the format has for
+/// no value makes its sample [incomplete](Recording::incomplete).
+///
+/// # Errors
+/// The same; a time that is missing, and a column without any reading.
+pub fn open_stream(data: &str, model: &Model) -> Result<Opened, DataError> {
+    open(data, model, true)
+}
+
+fn open(data: &str, model: &Model, bears_missing: bool) -> Result<Opened, DataError> {
+    let (source, content) = Source::open(data, bears_missing)?;
     let (layout, signals, form) = read(&source, content, model)?;
     let unmet = model.terms.iter().find(|entry| entry.term.uses_excitation() && layout.excitation.is_none());
     if let Some(entry) = unmet {
@@ -53,8 +66,9 @@ pub fn open_recording(data: &str, model: &Model) -> Result<Opened, DataError> {
     }
     let [t, q, qd, excitation] = signals;
     let of = |column: &Option<Column>, values| column.as_ref().map(|_| values);
-    let recording = Recording::new(data, t, of(&layout.q, q), of(&layout.qd, qd), of(&layout.excitation, excitation))
-        .map_err(|error| locate(error, &source, &layout))?;
+    let [q, qd, excitation] = [of(&layout.q, q), of(&layout.qd, qd), of(&layout.excitation, excitation)];
+    let recording = Recording::with_missing(data, t, q, qd, excitation);
+    let recording = recording.map_err(|error| locate(error, &source, &layout))?;
     let held = model.position(Term::Inertia).is_some_and(|place| matches!(model.terms[place].given, Given::Known(_)));
     let guessed = guessed(data, form, layout.guesses());
     Ok(Opened { recording, columns: layout.describe(), guessed, taken: taken(&layout), units: layout.units(held) })
@@ -97,18 +111,22 @@ fn read(source: &Source, content: Content, model: &Model) -> Result<(Layout, Sig
     }
 }
 
-/// A motion that stands still is named by its column.
+/// A motion that stands still, or is never read, is named by its column.
 fn locate(error: RecordingError, source: &Source, layout: &Layout) -> DataError {
-    let column = match &error {
-        RecordingError::Constant { channel: "q", .. } => &layout.q,
-        RecordingError::Constant { channel: "qd", .. } => &layout.qd,
-        _ => &None,
+    let (file, kind) = (source.file.clone(), source.kind);
+    let column = |channel: &str| match channel {
+        "q" => layout.q.as_ref(),
+        "qd" => layout.qd.as_ref(),
+        _ => layout.excitation.as_ref(),
     };
-    match (error, column) {
-        (RecordingError::Constant { channel, value, .. }, Some(column)) => {
-            let (file, kind) = (source.file.clone(), source.kind);
-            DataError::Constant { file, kind, column: column.header.clone(), channel, value }
+    let header = |channel: &str| column(channel).map(|column| column.header.clone()).unwrap_or_default();
+    match error {
+        RecordingError::Constant { channel, value, .. } => {
+            DataError::Constant { file, kind, column: header(channel), channel, value }
         }
-        (error, _) => DataError::Recording(error),
+        RecordingError::NoReading { channel, .. } => {
+            DataError::NoReading { file, kind, column: header(channel), channel }
+        }
+        error => DataError::Recording(error),
     }
 }

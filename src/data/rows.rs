@@ -14,12 +14,14 @@ pub(super) struct Source<'a> {
     /// The file's name.
     pub(super) file: String,
     pub(super) kind: FileKind,
+    /// Whether readings may be missing.
+    bears_missing: bool,
     section: Section,
 }
 
 impl<'a> Source<'a> {
-    /// The source that `DATA` or `DATA@t0:t1` names, and the content of its file.
-    pub(super) fn open(data: &'a str) -> Result<(Source<'a>, Content), DataError> {
+    /// The source that `DATA` or `DATA@t0:t1` names, and the content of its file; whether readings may be missing.
+    pub(super) fn open(data: &'a str, bears_missing: bool) -> Result<(Source<'a>, Content), DataError> {
         let section = Section::parse(data)?;
         let mut content = Content::open(&section.path)?;
         let file = section.path.display().to_string();
@@ -27,7 +29,7 @@ impl<'a> Source<'a> {
             content = Content::of(content.all().map_err(|source| DataError::Read { file: file.clone(), source })?);
         }
         let kind = FileKind::of(&content.head);
-        Ok((Source { data, file, kind, section }, content))
+        Ok((Source { data, file, kind, bears_missing, section }, content))
     }
 
     /// Why the file could not be read.
@@ -37,11 +39,12 @@ impl<'a> Source<'a> {
 
     /// The same source, its kind told more closely.
     pub(super) fn as_kind(&self, kind: FileKind) -> Source<'a> {
-        Source { data: self.data, file: self.file.clone(), kind, section: self.section.clone() }
+        let (data, bears_missing) = (self.data, self.bears_missing);
+        Source { data, file: self.file.clone(), kind, bears_missing, section: self.section.clone() }
     }
 }
 
-/// Values of t, q, qd, F in SI units; empty where there is no such column.
+/// Values of t, q, qd, F in SI units, NaN where a reading is missing; empty where there is no such column.
 pub(super) type Signals = [Vec<f64>; 4];
 
 /// A kind of fault: its first occurrence, how many more there are, and the row of the last one.
@@ -86,7 +89,7 @@ impl<'a> Rows<'a> {
         self.count += 1;
         let t = match t {
             Ok(t) => t,
-            Err(error) => return self.refuse(row, error),
+            Err(error) => return self.refuse(row, error.of_time()),
         };
         let before = self.last.replace((t, row));
         if let Some((previous, previous_row)) = before.filter(|(previous, _)| t <= *previous) {
@@ -102,6 +105,7 @@ impl<'a> Rows<'a> {
         for (value, column) in values[1..].iter_mut().zip(columns) {
             match column.as_ref().map(&cell) {
                 Some(Ok(found)) => *value = found,
+                Some(Err(DataError::Missing(_))) if self.source.bears_missing => *value = f64::NAN,
                 Some(Err(error)) => return self.refuse(row, error),
                 None => {}
             }

@@ -6,7 +6,7 @@ use super::error::DataError;
 use super::rows::Source;
 use super::text::Text;
 #[cfg(feature = "formats")]
-use calamine::{Data, Range, Reader};
+use calamine::{CellErrorType, Data, Range, Reader};
 
 /// The sheet as text with tabs between cells, a line for each of its rows.
 ///
@@ -51,6 +51,19 @@ fn cell(cell: &Data) -> String {
             let (year, month, day, hour, minute, second, milli) = time.to_ymd_hms_milli();
             format!("{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}.{milli:03}")
         }
+        // =NA(): no value
+        Data::Error(CellErrorType::NA) => f64::NAN.to_string(),
         other => other.to_string().replace(['\t', '\n', '\r'], " "),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #[cfg(feature = "formats")]
+    #[test]
+    fn a_cell_without_a_value_is_none() {
+        use super::*;
+        let cells = [Data::Empty, Data::Error(CellErrorType::NA), Data::Float(0.5), Data::Error(CellErrorType::Div0)];
+        assert_eq!(cells.each_ref().map(cell), ["", "NaN", "0.5", "#DIV/0!"]);
     }
 }

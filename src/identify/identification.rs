@@ -5,7 +5,7 @@ use super::identifier::Identifier;
 use super::library::SavedLaws;
 use super::recording::Recording;
 use super::report::{ByQuantity, CHANNELS, Coefficient, SensorState, Status};
-use super::sample::Skipped;
+use super::sample::{Sample, Skipped};
 use super::settings::{Method, Settings};
 use crate::estimation::Missing;
 use crate::law::{Hold, Model, Term, equation};
@@ -118,9 +118,9 @@ const HOLD_TRIALS: [usize; 3] = [1500, 3000, 6000];
 /// Log-likelihood, nats, by which a hold falls out before that.
 const BEATEN: f64 = 500.0;
 
-/// The hold under which the first stretch of the recording has the largest likelihood; a straight line where none gives
-/// a law, which errs least where nothing is known, and of a free motion, where nothing is held. Always by our method:
-/// the publication's states no likelihood. Of a model with numbers only, all are estimated.
+/// The hold under which the first long stretch of the recording has the largest likelihood; a straight line where none
+/// gives a law, which errs least where nothing is known, and of a free motion, where nothing is held. Always by our
+/// method: the publication's states no likelihood. Of a model with numbers only, all are estimated.
 pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) -> Hold {
     if !recording.channels().excitation {
         return Hold::Linear;
@@ -133,7 +133,7 @@ pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) ->
         Some((hold, Identifier::new(model, settings).ok()?))
     };
     let mut rivals: Vec<(Hold, Identifier)> = Hold::ALL.into_iter().filter_map(begin).collect();
-    let piece = recording.pieces().into_iter().next().unwrap_or(0..0);
+    let piece = told_by(recording);
     let mut next = piece.start;
     for trial in HOLD_TRIALS {
         let end = piece.end.min(piece.start + trial);
@@ -154,6 +154,14 @@ pub fn choose_hold(model: &Model, recording: &Recording, settings: &Settings) ->
     tried.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(Hold::Linear, |(hold, _)| hold)
 }
 
+/// The first stretch without gaps that is long enough to compare holds on, or the longest.
+fn told_by(recording: &Recording) -> Range<usize> {
+    let pieces = recording.pieces();
+    let enough = |piece: &&Range<usize>| piece.len() >= HOLD_TRIALS[0];
+    let piece = pieces.iter().find(enough).or_else(|| pieces.iter().max_by_key(|piece| piece.len()));
+    piece.cloned().unwrap_or(0..0)
+}
+
 /// Drops the holds whose law is far less likely after so many samples than the best one's.
 fn drop_beaten(rivals: &mut Vec<(Hold, Identifier)>, samples: f64) {
     let known = rivals.iter().filter_map(|(_, identifier)| identifier.likelihood());
@@ -163,7 +171,7 @@ fn drop_beaten(rivals: &mut Vec<(Hold, Identifier)>, samples: f64) {
 
 /// Steps an identifier over every sample and collects the stages. What a gap may hide, a switch or an offset, is told
 /// as in any stream; where none is [carried over](carries_over_gaps), each gap starts a new identifier that knows the
-/// laws before it. `watch` is called after every sample with its index.
+/// laws before it. `watch` is called after every sample with it, also after one that lacks a reading.
 ///
 /// # Errors
 /// [`BuildError`] when settings or model are refused.
@@ -171,7 +179,7 @@ pub fn identify_recording(
     model: &Model,
     settings: Settings,
     recording: &Recording,
-    watch: impl FnMut(&Identifier, usize),
+    watch: impl FnMut(&Identifier, Sample),
 ) -> Result<Identification, BuildError> {
     identify_knowing(model, settings, &SavedLaws::default(), recording, watch)
 }
@@ -185,7 +193,7 @@ pub fn identify_knowing(
     settings: Settings,
     known: &SavedLaws,
     recording: &Recording,
-    mut watch: impl FnMut(&Identifier, usize),
+    mut watch: impl FnMut(&Identifier, Sample),
 ) -> Result<Identification, BuildError> {
     let fresh = Identifier::new(model, settings)?;
     let mut found = Identification { known_laws: known.clone(), hold: settings.hold, ..Identification::default() };
@@ -212,11 +220,13 @@ fn follow(
     recording: &Recording,
     piece: Range<usize>,
     found: &mut Identification,
-    watch: &mut impl FnMut(&Identifier, usize),
+    watch: &mut impl FnMut(&Identifier, Sample),
 ) {
-    let mut present = begin(&identifier, recording.t()[piece.start]);
-    for index in piece {
-        let sample = recording.sample(index);
+    let mut samples = (piece.start..).zip(recording.stream(piece)).peekable();
+    let start = samples.peek().map_or(0.0, |(_, sample)| sample.t);
+    let mut present = begin(&identifier, start);
+    end_faults(&mut found.sensors, start);
+    for (index, sample) in samples {
         let switches = identifier.output().switch_count;
         let sensors = identifier.output().sensors;
         found.skipped.extend(identifier.step(sample).err());
@@ -231,7 +241,7 @@ fn follow(
         if index % RENEW_UNIDENTIFIABLE == 0 {
             present.unidentifiable = identifier.unidentifiable();
         }
-        watch(&identifier, index);
+        watch(&identifier, sample);
     }
     present.unidentifiable = identifier.unidentifiable();
     present.valid = identifier.output().valid;
@@ -239,6 +249,11 @@ fn follow(
     found.known_laws = identifier.known_laws();
     let (now, before) = (identifier.output().noise, found.noise);
     found.noise = ByQuantity { q: now.q.or(before.q), qd: now.qd.or(before.qd), force: now.force.or(before.force) };
+}
+
+/// An identifier that begins anew knows of no fault.
+fn end_faults(faults: &mut [SensorFault], t: f64) {
+    faults.iter_mut().filter(|fault| fault.end.is_none()).for_each(|fault| fault.end = Some(t));
 }
 
 /// Faults that have ended at a sample, and those that have begun.

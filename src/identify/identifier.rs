@@ -6,7 +6,7 @@ use super::force_law::ForceTracker;
 use super::library::{SavedLaws, SavedLawsError};
 use super::problem::Problem;
 use super::published_method::Publication;
-use super::report::{CHANNELS, Coefficient, Output, SensorState};
+use super::report::{Coefficient, Output, SensorState};
 use super::sample::{Sample, Skipped};
 use super::settings::{Method, Settings};
 use super::timing::Alignment;
@@ -68,7 +68,7 @@ impl Identifier {
     /// [`Skipped`] says why the sample, or the one before it, was not used; the identifier goes on unchanged.
     pub fn step(&mut self, sample: Sample) -> Result<(), Skipped> {
         let measured = self.measured(sample);
-        let t = self.accept(&measured).map_err(|skipped| self.skip(sample.t, skipped))?;
+        let t = self.accept(&measured).map_err(|skipped| self.skip(&measured, skipped))?;
         self.clock.advance(t);
         let read = self.sender.read(Sample { t, ..measured })?;
         let Some(sample) = read.and_then(|sample| self.alignment.align(self.problem.timing.lag, sample)) else {
@@ -101,13 +101,15 @@ impl Identifier {
     }
 
     /// What is published does not hold for the present once samples are missing.
-    fn skip(&mut self, t: f64, skipped: Skipped) -> Skipped {
-        if self.clock.is_stale(t) {
+    fn skip(&mut self, sample: &Sample, skipped: Skipped) -> Skipped {
+        if self.clock.is_stale(sample.t) {
             self.output.valid = false;
             let varies = self.sender.varies();
+            let lacking = [sample.q, sample.qd, sample.excitation].map(|value| !value.is_finite());
             for (index, sensor) in self.output.sensors.iter_mut().enumerate() {
                 match skipped {
-                    Skipped::NotFinite { channel, .. } if channel == CHANNELS[index] => *sensor = SensorState::Missing,
+                    Skipped::NotFinite { .. } if lacking[index] => *sensor = SensorState::Missing,
+                    Skipped::NotFinite { .. } if *sensor == SensorState::Missing => *sensor = SensorState::Ok,
                     Skipped::Repeated { .. } if varies[index] => *sensor = SensorState::Stuck,
                     _ => {}
                 }

@@ -9,6 +9,11 @@ use thiserror::Error;
 const NEVER_TOO_SOON: f64 = 1.9;
 
 /// Measured signals over increasing time, SI units; each signal has as many values as there are times.
+///
+/// Where a sensor gave no reading at a sample, that one is no sample of the signals but [incomplete]: they leave it out
+/// as a gap does, and only the stream sees it.
+///
+/// [incomplete]: Recording::incomplete
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     t: Vec<f64>,
@@ -16,6 +21,7 @@ pub struct Recording {
     qd: Option<Vec<f64>>,
     excitation: Option<Vec<f64>>,
     source: String,
+    incomplete: Vec<Sample>,
 }
 
 /// A time without samples, far longer than the usual distance of two.
@@ -37,6 +43,28 @@ pub enum RecordingError {
         source_name: String,
         /// How many samples there are.
         count: usize,
+    },
+    /// Too few samples of which no reading is missing.
+    #[error(
+        "{source_name}: of {of} samples {count} have a reading of every channel, but at least {} are needed: \
+         where sensors are read at different times, resample them, or leave a channel out",
+        Recording::MINIMUM
+    )]
+    TooFewWhole {
+        /// Where it came from.
+        source_name: String,
+        /// How many samples are whole.
+        count: usize,
+        /// How many there are.
+        of: usize,
+    },
+    /// A signal without any reading.
+    #[error("{source_name}: {channel} has no reading at all: leave it out, or name another signal")]
+    NoReading {
+        /// Where it came from.
+        source_name: String,
+        /// Which signal.
+        channel: &'static str,
     },
     /// Signals of different length.
     #[error("{source_name}: {channel} has {found} values for {expected} times")]
@@ -118,12 +146,44 @@ impl Recording {
         qd: Option<Vec<f64>>,
         excitation: Option<Vec<f64>>,
     ) -> Result<Recording, RecordingError> {
-        let recording = Recording { t, q, qd, excitation, source: source.into() };
-        recording.check()?;
+        let recording = Recording { t, q, qd, excitation, source: source.into(), incomplete: Vec::new() };
+        recording.check_signals(Recording::is_reading)?;
+        recording.check_motion()?;
         Ok(recording)
     }
 
-    fn check(&self) -> Result<(), RecordingError> {
+    /// The same where NaN in q, q̇ or F is a reading that the sensor did not give.
+    ///
+    /// # Errors
+    /// [`RecordingError`] names the signal and the sample at fault.
+    pub fn with_missing(
+        source: &str,
+        t: Vec<f64>,
+        q: Option<Vec<f64>>,
+        qd: Option<Vec<f64>>,
+        excitation: Option<Vec<f64>>,
+    ) -> Result<Recording, RecordingError> {
+        let all = Recording { t, q, qd, excitation, source: source.into(), incomplete: Vec::new() };
+        all.check_signals(|value| value.is_nan() || Recording::is_reading(value))?;
+        let source_name = all.source.clone();
+        if let Some((channel, _)) = all.signals().find(|(_, values)| values.iter().all(|value| value.is_nan())) {
+            return Err(RecordingError::NoReading { source_name, channel });
+        }
+        let is_whole = |index: &usize| all.signals().all(|(_, values)| !values[*index].is_nan());
+        let (whole, lacking): (Vec<usize>, Vec<usize>) = (0..all.count()).partition(is_whole);
+        if lacking.is_empty() {
+            return all.check_motion().map(|()| all);
+        }
+        if whole.len() < Recording::MINIMUM {
+            return Err(RecordingError::TooFewWhole { source_name, count: whole.len(), of: all.count() });
+        }
+        let incomplete = lacking.into_iter().map(|index| all.sample(index)).collect();
+        let kept = all.cut(|values| whole.iter().map(|index| values[*index]).collect())?;
+        Ok(Recording { incomplete, ..kept })
+    }
+
+    /// Checks lengths, times and that every value `fits`.
+    fn check_signals(&self, fits: impl Fn(f64) -> bool) -> Result<(), RecordingError> {
         let source_name = self.source.clone();
         if self.q.is_none() && self.qd.is_none() {
             return Err(RecordingError::NothingMeasured { source_name });
@@ -131,28 +191,40 @@ impl Recording {
         if self.t.len() < Recording::MINIMUM {
             return Err(RecordingError::TooFew { source_name, count: self.t.len() });
         }
-        self.check_signal("t", &self.t)?;
+        self.check_signal("t", &self.t, Recording::is_reading)?;
         for (channel, values) in self.signals() {
-            self.check_signal(channel, values)?;
+            self.check_signal(channel, values, &fits)?;
         }
-        if let Some(index) = self.t.windows(2).position(|pair| pair[1] <= pair[0]) {
-            let (previous, t) = (self.t[index], self.t[index + 1]);
-            return Err(RecordingError::NotIncreasing { source_name, index: index + 1, previous, t });
-        }
-        match self.signals().find(|(channel, values)| *channel != "F" && is_constant(values)) {
-            Some((channel, values)) => Err(RecordingError::Constant { source_name, channel, value: values[0] }),
+        match self.t.windows(2).position(|pair| pair[1] <= pair[0]) {
+            Some(index) => {
+                let (previous, t) = (self.t[index], self.t[index + 1]);
+                Err(RecordingError::NotIncreasing { source_name, index: index + 1, previous, t })
+            }
             None => Ok(()),
         }
     }
 
-    fn check_signal(&self, channel: &'static str, values: &[f64]) -> Result<(), RecordingError> {
+    fn check_signal(
+        &self,
+        channel: &'static str,
+        values: &[f64],
+        fits: impl Fn(f64) -> bool,
+    ) -> Result<(), RecordingError> {
         let source_name = self.source.clone();
         let (found, expected) = (values.len(), self.t.len());
         if found != expected {
             return Err(RecordingError::Length { source_name, channel, found, expected });
         }
-        match values.iter().position(|value| !Recording::is_reading(*value)) {
+        match values.iter().position(|value| !fits(*value)) {
             Some(index) => Err(RecordingError::NotFinite { source_name, channel, index }),
+            None => Ok(()),
+        }
+    }
+
+    fn check_motion(&self) -> Result<(), RecordingError> {
+        let source_name = self.source.clone();
+        match self.signals().find(|(channel, values)| *channel != "F" && is_constant(values)) {
+            Some((channel, values)) => Err(RecordingError::Constant { source_name, channel, value: values[0] }),
             None => Ok(()),
         }
     }
@@ -177,6 +249,16 @@ impl Recording {
         self.signals().find(|(name, _)| *name == channel).map(|(_, values)| values)
     }
 
+    /// The samples of which a reading is missing, NaN in its place, in the order of time.
+    pub fn incomplete(&self) -> &[Sample] {
+        &self.incomplete
+    }
+
+    /// How many samples came, with the incomplete ones.
+    pub fn came(&self) -> usize {
+        self.count() + self.incomplete.len()
+    }
+
     /// How many samples it has; at least [`Recording::MINIMUM`].
     pub fn count(&self) -> usize {
         self.t.len()
@@ -192,6 +274,21 @@ impl Recording {
     pub fn sample(&self, index: usize) -> Sample {
         let value = |values: &Option<Vec<f64>>| values.as_deref().map_or(0.0, |values| values[index]);
         Sample { t: self.t[index], q: value(&self.q), qd: value(&self.qd), excitation: value(&self.excitation) }
+    }
+
+    /// The samples of a piece as they came, with the incomplete ones up to the next piece; the first piece's with those
+    /// before it.
+    pub fn stream(&self, piece: Range<usize>) -> impl Iterator<Item = Sample> {
+        let before = |index: usize| match self.t.get(index) {
+            Some(t) => self.incomplete.partition_point(|sample| sample.t < *t),
+            None => self.incomplete.len(),
+        };
+        let first = if piece.start == 0 { before(0) } else { 0 };
+        let with_next = move |index: usize| {
+            let incomplete = &self.incomplete[before(index)..before(index + 1)];
+            std::iter::once(self.sample(index)).chain(incomplete.iter().copied())
+        };
+        self.incomplete[..first].iter().copied().chain(piece.flat_map(with_next))
     }
 
     /// The usual distance of two samples, s: the median.
@@ -213,7 +310,16 @@ impl Recording {
         pairs.map(|pair| Gap { start: pair[0], end: pair[1] }).collect()
     }
 
-    /// A part of it, by the positions of its samples.
+    /// The gaps in which no sample at all came, not even an incomplete one.
+    pub fn silences(&self) -> Vec<Gap> {
+        let came = |gap: &Gap| {
+            let next = self.incomplete.partition_point(|sample| sample.t < gap.start);
+            self.incomplete.get(next).is_some_and(|sample| sample.t < gap.end)
+        };
+        self.gaps().into_iter().filter(|gap| !came(gap)).collect()
+    }
+
+    /// A part of it, by the positions of its samples; without those that are incomplete.
     ///
     /// # Errors
     /// [`RecordingError`] where the part has too few samples, or does not move.
@@ -274,6 +380,36 @@ mod tests {
         assert!((recording.sample_time() - 0.1).abs() < 1e-12);
         assert_eq!(recording.gaps(), [Gap { start: t[14], end: t[15] }]);
         assert_eq!(recording.pieces(), [0..15, 15..40]);
+    }
+
+    #[test]
+    fn the_stream_has_the_samples_that_lack_a_reading() {
+        let t: Vec<f64> = (0..30).map(f64::from).collect();
+        let missing = [0, 1, 7, 12, 13, 14, 15, 16, 29];
+        let q = (0..30).map(|n| if missing.contains(&n) { f64::NAN } else { f64::from(n) }).collect();
+        let recording = Recording::with_missing("x", t.clone(), Some(q), Some(t.clone()), None).unwrap();
+        assert_eq!((recording.count(), recording.incomplete().len(), recording.sample(0).q), (21, 9, 2.0));
+        let times = |piece| recording.stream(piece).map(|sample| sample.t).collect::<Vec<f64>>();
+        assert_eq!(times(0..21), t);
+        let pieces: Vec<Vec<f64>> = recording.pieces().into_iter().map(times).collect();
+        assert_eq!((pieces.len(), pieces.concat()), (2, t.clone()));
+        let lacking: Vec<f64> = recording.stream(0..21).filter(|s| s.q.is_nan()).map(|s| s.t).collect();
+        assert_eq!(lacking, missing.map(f64::from));
+        assert_eq!((recording.gaps().len(), recording.silences().len()), (1, 0));
+        assert_eq!(recording.section(3..20).unwrap().incomplete().len(), 0);
+    }
+
+    #[test]
+    fn what_is_missing_must_not_be_everything() {
+        let t: Vec<f64> = (0..30).map(f64::from).collect();
+        let new = |q: Vec<f64>| Recording::with_missing("x", t.clone(), Some(t.clone()), Some(q), None);
+        assert!(matches!(new(vec![f64::NAN; 30]), Err(RecordingError::NoReading { channel: "qd", .. })));
+        let few = (0..30).map(|n| if n % 4 == 0 { f64::from(n) } else { f64::NAN }).collect();
+        assert!(matches!(new(few), Err(RecordingError::TooFewWhole { count: 8, of: 30, .. })));
+        let mut wrong = t.clone();
+        wrong[4] = f64::INFINITY;
+        assert!(matches!(new(wrong), Err(RecordingError::NotFinite { channel: "qd", index: 4, .. })));
+        assert!(Recording::new("x", t.clone(), Some(vec![f64::NAN; 30]), None, None).is_err());
     }
 
     #[test]

@@ -21,7 +21,12 @@ fn bad_cells_are_named_by_line_and_column() {
             }
         };
         bench.write(&file, &csv("t,q,qd,F", 50, change));
-        bench.identify_refuses(&file, &[&[file.as_str(), "delete the line"], words].concat());
+        let words = [&[file.as_str(), "delete the line"], words].concat();
+        bench.refused(&["diagnose", &file, "--model", "model.toml"], &words);
+        // readings that are missing are no fault of a stream
+        if !["nan", "empty"].contains(&name) {
+            bench.identify_refuses(&file, &words);
+        }
     }
 }
 

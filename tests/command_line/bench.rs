@@ -77,3 +77,21 @@ pub fn csv(header: &str, count: usize, change: impl Fn(usize, &mut Vec<String>))
 pub fn plain(header: &str, count: usize) -> String {
     csv(header, count, |_, _| {})
 }
+
+/// Cells of a record of a Duffing oscillator under its header, 12 s at 1 kHz, one law throughout.
+pub fn duffing(bench: &Bench) -> Vec<Vec<String>> {
+    let plant = "terms = [\"qdd\", \"qd\", \"q\", \"q^3\"]\nduration = 12.0\nseed = 7\n\
+                 initial = { q = 0.5, qd = 0.0 }\nnoise = { q = 0.01, qd = 0.01 }\nexcitation = { kind = \"sine\" }\n\
+                 [[stage]]\nstart = 0.0\ncoefficients = [1.0, 0.3, 4.0, 2.0]\namplitude = 2.0\nomega = 1.5\n";
+    bench.write("plant.toml", plant);
+    bench.json(&["simulate", "plant.toml", "-o", "plant.csv", "--force", "--json"]);
+    let text = std::fs::read_to_string(bench.0.join("plant.csv")).unwrap();
+    text.lines().map(|line| line.split(',').map(String::from).collect()).collect()
+}
+
+/// Writes such a record with cells that `change` alters by the number of their sample.
+pub fn write_changed(bench: &Bench, name: &str, lines: &[Vec<String>], change: impl Fn(usize, &mut [String])) {
+    let mut lines = lines.to_vec();
+    lines[1..].iter_mut().enumerate().for_each(|(index, cells)| change(index, cells));
+    bench.write(name, &lines.iter().map(|cells| cells.join(",") + "\n").collect::<String>());
+}

@@ -96,14 +96,14 @@ fn sections_are_read_and_bad_ones_refused() {
     let bench = Bench::new("sections");
     let bad_outside = |line: usize, cells: &mut Vec<String>| {
         if line == 3 {
-            cells[1] = "NaN".into()
+            cells[1] = "abc".into()
         }
     };
     bench.write("data.csv", &csv("t,q,qd,F", 500, bad_outside));
     let report = bench.json(&["identify", "data.csv@1:3", "--model", "model.toml", "--json"]);
     assert_eq!(report["stages"][0]["start"], 1.0);
     assert_eq!(report["stages"].as_array().unwrap().last().unwrap()["end"], 2.99);
-    bench.identify_refuses("data.csv@:2", &["line 3", "\"q\"", "NaN"]);
+    bench.identify_refuses("data.csv@:2", &["line 3", "\"q\"", "abc"]);
     bench.identify_refuses("data.csv@3:1", &["data.csv@3:1", "no section"]);
     bench.identify_refuses("data.csv@a:1", &["\"a:1\"", "no section"]);
     bench.identify_refuses("data.csv@70:90", &["0 samples are too few", "runs from 0 s to 4.99 s"]);

@@ -125,11 +125,15 @@ fn completion_and_manual_know_every_command() {
 #[test]
 fn faults_are_counted_and_told_once() {
     let bench = Bench::new("counted");
-    let change = |line, cells: &mut Vec<String>| {
-        if (100..300).contains(&line) {
-            cells[1] = "NaN".into();
-        }
-    };
-    bench.write("block.csv", &csv("t,q,qd,F", 500, change));
-    bench.identify_refuses("block.csv", &["line 100", "NaN", "199 more lines", "line 299"]);
+    for (file, cell) in [("block.csv", "NaN"), ("text.csv", "abc")] {
+        let change = |line, cells: &mut Vec<String>| {
+            if (100..300).contains(&line) {
+                cells[1] = cell.into();
+            }
+        };
+        bench.write(file, &csv("t,q,qd,F", 500, change));
+        let words = ["line 100", cell, "199 more lines", "line 299"];
+        bench.refused(&["compare", file, "--model", "model.toml"], &words);
+    }
+    bench.identify_refuses("text.csv", &["line 100", "abc", "199 more lines", "line 299"]);
 }

@@ -11,6 +11,7 @@ mod habits;
 mod known_laws;
 mod limits;
 mod looked;
+mod missing_readings;
 mod own_effects;
 mod sensors;
 mod units;

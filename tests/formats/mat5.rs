@@ -147,6 +147,8 @@ fn bad_samples_are_named() {
         values[6] = value;
         values
     };
+    let missing = with(2, changed(qd, f64::NAN)).stream().recording;
+    assert_eq!((missing.count(), missing.incomplete()[0].t), (COUNT - 1, t(6)));
     with(2, changed(qd, f64::NAN)).refuses("", &["sample 7", "\"qd\" is NaN", "delete the sample"]);
     with(3, changed(excitation, f64::INFINITY)).refuses("", &["sample 7", "\"F\" is inf"]);
     with(0, changed(t, t(5))).refuses("", &["sample 7", "does not increase", "sample 6"]);

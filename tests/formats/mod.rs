@@ -7,7 +7,7 @@ mod objects;
 mod parquet;
 
 use std::path::{Path, PathBuf};
-use switchid::data::{Opened, open_recording};
+use switchid::data::{Opened, open_recording, open_stream};
 use switchid::law::Model;
 
 /// How many samples the files of these tests hold.
@@ -57,6 +57,11 @@ impl Bench {
 
     fn open(&self, columns: &str) -> Opened {
         open_recording(&self.path().display().to_string(), &model(columns)).unwrap()
+    }
+
+    /// As a stream has it: readings may be missing.
+    fn stream(&self) -> Opened {
+        open_stream(&self.path().display().to_string(), &model("")).unwrap()
     }
 
     fn refuses(&self, columns: &str, words: &[&str]) {

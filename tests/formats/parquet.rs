@@ -73,6 +73,9 @@ fn columns_are_read_however_they_are_packed() {
 #[test]
 fn rows_without_a_value_are_named() {
     Bench::of(&file(Compression::SNAPPY, &[30, 41])).refuses("", &["row 31", "\"q_mm\" is NaN"]);
+    let stream = Bench::of(&file(Compression::SNAPPY, &[30, 41])).stream();
+    assert_eq!(stream.recording.incomplete().iter().map(|sample| sample.t).collect::<Vec<_>>(), [30, 41].map(t));
+    assert!(stream.recording.count() == COUNT - 2 && stream.recording.incomplete()[0].q.is_nan());
     let all: Vec<usize> = (25..COUNT).collect();
     Bench::of(&file(Compression::SNAPPY, &all)).refuses("", &["row 26", "\"q_mm\""]);
 }

@@ -156,10 +156,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<(), CommandError> {
 fn run_over(arguments: &Arguments, trace: Option<Target>) -> Result<(Run, Course), CommandError> {
     let mut model = data::open_model(&arguments.model)?;
     arguments.columns.apply(&mut model)?;
-    let opened = data::open_recording(&arguments.data, &model)?;
+    let opened = data::open_stream(&arguments.data, &model)?;
     let (model, inner) = Waiting::on("fitting inner parameters", || with_inner(arguments, model, &opened.recording));
     let (settings, hold_from) = settings(arguments, &model, &opened.recording)?;
-    let mut course = Course::new(opened.recording.count());
+    let mut course = Course::new(opened.recording.came());
     let found = identify(arguments, &model, settings, &opened.recording, trace.as_ref(), &mut course)?;
     let limits = Waiting::on("looking for the limits", || match model.is_force_law() {
         true => force_limits(&model, &found, &opened.recording),
@@ -204,14 +204,14 @@ fn identify(
     course: &mut Course,
 ) -> Result<Identification, CommandError> {
     let known = arguments.known_laws.as_deref().map(data::open_laws).transpose()?.unwrap_or_default();
-    let mut progress = Progress::new(recording.count());
+    let mut progress = Progress::new(recording.came());
+    let mut index = 0;
     let mut trace = trace.map(|target| Trace::create(target, model)).transpose()?;
-    let found = identify::identify_knowing(model, settings, &known, recording, |identifier, index| {
+    let found = identify::identify_knowing(model, settings, &known, recording, |identifier, sample| {
         progress.reached(index);
-        course.push(recording.t()[index], index, identifier);
-        if let Some(trace) = &mut trace {
-            trace.push(recording.t()[index], identifier);
-        }
+        course.push(sample.t, index, identifier);
+        trace.iter_mut().for_each(|trace| trace.push(sample.t, identifier));
+        index += 1;
     });
     progress.finish();
     trace.map_or(Ok(()), Trace::finish)?;
@@ -295,7 +295,7 @@ fn gap_warnings(source: &str, gaps: &[Gap], carried: bool) -> Vec<String> {
 fn warnings(run: &Run) -> Vec<String> {
     let recording = &run.opened.recording;
     let source = recording.source();
-    let mut warnings = gap_warnings(source, &recording.gaps(), run.carries_over_gaps);
+    let mut warnings = gap_warnings(source, &recording.silences(), run.carries_over_gaps);
     if !recording.channels().excitation {
         warnings.push(format!("{source}: there is no excitation: taken as free motion, the inertia is fixed to 1"));
     }

@@ -113,7 +113,7 @@ impl Report {
             sensors: found.sensors.iter().map(SensorReport::of).collect(),
             hold: found.hold.id(),
             inner: Pairs(run.inner.clone()),
-            gaps: opened.recording.gaps().into_iter().map(|gap| [gap.start, gap.end]).collect(),
+            gaps: opened.recording.silences().into_iter().map(|gap| [gap.start, gap.end]).collect(),
             skipped: found.skipped.len(),
         }
     }

@@ -92,9 +92,15 @@ fn again(before: &[Stage], stage: &Stage) -> String {
 
 fn head(run: &Run) -> String {
     let recording = &run.opened.recording;
-    let (first, last) = (recording.sample(0).t, recording.sample(recording.count() - 1).t);
-    let (source, count, first, last) = (recording.source(), recording.count(), seconds(first), seconds(last));
-    let mut text = format!("{source}: {count} samples from {first} s to {last} s\n");
+    let times = recording.stream(0..recording.count()).map(|sample| sample.t);
+    let [first, last] = times.fold([f64::INFINITY, 0.0], |[first, _], t| [t.min(first), t]).map(seconds);
+    let (source, count) = (recording.source(), recording.came());
+    let mut text = format!("{source}: {count} samples from {first} s to {last} s");
+    text += &match recording.incomplete().len() {
+        0 => "\n".into(),
+        1 => ", one of them without all readings\n".into(),
+        lacking => format!(", {lacking} of them without all readings\n"),
+    };
     for column in &run.opened.columns {
         let _ = writeln!(text, "  {column}");
     }

@@ -1,7 +1,7 @@
 //! One channel by itself: wild readings, stuck stretches, coarse steps, clipping, an offset.
 
 use super::remark::Remark;
-use crate::identify::Recording;
+use crate::identify::{Recording, Sample};
 use crate::law::numerals::{digits, seconds};
 use std::ops::Range;
 
@@ -42,6 +42,7 @@ pub(super) fn remarks(recording: &Recording) -> Vec<Remark> {
     let t = recording.t();
     let mut said = Vec::new();
     for (channel, values) in &signals {
+        said.extend(missing_words(recording, channel).map(|sentence| Remark::new(channel, "missing", sentence)));
         let others: Vec<&[f64]> =
             signals.iter().filter(|(other, _)| other != channel).map(|(_, values)| *values).collect();
         let moves = *channel != "F";
@@ -55,6 +56,24 @@ pub(super) fn remarks(recording: &Recording) -> Vec<Remark> {
         }
     }
     said
+}
+
+/// How often a sensor gave no reading.
+fn missing_words(recording: &Recording, channel: &str) -> Option<String> {
+    let value = |sample: &Sample| match channel {
+        "q" => sample.q,
+        "qd" => sample.qd,
+        _ => sample.excitation,
+    };
+    let mut lacking = recording.incomplete().iter().filter(|sample| value(sample).is_nan());
+    let first = seconds(lacking.next()?.t);
+    Some(match lacking.count() {
+        0 => format!("has no value at {first} s: that sample says nothing of the motion"),
+        others => {
+            let (count, of) = (others + 1, recording.came());
+            format!("has no value in {count} of {of} samples, the first at {first} s: they say nothing of the motion")
+        }
+    })
 }
 
 /// How far a reading stands off the line between its neighbours.

@@ -21,16 +21,16 @@ const UNKNOWN: &str = "nothing is known of the motion there";
 /// Remarks on the times.
 pub(super) fn remarks(recording: &Recording, period: Option<f64>) -> Vec<Remark> {
     let usual = recording.sample_time();
-    let distances = || recording.t().windows(2).map(|pair| (pair[0], pair[1] - pair[0]));
+    let t: Vec<f64> = recording.stream(0..recording.count()).map(|sample| sample.t).collect();
+    let distances = || t.windows(2).map(|pair| (pair[0], pair[1] - pair[0]));
     let mut said = Vec::new();
     let lost: Vec<(f64, f64)> = distances().filter(|(_, distance)| *distance > LOST * usual).collect();
     let missing: f64 = lost.iter().map(|(_, distance)| (distance / usual).round() - 1.0).sum();
     // What is lost is missing in the count over the whole record; after a reading that only came late the next one
     // comes the sooner.
-    let t = recording.t();
     let in_all = (t[t.len() - 1] - t[0]) / usual + 1.0 - t.len() as f64;
     if let Some((first, _)) = lost.first().filter(|_| missing >= 1.0 && in_all > 0.5 * missing) {
-        let share = 100.0 * missing / (missing + recording.count() as f64);
+        let share = 100.0 * missing / (missing + t.len() as f64);
         let (samples_are, after) = (if missing > 1.0 { "samples are" } else { "sample is" }, seconds(*first));
         let sentence = match lost.len() {
             1 => format!("{missing} {samples_are} missing ({share:.2} %) after {after} s: {UNKNOWN}"),
