@@ -1,6 +1,6 @@
 //! Looking at a recording: `check`, `init`, `--columns`, and what every command says of it.
 
-use super::bench::Bench;
+use super::bench::{Bench, duffing, write_changed};
 use serde_json::Value;
 
 /// A recording of 4000 samples of a motion with a little noise; `fault` changes a sample.
@@ -99,6 +99,65 @@ fn each_fault_of_a_sensor_is_named() {
         // what is wrong with one channel accuses no other one
         let foreign = found.iter().any(|kind| kind == "qd foreign" || kind == "qd sign") && !expected.starts_with("qd");
         assert!(!foreign, "{expected}: {found:?}");
+    }
+}
+
+/// What the rate is to the motion, and q̇ to q, is told by the readings that count.
+#[test]
+fn a_few_bad_readings_accuse_neither_rate_nor_channels() {
+    let bench = Bench::new("bad-few");
+    for (channel, wild) in [(1, "q wild"), (2, "qd wild")] {
+        for (length, at) in [1, 5, 20].into_iter().flat_map(|length| [0, 1, 5, 30, 2000, 3960].map(|at| (length, at))) {
+            let found = kinds(
+                &bench,
+                &record("t,q,qd,F", |index, row| {
+                    if (at..at + length).contains(&index) {
+                        row[channel] = 1e9;
+                    }
+                }),
+            );
+            // at the very beginning no reading before tells what is one
+            let expected = if at < 2 { vec![] } else { vec![wild.to_string()] };
+            assert_eq!(found, expected, "{length} of {channel} at {at}");
+        }
+    }
+}
+
+#[test]
+fn a_channel_that_is_read_less_often_does_not_make_the_motion_fast() {
+    let bench = Bench::new("read-less");
+    let text = record("t,q,qd,F", |_, _| {});
+    let cells: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
+    for (column, every) in [(1, 2), (1, 5), (2, 2)] {
+        let held = |(index, row): (usize, &Vec<&str>)| {
+            let mut row = row.clone();
+            row[column] = cells[1 + index / every * every][column];
+            row.join(",") + "\n"
+        };
+        let text = "t,q,qd,F\n".to_string() + &cells[1..].iter().enumerate().map(held).collect::<String>();
+        let found = kinds(&bench, &text);
+        assert!(!found.iter().any(|kind| ["t slow", "qd foreign"].contains(&kind.as_str())), "{every}: {found:?}");
+    }
+    // one in 60 of its samples: a period of the faster motion has four
+    let few: String = cells.iter().step_by(60).map(|row| row.join(",") + "\n").collect();
+    let found = kinds(&bench, &few.replacen(&cells[0].join(","), "t,q,qd,F", 1));
+    assert!(found.iter().any(|kind| kind == "t slow"), "{found:?}");
+}
+
+#[test]
+fn identify_notes_a_bad_reading_as_nothing_but_that() {
+    let bench = Bench::new("noted");
+    let lines = duffing(&bench);
+    for (name, channel, length) in [("qd", 2, 1), ("q", 1, 1), ("qd", 2, 5), ("q", 1, 5)] {
+        write_changed(&bench, "bad.csv", &lines, |index, cells| {
+            if (6000..6000 + length).contains(&index) {
+                cells[channel] = "1e9".into();
+            }
+        });
+        let said = String::from_utf8(bench.identify(&["bad.csv@3:9"]).stderr).unwrap();
+        let notes: Vec<&str> = said.lines().filter(|line| line.contains("note:")).collect();
+        assert!(notes.len() == 1 && notes[0].contains(&format!(": {name}: ")), "{length} of {name}: {said}");
+        assert!(notes[0].contains("far off"), "{said}");
     }
 }
 

@@ -1,22 +1,20 @@
 //! One channel by itself: wild readings, stuck stretches, coarse steps, clipping, an offset.
 
 use super::remark::Remark;
+use super::wild::{bend, smallest_step, wild};
 use crate::identify::{Recording, Sample};
 use crate::law::numerals::{digits, seconds};
 use std::ops::Range;
-
-/// Robust std by which a reading stands off the middle of its neighbours before it is wild: noise alone never does, and
-/// the neighbours' own differences must show its mirror image.
-const WILD: f64 = 12.0;
-
-/// Least share of a wild reading's height that its neighbours' differences show, of one half, and the most.
-const MIRRORED: Range<f64> = 0.35..0.65;
 
 /// Std ÷ step from which on steps are no coarse ones: the rounding error is then below a thousandth of the motion.
 const FINE: f64 = 300.0;
 
 /// Share of readings that equal the one before where steps are what limits a sensor.
 const REPEATED: f64 = 0.1;
+
+/// Share of readings that equal the one before, while others go on, in a channel that is read less often than they
+/// are: between a half, where every second one is read anew, and what coarse steps leave of a motion.
+const HELD: f64 = 0.3;
 
 /// Evidence in nats that equal readings are no chance: one in 10¹³.
 const STUCK: f64 = 30.0;
@@ -34,8 +32,8 @@ const LEVELS: usize = 16;
 /// Mean ÷ std about it from which the motion is beside its zero.
 const OFFSET: f64 = 3.0;
 
-/// Remarks on every channel.
-pub(super) fn remarks(recording: &Recording) -> Vec<Remark> {
+/// Remarks on every channel; `calm` is the recording without its wild readings.
+pub(super) fn remarks(recording: &Recording, calm: &Recording) -> Vec<Remark> {
     let channels = ["q", "qd", "F"];
     let signals = channels.map(|channel| Some((channel, recording.signal(channel)?)));
     let signals: Vec<(&'static str, &[f64])> = signals.into_iter().flatten().collect();
@@ -43,12 +41,11 @@ pub(super) fn remarks(recording: &Recording) -> Vec<Remark> {
     let mut said = Vec::new();
     for (channel, values) in &signals {
         said.extend(missing_words(recording, channel).map(|sentence| Remark::new(channel, "missing", sentence)));
-        let others: Vec<&[f64]> =
-            signals.iter().filter(|(other, _)| other != channel).map(|(_, values)| *values).collect();
         let moves = *channel != "F";
         let wild = wild(t, values, moves);
         said.extend(wild_words(t, values, &wild).map(|sentence| Remark::new(channel, "wild", sentence)));
-        said.extend(stuck(values, &others).map(|run| Remark::new(channel, "stuck", stuck_words(t, values, &run))));
+        let run = stuck_in(calm, channel, 0..calm.count());
+        said.extend(run.map(|run| Remark::new(channel, "stuck", stuck_words(t, values, &run))));
         said.extend(clipped(values).map(|sentence| Remark::new(channel, "clipped", sentence)));
         if moves {
             said.extend(coarse(values).map(|sentence| Remark::new(channel, "coarse", sentence)));
@@ -76,27 +73,6 @@ fn missing_words(recording: &Recording, channel: &str) -> Option<String> {
     })
 }
 
-/// How far a reading stands off the line between its neighbours.
-fn bend(t: &[f64], values: &[f64], at: usize) -> f64 {
-    let part = (t[at] - t[at - 1]) / (t[at + 1] - t[at - 1]);
-    values[at] - (1.0 - part) * values[at - 1] - part * values[at + 1]
-}
-
-/// Readings that stand alone: beside each spike its neighbours' bends show its mirror images. What is no motion may be
-/// a blow, as an excitation may, and is wild only where it leaves the range of all other readings by more than that
-/// range.
-pub(super) fn wild(t: &[f64], values: &[f64], moves: bool) -> Vec<usize> {
-    let bend = |at: usize| bend(t, values, at);
-    let mut sizes: Vec<f64> = (1..values.len() - 1).map(|at| bend(at).abs()).collect();
-    let middle = sizes.len() / 2;
-    let usual = *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745;
-    let usual = usual.max(smallest_step(values));
-    let mirrored = |at: usize, other: usize| MIRRORED.contains(&(-bend(other) / bend(at)));
-    let is_wild = |at: &usize| bend(*at).abs() > WILD * usual && mirrored(*at, at - 1) && mirrored(*at, at + 1);
-    let found: Vec<usize> = (2..values.len().saturating_sub(2)).filter(is_wild).collect();
-    if moves { found } else { beyond(values, &found) }
-}
-
 fn wild_words(t: &[f64], values: &[f64], found: &[usize]) -> Option<String> {
     let size = |at: usize| bend(t, values, at).abs();
     let largest = found.iter().copied().max_by(|a, b| size(*a).total_cmp(&size(*b)))?;
@@ -104,23 +80,9 @@ fn wild_words(t: &[f64], values: &[f64], found: &[usize]) -> Option<String> {
     Some(match found.len() {
         1 => format!("one reading stands far off its neighbours, {at}: correct or delete it"),
         count => {
-            format!("{count} single readings stand far off their neighbours, the largest {at}: correct or delete them")
+            format!("{count} readings stand far off their neighbours, the largest {at}: correct or delete them")
         }
     })
-}
-
-/// Those of the readings found that leave the range of all the others by more than that range.
-fn beyond(values: &[f64], found: &[usize]) -> Vec<usize> {
-    let others: Vec<f64> =
-        (0..values.len()).filter(|at| found.binary_search(at).is_err()).map(|at| values[at]).collect();
-    let [low, high] = ends(&others);
-    let far = |at: &&usize| values[**at] > high + (high - low) || values[**at] < low - (high - low);
-    found.iter().filter(far).copied().collect()
-}
-
-fn smallest_step(values: &[f64]) -> f64 {
-    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).filter(|step| *step > 0.0);
-    Some(steps.fold(f64::INFINITY, f64::min)).filter(|step| step.is_finite()).unwrap_or(0.0)
 }
 
 /// The runs of equal readings, as positions of their first and last.
@@ -131,9 +93,16 @@ fn runs(values: &[f64]) -> impl Iterator<Item = (usize, usize)> {
     starts.zip(ends)
 }
 
+/// The longest run of equal readings of a channel in a part of a recording, where it is stuck.
+pub(super) fn stuck_in(recording: &Recording, channel: &str, part: Range<usize>) -> Option<Range<usize>> {
+    let others = ["q", "qd", "F"].into_iter().filter(|other| *other != channel);
+    let others: Vec<&[f64]> = others.filter_map(|other| Some(&recording.signal(other)?[part.clone()])).collect();
+    stuck(&recording.signal(channel)?[part.clone()], &others)
+}
+
 /// The longest run of equal readings, where chance does not explain it and another channel goes on meanwhile as it does
 /// elsewhere. At an end of the range a sensor is clipped, not stuck.
-pub(super) fn stuck(values: &[f64], others: &[&[f64]]) -> Option<Range<usize>> {
+fn stuck(values: &[f64], others: &[&[f64]]) -> Option<Range<usize>> {
     let (start, end) = runs(values).max_by_key(|(start, end)| end - start)?;
     let length = end - start;
     let repeats = values.len() - runs(values).count() - length;
@@ -157,7 +126,7 @@ fn stuck_words(t: &[f64], values: &[f64], run: &Range<usize>) -> String {
     )
 }
 
-fn ends(values: &[f64]) -> [f64; 2] {
+pub(super) fn ends(values: &[f64]) -> [f64; 2] {
     [values.iter().copied().fold(f64::INFINITY, f64::min), values.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
 }
 
@@ -230,6 +199,21 @@ fn coarse(values: &[f64]) -> Option<String> {
     })
 }
 
+/// Whether a channel is read less often than the others: it repeats itself while they go on, and not because it is
+/// rounded, as one is whose changes are mostly a single step.
+pub(super) fn is_held(values: &[f64], others: &[&[f64]]) -> bool {
+    let repeats = |values: &[f64], at: usize| values[at] == values[at - 1];
+    let alone = |at: &usize| repeats(values, *at) && others.iter().any(|other| !repeats(other, *at));
+    if (1..values.len()).filter(alone).count() as f64 <= HELD * values.len() as f64 {
+        return false;
+    }
+    let mut changes: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    changes.retain(|change| *change > 0.0);
+    changes.sort_unstable_by(f64::total_cmp);
+    let [small, usual] = [10, 2].map(|part| changes.get(changes.len() / part).copied().unwrap_or(0.0));
+    small < 0.5 * usual
+}
+
 /// A mean far from 0 of what swings.
 fn beside(values: &[f64]) -> Option<String> {
     let (mean, spread) = (mean(values), spread(values));
@@ -258,6 +242,17 @@ mod tests {
         assert!(coarse(&rounded).unwrap().contains("steps of 0.0200"));
         let square: Vec<f64> = values.iter().map(|value| value.signum()).collect();
         assert_eq!((wild(&t, &square, true), clipped(&square)), (vec![], None));
+    }
+
+    #[test]
+    fn a_channel_is_held_where_it_repeats_itself_at_any_speed() {
+        let (t, values): (Vec<f64>, Vec<f64>) = ((0..4000).map(f64::from).collect(), sine());
+        let held = |every: usize| (0..4000).map(|at| values[at / every * every]).collect::<Vec<f64>>();
+        let rounded = |step: f64| values.iter().map(|value| (value / step).round() * step).collect::<Vec<f64>>();
+        assert_eq!([1, 2, 3, 10].map(|every| is_held(&held(every), &[&t])), [false, true, true, true]);
+        assert_eq!([0.001, 0.01, 0.02, 0.1].map(|step| is_held(&rounded(step), &[&t])), [false; 4]);
+        // what rests with all others is read
+        assert!(!is_held(&held(2), &[&held(2)]));
     }
 
     #[test]
