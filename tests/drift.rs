@@ -1,6 +1,6 @@
 //! Slow drift of a coefficient is told from a switch: it is said and followed, and raises no stream of alarms.
 
-use switchid::identify::{Coefficient, Identifier, Output, Sample, Settings};
+use switchid::identify::{Coefficient, Identifier, Output, Sample, Settings, Status};
 use switchid::law::{Given, Model, State};
 use switchid::simulate::{Builtin, ExcitationKind, Scenario, Stage, record};
 
@@ -62,14 +62,17 @@ fn is_followed(scenario: &Scenario, duration: f64, least: f64) {
     let alarms = after.last().unwrap().1.switch_count;
     assert!(alarms <= 1, "{alarms} alarms");
     assert!(after.iter().all(|(t, output, ..)| !output.drifting || *t > 20.0));
-    let told: Vec<_> =
-        after.iter().filter(|(t, output, ..)| output.drifting && output.valid && *t < 20.0 + duration).collect();
+    // by values that may be known too little to be valid
+    let is_told = |output: &Output| output.drifting && output.status == Status::Tracking;
+    let told: Vec<_> = after.iter().filter(|(t, output, ..)| is_told(output) && *t < 20.0 + duration).collect();
     let share = told.len() as f64 * SAMPLE_TIME / duration;
     assert!(share > least, "told for {share} of the drift");
     let mean = told.iter().map(|after| normalised(after)).sum::<f64>() / told.len() as f64;
     assert!(mean < 4.0, "(error ÷ std)² is {mean}");
     let near = |(_, _, known, truth): &&After| (known[2].value / truth[2] - 1.0).abs() < 0.15;
     assert!(told.iter().all(near));
+    let wrong = wrong_for(&after, &[]);
+    assert!(wrong < 3.0, "valid and wrong for {wrong} s");
 }
 
 #[test]
@@ -119,14 +122,14 @@ fn wrong_for(after: &[After], switches: &[f64]) -> f64 {
 }
 
 const SETTLED: [f64; 4] = [1.0, 0.3, 4.0, 2.0];
-const WORN: [[f64; 4]; 3] = [[1.25, 0.27, 4.5, 2.1], [0.85, 0.4, 4.0, 1.5], [1.1, 0.3, 5.0, 2.6]];
+const WORN: [[f64; 4]; 2] = [[0.85, 0.4, 4.0, 1.5], [1.1, 0.3, 5.0, 2.6]];
 
 /// Nothing in the motion under one sine tells all coefficients apart while they move: what it does not tell is not
 /// valid.
 #[test]
 fn a_law_that_moves_as_a_whole_is_not_valid_and_wrong_and_left_once_it_rests() {
-    for (seed, to) in (70..).zip(WORN) {
-        let duration = if seed == 70 { 15.0 } else { 25.0 };
+    for (seed, to) in (71..).zip(WORN) {
+        let duration = 25.0;
         let after = run(&moving(65.0, between(duration, [SETTLED, to])).with_seed(seed));
         let wrong = wrong_for(&after, &[]);
         assert!(wrong < 1.0, "{seed}: valid and wrong for {wrong} s");

@@ -4,7 +4,7 @@ use crate::{NOISE, SWITCH};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::ops::Range;
-use switchid::simulate::{Builtin, Reading};
+use switchid::simulate::{Builtin, Reading, Scenario, Stage};
 
 /// Sizes of a burst's readings, in σ.
 const SIZES: [f64; 6] = [3.0, 10.0, 30.0, 100.0, 300.0, 1000.0];
@@ -33,6 +33,16 @@ const BEYOND: f64 = -10.0;
 
 /// A glitch of F, in amplitudes.
 const GLITCH: f64 = 2.5;
+
+/// How long coefficients move, and how long q and q̇ are dead over a switch, s.
+const DRIFT: f64 = 5.0;
+const DEAD: f64 = 5.0;
+
+/// By how much each coefficient moves at most, as the logarithm of a factor.
+const MOVES: f64 = 0.35;
+
+/// Parts of a second in which a law that moves stands still.
+const STEPS: f64 = 20.0;
 
 /// Share of the samples for which a sender has nothing new.
 const REPEATED: f64 = 0.1;
@@ -65,8 +75,12 @@ pub enum Fault {
     Flaky,
     /// The reading stays as it is for 1 s.
     Stuck(Of),
+    /// F stays as it is for so many ms, and varies again.
+    StuckFor(u32),
     /// The reading is 0 for 1 s.
     Zero(Of),
+    /// q and q̇ are 0 for 5 s, in the midst of which the law switches.
+    Dead,
     /// The reading stays within a part of its range for 1 s.
     Cut(Of),
     /// F is ten times its largest value for 1 s.
@@ -99,6 +113,8 @@ pub enum Fault {
     Stamp,
     /// One time stamp is 10 to 200 ms ahead.
     Ahead,
+    /// The sender starts again after so many ms, its clock at 0.
+    Restarts(u32),
     /// q and q̇ come one sample late against F, throughout.
     Late,
     /// Channels come so many samples late from a sample on.
@@ -107,11 +123,13 @@ pub enum Fault {
     Coarse(usize),
     /// The plant has this effect throughout, and the law lacks it.
     Lacks(&'static str),
+    /// All coefficients move for 5 s, by up to 35 %, and rest.
+    Drifts,
 }
 
 impl Fault {
     /// All of them, in the order of the table.
-    pub const ALL: [Fault; 53] = [
+    pub const ALL: [Fault; 58] = [
         Fault::Clean,
         Fault::Burst(Of::Q),
         Fault::Burst(Of::Qd),
@@ -124,10 +142,13 @@ impl Fault {
         Fault::Stuck(Of::Qd),
         Fault::Stuck(Of::F),
         Fault::Stuck(Of::All),
+        Fault::StuckFor(50),
+        Fault::StuckFor(200),
         Fault::Zero(Of::Q),
         Fault::Zero(Of::Qd),
         Fault::Zero(Of::Both),
         Fault::Zero(Of::F),
+        Fault::Dead,
         Fault::Cut(Of::Q),
         Fault::Cut(Of::Qd),
         Fault::Far,
@@ -152,6 +173,7 @@ impl Fault {
         Fault::Off(Of::Qd, false),
         Fault::Stamp,
         Fault::Ahead,
+        Fault::Restarts(300),
         Fault::Late,
         Fault::ComesLate(Of::F, 1),
         Fault::ComesLate(Of::F, 2),
@@ -165,6 +187,7 @@ impl Fault {
         Fault::Lacks("quadratic_damping"),
         Fault::Lacks("bilinear_stiffness"),
         Fault::Lacks("signed_quadratic_stiffness"),
+        Fault::Drifts,
     ];
 
     /// Its name in the table.
@@ -176,7 +199,9 @@ impl Fault {
             Fault::OneSided(of) => format!("1 to 50 to one side, {}", of.id()),
             Fault::Flaky => "one in 100 of q and qd".into(),
             Fault::Stuck(of) => format!("stuck 1 s, {}", of.id()),
+            Fault::StuckFor(ms) => format!("stuck {} s, F", f64::from(ms) / 1000.0),
             Fault::Zero(of) => format!("zero 1 s, {}", of.id()),
+            Fault::Dead => "zero 5 s over the switch, q and qd".into(),
             Fault::Cut(of) => format!("cut off 1 s, {}", of.id()),
             Fault::Far => "far beyond its range 1 s, F".into(),
             Fault::Glitch => "glitch of F".into(),
@@ -194,10 +219,12 @@ impl Fault {
             Fault::Off(of, false) => format!("offset of 6 to 200 std, {}", of.id()),
             Fault::Stamp => "one time stamp 1e6".into(),
             Fault::Ahead => "one time stamp ahead".into(),
+            Fault::Restarts(ms) => format!("sender starts again after {} s", f64::from(ms) / 1000.0),
             Fault::Late => "q, qd one sample late".into(),
             Fault::ComesLate(of, by) => format!("{} {by} late from then on", of.id()),
             Fault::Coarse(step) => format!("steps of {step} ms, hold wrong"),
             Fault::Lacks(effect) => format!("lacks {effect}"),
+            Fault::Drifts => "drifts 5 s and rests".into(),
         }
     }
 
@@ -212,8 +239,41 @@ impl Fault {
         match self {
             Fault::Stuck(_) | Fault::Zero(_) | Fault::Cut(_) | Fault::Far | Fault::Offset => 1.0,
             Fault::NotANumber => 5.0,
+            Fault::Drifts => DRIFT,
+            Fault::StuckFor(ms) | Fault::Restarts(ms) => 1e-3 * f64::from(ms),
             Fault::Gap(seconds) => f64::from(seconds),
             _ => 0.0,
+        }
+    }
+
+    /// Lets the first law move from time `at` on where that is the fault.
+    pub fn change(self, scenario: &mut Scenario, at: f64, seed: u64) {
+        if self != Fault::Drifts {
+            return;
+        }
+        let mut generator = ChaCha8Rng::seed_from_u64(seed ^ 0xd21f);
+        let before = scenario.stages[0].clone();
+        let factors: Vec<f64> =
+            before.coefficients.iter().map(|_| generator.random_range(-MOVES..MOVES).exp()).collect();
+        let steps = (STEPS * DRIFT) as usize;
+        let moving = (1..=steps).map(|step| {
+            let part = step as f64 / steps as f64;
+            let mut stage = Stage { start: at + DRIFT * (part - 0.5 / steps as f64), ..before.clone() };
+            stage
+                .coefficients
+                .iter_mut()
+                .zip(&factors)
+                .for_each(|(value, factor)| *value *= 1.0 + part * (factor - 1.0));
+            stage
+        });
+        scenario.stages.splice(1..1, moving);
+    }
+
+    /// What the sender stamps at this time, where the fault begins at time `at`.
+    pub fn stamp(self, t: f64, at: f64) -> f64 {
+        match self {
+            Fault::Restarts(_) if t >= at + self.lasts() => t - at - self.lasts(),
+            _ => t,
         }
     }
 
@@ -228,7 +288,7 @@ impl Fault {
         self.spoil_for_good(readings, first, &mut generator);
         self.change_times(readings, first, &mut generator);
         match self {
-            Fault::Stamp | Fault::Ahead | Fault::Hidden(_) | Fault::Gaps | Fault::Repeated(_) => at,
+            Fault::Stamp | Fault::Ahead | Fault::Dead | Fault::Hidden(_) | Fault::Gaps | Fault::Repeated(_) => at,
             Fault::Flaky | Fault::Late | Fault::ComesLate(..) | Fault::Coarse(_) | Fault::Lacks(_) => at,
             Fault::Offset | Fault::Jump | Fault::Off(..) => readings[first].t,
             _ => {
@@ -276,6 +336,7 @@ impl Fault {
         };
         readings[of_it].iter_mut().for_each(|reading| match self {
             Fault::Stuck(of) => of.set(reading, &before),
+            Fault::StuckFor(_) => Of::F.set(reading, &before),
             Fault::Zero(of) => of.set(reading, &zero),
             Fault::Cut(of) => of.change(reading, |value| value.clamp(-most, most)),
             Fault::Far => reading.excitation = BEYOND * most,
@@ -287,7 +348,7 @@ impl Fault {
     /// Samples that do not come.
     fn lose(self, readings: &mut Vec<Reading>, at: f64, of_it: Range<usize>, generator: &mut ChaCha8Rng) {
         match self {
-            Fault::Gap(_) | Fault::Offset | Fault::Jump => drop(readings.drain(of_it)),
+            Fault::Gap(_) | Fault::Restarts(_) | Fault::Offset | Fault::Jump => drop(readings.drain(of_it)),
             Fault::Hidden(ms) => {
                 let half = 0.5e-3 * f64::from(ms);
                 readings.retain(|reading| (reading.t - SWITCH).abs() > half);
@@ -305,6 +366,10 @@ impl Fault {
     /// Readings to the record's end.
     fn spoil_for_good(self, readings: &mut [Reading], first: usize, generator: &mut ChaCha8Rng) {
         match self {
+            Fault::Dead => {
+                let is_dead = |reading: &&mut Reading| (reading.t - SWITCH).abs() < 0.5 * DEAD;
+                readings.iter_mut().filter(is_dead).for_each(|reading| (reading.q, reading.qd) = (0.0, 0.0));
+            }
             Fault::Flaky => {
                 for reading in &mut readings[first..] {
                     for of in [Of::Q, Of::Qd] {

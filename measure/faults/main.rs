@@ -9,7 +9,8 @@
 //! |---|---|
 //! | valid and wrong | time with `valid` while e is above 0.05², the second after the switch left out, s a record |
 //! | dishonest | time with `valid` while a coefficient is beyond 6 of its std, s a record |
-//! | false | switches counted from the fault on that are none; of a law that lacks an effect, from the beginning on |
+//! | false | switches counted from the fault on that are none; of a law that lacks an effect, from the beginning on; \
+//!        of one that moves, those that are told where it does |
 //! | valid again | from the last faulty sample until the law is valid for good, s; of records valid before the fault |
 //! | missed | next switches not counted in 10 s |
 //! | unknown | samples with `valid` and a coefficient without std |
@@ -157,6 +158,7 @@ impl Cell {
             let scale = watch::ratio_of_forces(&scenario, term)?;
             scenario.hidden.push(term, LACKED * scale);
         }
+        self.fault.change(&mut scenario, self.at, self.seed);
         Ok(scenario)
     }
 

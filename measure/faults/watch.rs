@@ -92,7 +92,8 @@ pub fn watch(model: &Model, scenario: &Scenario, fault: Fault, at: f64, seed: u6
     let mut seen = Seen { switch, valid_again: none, named: none, limit, ..Seen::default() };
     let (mut before, mut count) = (0.0, 0);
     for reading in readings {
-        let sample = Sample { t: reading.t, q: reading.q, qd: reading.qd, excitation: reading.excitation };
+        let sample =
+            Sample { t: fault.stamp(reading.t, at), q: reading.q, qd: reading.qd, excitation: reading.excitation };
         // what is skipped leaves the outputs as the identifier has them
         identifier.step(sample).ok();
         let t = if reading.t < END { reading.t } else { before };
@@ -123,7 +124,7 @@ impl Seen {
         self.valid[0] += 1;
         self.valid[1] += u64::from(coefficients.iter().any(|known| known.std.is_none()));
         let stage = scenario.stage_at(t);
-        if stage > 0 && t - self.switch < ALLOWED {
+        if (0.0..ALLOWED).contains(&(t - self.switch)) {
             return;
         }
         let [error, z, square] = errors(coefficients, scenario, stage);
@@ -173,5 +174,6 @@ fn limit(scenario: &Scenario, recorded: &Recorded, switch: f64) -> Result<f64, F
     let settings = Settings::default();
     let level = level(settings.false_alarm_interval, settings.sample_time);
     let sensors = Sensors([Some(scenario.noise.q), Some(scenario.noise.qd)]);
-    Ok(detection(&law(0)?, &law(1)?, &[course], sensors, level)?.at_start.unwrap_or(f64::INFINITY))
+    let last = scenario.stages.len() - 1;
+    Ok(detection(&law(last - 1)?, &law(last)?, &[course], sensors, level)?.at_start.unwrap_or(f64::INFINITY))
 }

@@ -119,7 +119,7 @@ pub struct AugmentedDrift {
     parts: usize,
     period: f64,
     switch: [u64; INSTANTS],
-    /// Logarithm of what the walks together predicted, and by how much each filter that switched was ahead of that when
+    /// Logarithm of what the slow walks together predicted, and by how much each filter that switched was ahead of that when
     /// it did.
     predicted: f64,
     ahead: [f64; INSTANTS],
@@ -129,6 +129,8 @@ pub struct AugmentedDrift {
     next: u64,
     /// Since which sample the trial speaks for a drift.
     leading_since: Option<u64>,
+    /// What wandering had lost when the law may first have switched, nats: coefficients that began to then had not.
+    spent: f64,
     /// Since which sample the coefficients may be constant, and the walk that this was begun from.
     rest: (u64, usize),
     coefficients: Vec<f64>,
@@ -160,6 +162,7 @@ impl AugmentedDrift {
             gate: InnovationGate::default(),
             next: 0,
             leading_since: None,
+            spent: 0.0,
             rest: (0, 0),
             coefficients: vec![0.0; problem.n()],
             variances: vec![0.0; problem.n()],
@@ -209,6 +212,7 @@ impl AugmentedDrift {
         (self.noise, self.parts, self.period) = (before.noise, before.parts, before.period);
         (self.switch, self.next, self.predicted) = (before.switch, before.start + 1, 0.0);
         (self.course, self.leading_since, self.gate) = (Course::Trial, None, InnovationGate::default());
+        self.spent = 0.0;
     }
 
     /// Takes what is new in the window, a bounded number of samples; returns whether the law is new.
@@ -277,15 +281,18 @@ impl AugmentedDrift {
     /// Weights of the walks, as logarithms: what they predicted, with a memory.
     fn weigh(&mut self, before: [f64; SLOW + 1]) {
         let kept = 1.0 - (MEMORY * self.period).recip();
-        let (mut all, mut all_with) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+        let (mut slow, mut slow_with) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
         for (index, weight) in self.weights.iter_mut().enumerate() {
             let gain = self.rivals[index].log_likelihood - before[index];
             *weight = if self.sound[index] { *weight * kept } else { f64::NEG_INFINITY };
-            all = log_sum(all, *weight);
+            let before = *weight;
             *weight += gain;
-            all_with = log_sum(all_with, *weight);
+            // one as fast as a jump explains a switch, but is no drift
+            if index < SLOW {
+                (slow, slow_with) = (log_sum(slow, before), log_sum(slow_with, *weight));
+            }
         }
-        self.predicted += all_with - all;
+        self.predicted += slow_with - slow;
         let largest = self.weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         match largest.is_finite() {
             true => self.weights.iter_mut().for_each(|weight| *weight -= largest),
@@ -301,7 +308,7 @@ impl AugmentedDrift {
     fn lead(&self) -> f64 {
         let largest = (0..SLOW).map(|index| self.log_likelihood(index)).fold(f64::NEG_INFINITY, f64::max);
         let rival = (SLOW..RIVALS).map(|index| self.log_likelihood(index)).fold(f64::NEG_INFINITY, f64::max);
-        largest - (SLOW as f64).ln() - rival
+        largest - (SLOW as f64).ln() - rival - self.spent
     }
 
     /// What speaks for a drift that is on trial, nats; none where none is.
@@ -311,6 +318,9 @@ impl AugmentedDrift {
 
     /// Ends a trial that is lost, or that has gone on for too long.
     fn decide(&mut self) {
+        if self.next == self.switch[0] {
+            self.spent = self.lead().min(0.0);
+        }
         let lead = self.lead();
         self.leading_since = if lead > DECIDED { self.leading_since.or(Some(self.next)) } else { None };
         let patience = PATIENCE[usize::from(lead > 0.0)] * self.period;

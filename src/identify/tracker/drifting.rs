@@ -9,9 +9,8 @@ use crate::identify::problem::Problem;
 use crate::identify::validation::TRUSTED;
 use std::f64::consts::TAU;
 
-/// A trial begins this many natural periods before the switch that an alarm found: a drift has begun before, and the
-/// longer the law had stood still, the less likely it is that it ever moves (docs/decisions/drift.md).
-const BEFORE: f64 = 0.5;
+/// A trial begins this many natural periods before the switch that an alarm found.
+const BEFORE: f64 = 2.0;
 
 /// Natural periods after which a constant law that explains them is no chance: what moves as slowly is no drift yet.
 const OUTLASTS: f64 = 3.0;

@@ -19,7 +19,7 @@ impl Tracker {
         let unknown = shown.iter().any(|coefficient| coefficient.std.is_none());
         output.valid &= !unknown;
         if output.drifting {
-            output.valid &= self.published.stated_error() < VALIDATED;
+            output.valid &= !self.augmented_drift.is_following() || self.published.stated_error() < VALIDATED;
             return;
         }
         output.valid &= self.segment.doubt() < DOUBTED;
