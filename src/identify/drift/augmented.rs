@@ -119,8 +119,8 @@ pub struct AugmentedDrift {
     parts: usize,
     period: f64,
     switch: [u64; INSTANTS],
-    /// Logarithm of what the slow walks together predicted, and by how much each filter that switched was ahead of that when
-    /// it did.
+    /// Logarithm of what the slow walks together predicted, and by how much each filter that switched was ahead of that
+    /// when it did.
     predicted: f64,
     ahead: [f64; INSTANTS],
     /// As which walk each filter wanders.
