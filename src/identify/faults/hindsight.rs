@@ -66,6 +66,26 @@ impl Hindsight {
             return Found { odds: f64::NEG_INFINITY, law: f64::INFINITY, is_burst: false };
         }
         self.first = switch.saturating_sub(BEFORE).max(oldest);
+        self.take_all(law, window);
+        // when in its first interval a law changed nobody knows, but what it did there is as large as what it did after
+        self.events.iter_mut().for_each(Hypothesis::learn_change);
+        let log = self.take_all(law, window);
+        let rare = event(window.pace()).ln();
+        // less the share of what has no burst; none lasts for as long as an outage
+        let burst = match lasts(window, self.first) {
+            true => f64::NEG_INFINITY,
+            false => self.burst.log + (-(log - self.burst.log).min(0.0).exp()).ln_1p(),
+        };
+        let likeliest = |is_law: bool| {
+            let of = self.events.iter().filter(|other| other.kind.is_law() == is_law);
+            of.map(|other| other.log).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let (law, louder) = (likeliest(true).max(log + evidence + rare), likeliest(false));
+        Found { odds: burst.max(louder) - law, law: law - log, is_burst: burst > louder }
+    }
+
+    /// Takes the samples from the first on; returns the log-density of their readings under the law in use alone.
+    fn take_all(&mut self, law: &Expected, window: &Window) -> f64 {
         let rare = event(window.pace()).ln();
         let mut nothing = settled(law, window, self.first);
         let mut log = 0.0;
@@ -78,24 +98,14 @@ impl Hindsight {
             let Observation { dt, drive, .. } = observation;
             let start = under_law(&nothing);
             // what has not become likelier than it was is about to begin (Page 1954)
-            for event in self.events.iter_mut().filter(|event| number == first || event.log <= log + rare) {
-                event.begin(&start, &law, dt, log, rare);
+            for event in self.events.iter_mut().filter(|event| number == first || event.log - log <= event.prior) {
+                event.begin(&start, &law, dt, log, rare - event.kind.rarity());
             }
             log += take(&law, &observation, &mut nothing);
             self.burst.take(&law, dt, &drive, values, place);
             self.events.iter_mut().for_each(|event| event.take(&law, dt, &drive, values, place));
         }
-        // less the share of what has no burst; none lasts for as long as an outage
-        let burst = match lasts(window, self.first) {
-            true => f64::NEG_INFINITY,
-            false => self.burst.log + (-(log - self.burst.log).min(0.0).exp()).ln_1p(),
-        };
-        let likeliest = |is_law: bool| {
-            let of = self.events.iter().filter(|other| other.kind.is_law() == is_law);
-            of.map(|other| other.log).fold(f64::NEG_INFINITY, f64::max)
-        };
-        let (law, louder) = (likeliest(true).max(log + evidence + rare), likeliest(false));
-        Found { odds: burst.max(louder) - law, law: law - log, is_burst: burst > louder }
+        log
     }
 
     /// Number of the first sample weighed.

@@ -64,6 +64,21 @@ pub struct Hypothesis {
     path: Vec<State>,
     /// Samples since it began.
     age: u32,
+    /// How q̈ changed, where that is known of a law that did.
+    change: Option<Change>,
+}
+
+/// What is known of (u₀, u₁): mean and covariance.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Change([f64; 2], [[f64; 2]; 2]);
+
+impl Change {
+    /// Mean square of the acceleration where these multiply them.
+    fn square(&self, [first, second]: [f64; 2]) -> f64 {
+        let Change([acceleration, gain], [[aa, ag], [_, gg]]) = *self;
+        let mean = first * acceleration + second * gain;
+        mean * mean + first * first * aa + 2.0 * first * second * ag + second * second * gg
+    }
 }
 
 impl Hypothesis {
@@ -79,6 +94,7 @@ impl Hypothesis {
             doubtful: [0; 2],
             path: vec![State::default(); room],
             age: 0,
+            change: None,
         }
     }
 
@@ -116,6 +132,13 @@ impl Hypothesis {
         }
     }
 
+    /// The law has changed by what is known now, should it begin once more.
+    pub fn learn_change(&mut self) {
+        let Filter { mean: [.., acceleration, gain], covariance: [.., of_acceleration, of_gain] } = self.believed;
+        let tail = |[.., acceleration, gain]: [f64; 4]| [acceleration, gain];
+        self.change = Some(Change([acceleration, gain], [tail(of_acceleration), tail(of_gain)]));
+    }
+
     /// What the first reading of an offset costs: it tells how large that is, not that there is one, nats.
     pub fn learns(&self, channel: Channel, law: &Expected) -> f64 {
         let index = channel as usize;
@@ -135,6 +158,7 @@ impl Hypothesis {
     /// Forgets all of it: what says nothing any more takes no room in a saved state.
     pub fn clear(&mut self) {
         (self.believed, self.log, self.prior, self.age) = (Filter::default(), 0.0, 0.0, 0);
+        self.change = None;
         self.bursts = [Burst::default(); 2];
         self.path.fill(State::default());
         self.forget_held();
@@ -223,7 +247,9 @@ impl Hypothesis {
             _ => [false; 2],
         };
         let (kind, first) = (self.kind, self.age == 0);
-        law.advance(&mut self.believed, dt, drive, act, |inputs| kind.unknown(law, inputs, dt, first));
+        let unknown =
+            |inputs: [f64; 2]| kind.unknown(law, inputs, dt, first, self.change.map(|change| change.square(inputs)));
+        law.advance(&mut self.believed, dt, drive, act, unknown);
         if self.kind == Kind::ForceStuck {
             self.follow_force(law, dt);
         }

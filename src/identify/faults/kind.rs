@@ -114,13 +114,14 @@ impl Kind {
     }
 
     /// Intensity of the white acceleration that it adds in its own interval, the `first`, for when in it that was
-    /// nobody knows, and what u₀ moves by in a second, as a variance.
-    pub fn unknown(self, law: &Expected, inputs: [f64; 2], dt: f64, first: bool) -> [f64; 2] {
+    /// nobody knows, and what u₀ moves by in a second, as a variance. Of a law that changed by an acceleration that is
+    /// known the mean square of that is `sudden`.
+    pub fn unknown(self, law: &Expected, inputs: [f64; 2], dt: f64, first: bool, sudden: Option<f64>) -> [f64; 2] {
         let [acceleration, gain] = law.switch;
         match self {
             Kind::Law { times, .. } => {
                 let acceleration = f64::from(times) * acceleration;
-                let event = (acceleration * acceleration + (gain * inputs[1]).powi(2)) * dt;
+                let event = sudden.unwrap_or(acceleration * acceleration + (gain * inputs[1]).powi(2)) * dt;
                 [if first { event } else { 0.0 }, acceleration * acceleration * law.rate]
             }
             Kind::Misfit => [0.0, law.misfit() * law.rate],
@@ -128,6 +129,12 @@ impl Kind {
             _ if first && self.is_unread() => [law.drive * law.drive * dt, 0.0],
             _ => [0.0; 2],
         }
+    }
+
+    /// How much rarer it is than what befalls a sensor, nats: a switch that is so many times as large is so many times
+    /// as rare.
+    pub fn rarity(self) -> f64 {
+        if let Kind::Law { times, .. } = self { f64::from(times).ln() } else { 0.0 }
     }
 
     /// Whether the law is another one.

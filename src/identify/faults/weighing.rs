@@ -18,8 +18,7 @@ fn odds(kind: Kind, dt: f64) -> f64 {
     let many = |of: fn(Kind) -> bool| Kind::ALL.into_iter().filter(|kind| of(*kind)).count() as f64;
     match kind {
         kind if kind.is_no_event() => 0.0,
-        // a switch that is so many times as large is so many times as rare
-        Kind::Law { times, .. } => (event(dt) * many(Kind::is_no_event) / (many(Kind::is_law) * f64::from(times))).ln(),
+        Kind::Law { .. } => (event(dt) * many(Kind::is_no_event) / many(Kind::is_law)).ln() - kind.rarity(),
         Kind::Late(_) => (delay_changes(dt) * many(Kind::is_no_event)).ln(),
         _ => (event(dt) * many(Kind::is_no_event)).ln(),
     }
