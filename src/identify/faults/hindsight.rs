@@ -66,10 +66,11 @@ impl Hindsight {
             return Found { odds: f64::NEG_INFINITY, law: f64::INFINITY, is_burst: false };
         }
         self.first = switch.saturating_sub(BEFORE).max(oldest);
-        self.take_all(law, window);
+        let before = settled(law, window, self.first);
+        self.take_all(law, window, before);
         // when in its first interval a law changed nobody knows, but what it did there is as large as what it did after
         self.events.iter_mut().for_each(Hypothesis::learn_change);
-        let log = self.take_all(law, window);
+        let log = self.take_all(law, window, before);
         let rare = event(window.pace()).ln();
         // less the share of what has no burst; none lasts for as long as an outage
         let burst = match lasts(window, self.first) {
@@ -84,10 +85,10 @@ impl Hindsight {
         Found { odds: burst.max(louder) - law, law: law - log, is_burst: burst > louder }
     }
 
-    /// Takes the samples from the first on; returns the log-density of their readings under the law in use alone.
-    fn take_all(&mut self, law: &Expected, window: &Window) -> f64 {
+    /// Takes the samples from the first on, `nothing` being the state before it; returns the log-density of their
+    /// readings under the law in use alone.
+    fn take_all(&mut self, law: &Expected, window: &Window, mut nothing: Filter) -> f64 {
         let rare = event(window.pace()).ln();
-        let mut nothing = settled(law, window, self.first);
         let mut log = 0.0;
         self.burst.begin(&under_law(&nothing), law, 0.0, 0.0, 0.0);
         let first = self.first;
