@@ -291,7 +291,7 @@ impl Record {
 
     fn series(&self, term: Term, piece: &(usize, usize, Nodes), timing: Timing) -> Vec<f64> {
         let nodes = &piece.2;
-        let excitation = self.excitation(piece, timing);
+        let excitation = if term.uses_excitation() { self.excitation(piece, timing) } else { vec![0.0; nodes.q.len()] };
         let mut series = term_series(term, &self.expressions, &nodes.trajectory(&excitation));
         if term.mass(1.0) != 0.0 {
             let motion = nodes.q.iter().zip(&nodes.qdd);

@@ -4,7 +4,7 @@
 //! eighth of its length. φ and its first three derivatives vanish at both ends, so that derivatives of q may move to
 //! it.
 
-use crate::diagnose::products::dot;
+use nalgebra::DMatrix;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// How many window lengths there are.
@@ -46,10 +46,16 @@ pub(in crate::diagnose) struct Windows {
     pub(in crate::diagnose) functions: usize,
     /// (piece, first cell) of every window.
     places: Vec<(usize, usize)>,
+    /// Windows of every piece.
+    counts: Vec<usize>,
+    /// Cells by which a window advances.
+    stride: usize,
+    /// Advances in a window.
+    parts: usize,
     /// Middle of every window on the axis of all pieces end to end, s.
     pub(in crate::diagnose) centres: Vec<f64>,
-    /// By test function, φ, φ' and φ'' in the cells.
-    weights: Vec<[Vec<[f64; 2]>; 3]>,
+    /// φ, φ' and φ'' in the cells of one advance, means and rises in turn: a row by part of the window and function.
+    weights: [DMatrix<f64>; 3],
 }
 
 impl Windows {
@@ -58,9 +64,10 @@ impl Windows {
         let size = CELLS[which];
         let total: usize = cells.iter().sum();
         let stride = (size / ADVANCE).max((distance / cell) as usize).max(total.div_ceil(MOST)).max(1);
-        let (mut places, mut centres, mut begin) = (Vec::new(), Vec::new(), 0);
+        let (mut places, mut counts, mut centres, mut begin) = (Vec::new(), Vec::new(), Vec::new(), 0);
         for (piece, count) in cells.iter().enumerate() {
             let firsts = (0..(count + 1).saturating_sub(size)).step_by(stride);
+            counts.push(firsts.len());
             places.extend(firsts.clone().map(|first| (piece, first)));
             centres.extend(firsts.map(|first| ((begin + first) as f64 + 0.5 * size as f64) * cell));
             begin += count;
@@ -68,8 +75,15 @@ impl Windows {
         let length = size as f64 * cell;
         let phases = |cycles: usize| if cycles == 0 { &[0.0][..] } else { &[0.0, FRAC_PI_2][..] };
         let shapes = (0..=CYCLES[which]).flat_map(|cycles| phases(cycles).iter().map(move |phase| (cycles, *phase)));
-        let weights: Vec<_> = shapes.map(|(cycles, phase)| tabulated(size, length, cycles as f64, phase)).collect();
-        Windows { length, functions: weights.len(), places, centres, weights }
+        let functions: Vec<_> = shapes.map(|(cycles, phase)| tabulated(size, length, cycles as f64, phase)).collect();
+        let (parts, width) = (size.div_ceil(stride), 2 * size.min(stride));
+        let weight = |order: usize, (row, entry): (usize, usize)| {
+            let own = functions[row % functions.len()][order].as_flattened();
+            own.get(row / functions.len() * width + entry).copied().unwrap_or(0.0)
+        };
+        let weights = [0, 1, 2]
+            .map(|order| DMatrix::from_fn(parts * functions.len(), width, |row, entry| weight(order, (row, entry))));
+        Windows { length, functions: functions.len(), places, counts, stride, parts, centres, weights }
     }
 
     /// Number of equations.
@@ -90,12 +104,18 @@ impl Windows {
 
     /// Adds ∫ φ⁽ⁿ⁾ f dt, n the order, times a factor, to every equation.
     pub(super) fn add(&self, order: usize, cells: &Cells, factor: f64, rows: &mut [f64]) {
-        for ((piece, first), rows) in self.places.iter().zip(rows.chunks_exact_mut(self.functions)) {
-            for (weights, row) in self.weights.iter().zip(rows) {
-                let weights = &weights[order];
-                let cells = &cells[*piece][*first..*first + weights.len()];
-                // means with values and rises with moments
-                *row += factor * dot(weights.as_flattened(), cells.as_flattened());
+        let (weights, mut rows) = (&self.weights[order], rows.chunks_exact_mut(self.functions));
+        for (cells, count) in cells.iter().zip(&self.counts).filter(|(_, count)| **count > 0) {
+            let advances = count - 1 + self.parts;
+            // windows overlap: what each part of one has in an advance of the record is told once, for all of them
+            let mut values = cells.as_flattened().to_vec();
+            values.resize(2 * self.stride * advances, 0.0);
+            let shares = weights * DMatrix::from_vec(2 * self.stride, advances, values).rows(0, weights.ncols());
+            let of_window = shares.as_slice().windows(weights.nrows() * self.parts).step_by(weights.nrows());
+            for (rows, shares) in rows.by_ref().zip(of_window).take(*count) {
+                for share in shares.chunks_exact(self.functions).step_by(self.parts + 1) {
+                    rows.iter_mut().zip(share).for_each(|(row, share)| *row += factor * share);
+                }
             }
         }
     }
