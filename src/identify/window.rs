@@ -225,11 +225,11 @@ impl Window {
         }
     }
 
-    /// A sample's readings of these channels are a sensor's fault.
-    pub fn blame(&mut self, number: u64, channels: [bool; 2]) {
+    /// A sample's readings of these channels are a sensor's fault, or after all they are not.
+    pub fn set_faulty(&mut self, number: u64, channels: [bool; 2], are_faulty: bool) {
         let slot = self.slot(number);
-        let faulty = &mut self.ring[slot].faulty;
-        faulty.iter_mut().zip(channels).for_each(|(faulty, blamed)| *faulty |= blamed);
+        let own = self.ring[slot].faulty.iter_mut().zip(channels);
+        own.filter(|(_, of_these)| *of_these).for_each(|(faulty, _)| *faulty = are_faulty);
     }
 
     /// Sample `number` and the excitation since the one before it; both must be in the window.

@@ -13,6 +13,8 @@ pub struct Bench(pub PathBuf);
 impl Bench {
     pub fn new(name: &str) -> Bench {
         let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(format!("command-line-{name}"));
+        // a run that was ended may have left it
+        let _ = std::fs::remove_dir_all(&path);
         std::fs::create_dir_all(&path).unwrap();
         let bench = Bench(path);
         bench.write("model.toml", MODEL);

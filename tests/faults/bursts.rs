@@ -3,7 +3,11 @@
 use super::{BEYOND, FAULT, FIRST, NOISE, burst, identifier, plant, samples, steady, watch};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use switchid::identify::Sample;
 use switchid::simulate::Builtin;
+
+const PLANTS: [Builtin; 4] =
+    [Builtin::DuffingSine, Builtin::DuffingWhite, Builtin::VanDerPolSine, Builtin::VanDerPolWhite];
 
 #[test]
 fn a_few_bad_readings_of_the_velocity_are_no_switch() {
@@ -112,4 +116,42 @@ fn a_large_switch_long_after_bursts_has_its_name_as_soon_as_without() {
         let delay = output.named_time.map(|named| named - switch);
         assert!(output.switch_count == 1 && delay.is_some_and(|delay| delay < 0.02), "{builtin:?}: {output:?}");
     }
+}
+
+/// A step of the velocity is no bend of it, the same in every reading or scattered. By its first readings chance may
+/// make it one.
+#[test]
+fn a_burst_of_the_velocity_to_one_side_is_seldom_a_switch() {
+    let mut switches = Vec::new();
+    for (builtin, seed) in PLANTS.into_iter().chain(PLANTS).zip(60..) {
+        let samples = samples(&plant(builtin, seed, 1e3, 9.0));
+        let mut steady = identifier(builtin);
+        samples[..FIRST].iter().for_each(|sample| steady.step(*sample).unwrap());
+        for (size, count) in [(3.0, 10), (3.0, 20), (5.0, 10), (5.0, 20)] {
+            for scatter in [0.0, 0.5] {
+                let mut generator = ChaCha8Rng::seed_from_u64(seed);
+                let mut identifier = steady.clone();
+                for (place, sample) in samples[FIRST..].iter().enumerate() {
+                    let off = size * NOISE * (1.0 + scatter * generator.random_range(-1.0..1.0));
+                    let off = if place < count { off } else { 0.0 };
+                    identifier.step(Sample { qd: sample.qd + off, ..*sample }).unwrap();
+                }
+                switches.push(identifier.output().switch_count);
+            }
+        }
+    }
+    assert!(3 * switches.iter().sum::<u32>() <= switches.len() as u32, "{switches:?}");
+}
+
+/// What chance makes look like a step at first goes on as no burst does: its readings count after all.
+#[test]
+fn a_switch_that_begins_like_a_step_has_its_name_soon() {
+    let builtin = Builtin::VanDerPolSine;
+    let mut scenario = plant(builtin, 10_610, 10.0, 11.0);
+    scenario.stages[1].coefficients = builtin.random(10_610 + 77_014).stages[1].coefficients.clone();
+    let mut identifier = identifier(builtin);
+    samples(&scenario).iter().for_each(|sample| identifier.step(*sample).unwrap());
+    let output = identifier.output();
+    let delay = output.named_time.map(|named| named - 10.0);
+    assert!(output.switch_count == 1 && delay.is_some_and(|delay| delay < 0.05), "{delay:?}: {output:?}");
 }

@@ -1,15 +1,16 @@
 //! Whether what speaks for a switch is a burst of readings none of which was far enough off to be held.
 //!
 //! At an alarm the readings since shortly before the suspected instant are weighed once more: by the hypothesis of
-//! those that are held, under which any of them may be a wide draw, and by louder sensors. What the likelier gains on
-//! the law in use alone is set against the evidence of a switch, on the samples that speak for one.
+//! those that are held, under which any of them may be a wide draw, by the same with draws that lie to one side, and by
+//! louder sensors. What the likeliest gains on the law in use alone is set against the evidence of a switch, on the
+//! samples that speak for one. A burst that was told is weighed again at the next alarm, with what has come since.
 
 use super::expected::Expected;
 use super::hypothesis::{Hypothesis, Value, under_law};
 use super::kind::Kind;
 use super::price::{event, working};
 use super::quarantine::ROOM;
-use crate::estimation::{Channel, Filter, Observation};
+use crate::estimation::{Channel, Filter, Observation, TWENTY_TO_ONE};
 use crate::identify::sample::is_outage;
 use crate::identify::window::Window;
 use serde::{Deserialize, Serialize};
@@ -35,9 +36,22 @@ const EVENTS: [Kind; 5] = [
 /// The readings since a suspected switch, once more.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hindsight {
-    burst: Hypothesis,
+    bursts: [Hypothesis; 2],
+    /// Which burst is the likelier.
+    likelier: usize,
     events: [Hypothesis; EVENTS.len()],
     first: u64,
+    /// The burst that was told last, as long as it may turn out to be none.
+    told: Option<Told>,
+}
+
+/// A burst that was told.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Told {
+    /// Numbers of the first sample that was weighed and of the first that was not.
+    span: [u64; 2],
+    /// Which readings were left out: one bit a sample from the first on, by channel.
+    left_out: [u64; 2],
 }
 
 /// A fault of the sensors in the readings since a suspected switch.
@@ -55,34 +69,71 @@ impl Hindsight {
     /// With nothing weighed.
     pub fn new() -> Hindsight {
         let new = |kind| Hypothesis::new(kind, ROOM);
-        Hindsight { burst: new(Kind::Readings), events: EVENTS.map(new), first: 0 }
+        Hindsight {
+            bursts: [Kind::Readings, Kind::OneSided].map(new),
+            likelier: 0,
+            events: EVENTS.map(new),
+            first: 0,
+            told: None,
+        }
     }
 
     /// The likeliest fault against another law since sample `switch`, which has `evidence` nats, by the window's
     /// samples, the last of them where there is no room for all.
-    pub fn weigh(&mut self, law: &Expected, window: &Window, (switch, evidence): (u64, f64)) -> Found {
+    pub fn weigh(&mut self, law: &Expected, window: &mut Window, (switch, evidence): (u64, f64)) -> Found {
         let oldest = (window.resumed() + 2).max(window.ready().saturating_sub(ROOM as u64));
         if oldest >= window.ready() {
             return Found { odds: f64::NEG_INFINITY, law: f64::INFINITY, is_burst: false };
         }
         self.first = switch.saturating_sub(BEFORE).max(oldest);
+        self.doubt_told(window, oldest);
         let before = settled(law, window, self.first);
         self.take_all(law, window, before);
         // when in its first interval a law changed nobody knows, but what it did there is as large as what it did after
         self.events.iter_mut().for_each(Hypothesis::learn_change);
         let log = self.take_all(law, window, before);
         let rare = event(window.pace()).ln();
-        // less the share of what has no burst; none lasts for as long as an outage
-        let burst = match lasts(window, self.first) {
-            true => f64::NEG_INFINITY,
-            false => self.burst.log + (-(log - self.burst.log).min(0.0).exp()).ln_1p(),
-        };
+        let burst = self.likelier_burst(window, log);
         let likeliest = |is_law: bool| {
             let of = self.events.iter().filter(|other| other.kind.is_law() == is_law);
             of.map(|other| other.log).fold(f64::NEG_INFINITY, f64::max)
         };
         let (law, louder) = (likeliest(true).max(log + evidence + rare), likeliest(false));
-        Found { odds: burst.max(louder) - law, law: law - log, is_burst: burst > louder }
+        let odds = burst.max(louder) - law;
+        self.told = self.told.filter(|_| odds > -TWENTY_TO_ONE);
+        if let Some(told) = self.told {
+            told.set_faulty(window, true);
+        }
+        Found { odds, law: law - log, is_burst: burst > louder }
+    }
+
+    /// What was a burst until now may have been how a switch began: as long as there is room for its readings and the
+    /// suspected switch goes on from them they count once more.
+    fn doubt_told(&mut self, window: &mut Window, oldest: u64) {
+        self.told = self.told.filter(|told| told.span[0] >= oldest && told.span[1] >= self.first);
+        if let Some(told) = self.told {
+            self.first = told.span[0];
+            told.set_faulty(window, false);
+        }
+    }
+
+    /// Finds the likelier burst; returns its log-density of the readings, less the share of what has no burst, `log`
+    /// being that of the law in use. None lasts for as long as an outage.
+    fn likelier_burst(&mut self, window: &Window, log: f64) -> f64 {
+        self.likelier = usize::from(self.bursts[1].log > self.bursts[0].log);
+        let burst = self.bursts[self.likelier].log;
+        if lasts(window, self.first) { f64::NEG_INFINITY } else { burst + (-(log - burst).min(0.0).exp()).ln_1p() }
+    }
+
+    /// The burst is what has happened: its readings do not count. Returns which channels have any.
+    pub fn leave_out(&mut self, window: &mut Window) -> [bool; 2] {
+        if let Some(before) = self.told {
+            before.set_faulty(window, false);
+        }
+        let told = Told { span: [self.first, window.ready()], left_out: self.bursts[self.likelier].left_out() };
+        told.set_faulty(window, true);
+        self.told = Some(told);
+        told.left_out.map(|readings| readings != 0)
     }
 
     /// Takes the samples from the first on, `nothing` being the state before it; returns the log-density of their
@@ -90,7 +141,7 @@ impl Hindsight {
     fn take_all(&mut self, law: &Expected, window: &Window, mut nothing: Filter) -> f64 {
         let rare = event(window.pace()).ln();
         let mut log = 0.0;
-        self.burst.begin(&under_law(&nothing), law, 0.0, 0.0, 0.0);
+        self.bursts.iter_mut().for_each(|burst| burst.begin(&under_law(&nothing), law, 0.0, 0.0, 0.0));
         let first = self.first;
         for (place, number) in (first..window.ready()).enumerate() {
             let observation = window.observation(number);
@@ -103,31 +154,32 @@ impl Hindsight {
                 event.begin(&start, &law, dt, log, rare - event.kind.rarity());
             }
             log += take(&law, &observation, &mut nothing);
-            self.burst.take(&law, dt, &drive, values, place);
+            self.bursts.iter_mut().for_each(|burst| burst.take(&law, dt, &drive, values, place));
             self.events.iter_mut().for_each(|event| event.take(&law, dt, &drive, values, place));
         }
         log
     }
 
-    /// Number of the first sample weighed.
-    pub fn first(&self) -> u64 {
-        self.first
-    }
-
-    /// Which readings of a sample that was weighed are of the burst.
-    pub fn is_of_burst(&self, number: u64) -> [bool; 2] {
-        Channel::ALL.map(|channel| !self.burst.counts(channel, (number - self.first) as usize))
-    }
-
     /// The state after the last sample, and what is known of it.
     pub fn filter(&self) -> Filter {
-        self.burst.filter()
+        self.bursts[self.likelier].filter()
     }
 
     /// Forgets all of it.
     pub fn clear(&mut self) {
-        self.burst.clear();
+        self.bursts.iter_mut().for_each(Hypothesis::clear);
         self.events.iter_mut().for_each(Hypothesis::clear);
+    }
+}
+
+impl Told {
+    /// The readings that were left out do not count, or do after all.
+    fn set_faulty(&self, window: &mut Window, are_faulty: bool) {
+        let [first, next] = self.span;
+        for number in first..next {
+            let left_out = self.left_out.map(|readings| readings >> (number - first) & 1 == 1);
+            window.set_faulty(number, left_out, are_faulty);
+        }
     }
 }
 
@@ -193,10 +245,15 @@ mod tests {
 
     /// A free oscillator at 1 kHz, whose stiffness becomes this, and to the readings of whose velocity those are added.
     fn window(stiffness: f64, added: &[f64]) -> Window {
+        window_of(stiffness, added, 20)
+    }
+
+    /// The same with so many samples since it happened.
+    fn window_of(stiffness: f64, added: &[f64], since: u64) -> Window {
         let mut window = Window::new(1000, Channels::ALL, Hold::Zero);
         let mut generator = ChaCha8Rng::seed_from_u64(18);
         let mut state = State { q: 1.0, qd: 0.0 };
-        for number in 0..BEFORE_IT + 21 {
+        for number in 0..=BEFORE_IT + since {
             let own = if number > BEFORE_IT { [1.0, 0.3, stiffness] } else { [1.0, 0.3, 4.0] };
             state = Motion::new(&TERMS, &own).step_linear(state, 1e-3, 0.0, 0.0);
             let place = number.checked_sub(BEFORE_IT + 1);
@@ -208,11 +265,11 @@ mod tests {
         window
     }
 
-    fn odds(hindsight: &mut Hindsight, window: &Window, evidence: f64) -> f64 {
+    fn odds(hindsight: &mut Hindsight, window: &mut Window, evidence: f64) -> f64 {
         found(hindsight, window, evidence).odds
     }
 
-    fn found(hindsight: &mut Hindsight, window: &Window, evidence: f64) -> Found {
+    fn found(hindsight: &mut Hindsight, window: &mut Window, evidence: f64) -> Found {
         let law = Expected::of_oscillator(Motion::new(&TERMS, &[1.0, 0.3, 4.0]), NOISE);
         hindsight.weigh(&law, window, (BEFORE_IT, evidence))
     }
@@ -220,11 +277,42 @@ mod tests {
     #[test]
     fn readings_of_which_none_is_far_off_are_a_burst_and_are_left_out() {
         let burst: Vec<f64> = (0..20).map(|k| [3.4, -3.2, -3.6][k % 3]).collect();
+        let (mut hindsight, mut window) = (Hindsight::new(), window(4.0, &burst));
+        assert!(odds(&mut hindsight, &mut window, 17.0) > 3.0);
+        assert_eq!(hindsight.leave_out(&mut window), [false, true]);
+        let of_burst: Vec<u64> = (0..20).filter(|number| left_out(&window, BEFORE_IT + 1 + number)).collect();
+        assert!(of_burst.len() > 12 && !left_out(&window, BEFORE_IT), "{of_burst:?}");
+    }
+
+    fn left_out(window: &Window, number: u64) -> bool {
+        window.observation(number).measured[1].is_none()
+    }
+
+    /// A law that bends q̇ does not step it: a ramp leaves a quarter of what they say, and it is ten times too steep.
+    #[test]
+    fn readings_to_one_side_are_a_burst_also_where_none_is_far_off() {
+        for added in
+            [[3.0; 15].as_slice(), &[1.5, 4.0, 3.0, 2.0, 3.8, 2.5, 1.6, 3.9, 3.5, 2.2, 2.9, 3.4, 2.4, 3.1, 2.7]]
+        {
+            let found = found(&mut Hindsight::new(), &mut window(4.0, added), 17.0);
+            assert!(found.odds > 3.0 && found.is_burst, "{added:?}: {found:?}");
+        }
+    }
+
+    /// Chance makes the first readings after a switch look like a step.
+    #[test]
+    fn a_burst_after_which_the_motion_does_not_return_was_none() {
         let mut hindsight = Hindsight::new();
-        assert!(odds(&mut hindsight, &window(4.0, &burst), 17.0) > 3.0);
-        let of_burst: Vec<u64> =
-            (hindsight.first()..BEFORE_IT + 21).filter(|number| hindsight.is_of_burst(*number)[1]).collect();
-        assert!(of_burst.len() > 12 && of_burst[0] > BEFORE_IT, "{of_burst:?}");
+        let added: Vec<f64> = (0..40).map(|k| if k < 8 { 4.3 } else { 4.3 + 0.6 * f64::from(k - 8) }).collect();
+        let mut at_first = window_of(4.0, &added, 8);
+        assert!(odds(&mut hindsight, &mut at_first, 17.0) > 3.0);
+        hindsight.leave_out(&mut at_first);
+        let mut window = window_of(4.0, &added, 30);
+        (0..8).for_each(|number| window.set_faulty(BEFORE_IT + 1 + number, [false, true], true));
+        let law = Expected::of_oscillator(Motion::new(&TERMS, &[1.0, 0.3, 4.0]), NOISE);
+        let found = hindsight.weigh(&law, &mut window, (BEFORE_IT + 12, 17.0));
+        assert!(found.odds < -3.0, "{found:?}");
+        assert!((0..8).all(|number| !left_out(&window, BEFORE_IT + 1 + number)));
     }
 
     /// What was left out before was so under the same law.
@@ -232,8 +320,8 @@ mod tests {
     fn no_burst_lasts_for_as_long_as_an_outage() {
         for (left_out, is_burst) in [(40, true), (60, false)] {
             let mut window = window(4.0, &[8.0, -8.0, 7.0, -9.0, 8.0]);
-            (BEFORE_IT - left_out..=BEFORE_IT).for_each(|number| window.blame(number, [true; 2]));
-            let found = found(&mut Hindsight::new(), &window, 17.0);
+            (BEFORE_IT - left_out..=BEFORE_IT).for_each(|number| window.set_faulty(number, [true; 2], true));
+            let found = found(&mut Hindsight::new(), &mut window, 17.0);
             assert_eq!(found.is_burst, is_burst, "{left_out}: {found:?}");
         }
     }
@@ -241,12 +329,12 @@ mod tests {
     #[test]
     fn a_switch_of_law_is_no_burst_whatever_linear_evidence_says() {
         let mut hindsight = Hindsight::new();
-        assert!(odds(&mut hindsight, &window(16.0, &[]), 0.0) < -3.0);
+        assert!(odds(&mut hindsight, &mut window(16.0, &[]), 0.0) < -3.0);
     }
 
     #[test]
     fn what_nothing_speaks_for_is_none() {
         let mut hindsight = Hindsight::new();
-        assert!(odds(&mut hindsight, &window(4.0, &[]), 17.0) < -3.0);
+        assert!(odds(&mut hindsight, &mut window(4.0, &[]), 17.0) < -3.0);
     }
 }

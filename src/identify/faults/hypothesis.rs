@@ -222,6 +222,11 @@ impl Hypothesis {
         self.path[place]
     }
 
+    /// Which readings are a sensor's fault: one bit a sample held, by channel.
+    pub fn left_out(&self) -> [u64; 2] {
+        self.faulty
+    }
+
     /// Whether the channel's reading at a sample held is no fault of the sensor's.
     pub fn counts(&self, channel: Channel, place: usize) -> bool {
         self.faulty[channel as usize] >> place & 1 == 0
@@ -288,8 +293,9 @@ impl Hypothesis {
             return false;
         }
         let repeats = value.repeats.unwrap_or(0.0);
+        let to_one_side = self.kind == Kind::OneSided;
         let start = start.max(SHARED * self.bursts[1 - index].begun());
-        self.log += self.bursts[index].take(working(residual, variance), residual, std, start) - repeats;
+        self.log += self.bursts[index].take(working(residual, variance), residual, std, start, to_one_side) - repeats;
         if self.bursts[index].is_on() {
             return false;
         }

@@ -9,7 +9,9 @@ use serde::{Deserialize, Serialize};
 pub enum Kind {
     /// Nothing but readings that are wide draws, if any.
     Readings,
-    /// Nothing but those, and the law in use is as wrong as a valid one may be.
+    /// Nothing but those, and they lie to one side.
+    OneSided,
+    /// Nothing but wide draws, and the law in use is as wrong as a valid one may be.
     Misfit,
     /// The law changed, and q̈ by so many times what a switch usually adds: with the first reading that is held, or
     /// unnoticed before it.
@@ -35,7 +37,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// Every one of them, the least first.
+    /// Every one of them by which readings are held, the least first: what lies to one side is an offset there.
     pub const ALL: [Kind; 18] = [
         Kind::Readings,
         Kind::Misfit,
@@ -59,7 +61,7 @@ impl Kind {
 
     /// Whether nothing has happened but readings that are wide draws.
     pub fn is_no_event(self) -> bool {
-        matches!(self, Kind::Readings | Kind::Misfit)
+        matches!(self, Kind::Readings | Kind::OneSided | Kind::Misfit)
     }
 
     /// Whether it can be told where no law is known: a change of law is one of q̈ there. An offset moves slowly in one

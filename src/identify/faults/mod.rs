@@ -5,9 +5,10 @@
 //! is a filter of the state from the last reading that was as expected, scored on the same readings; physics prices
 //! them. A switch leaves q and q̇ continuous and changes q̈ alone; readings of a burst are independent wide draws,
 //! priced one by one; an offset moves one channel; a kick (an F that was not the plant's) moves q̇, and q follows; a
-//! stuck sensor repeats exactly where it varied before. What is held enters the record once the law or a fault has [3
-//! nats](crate::estimation::TWENTY_TO_ONE) on the other, without the readings that are a sensor's fault: nothing that
-//! is not committed has to be taken back.
+//! stuck sensor repeats exactly where it varied before. What is held enters the record once the law or a fault has
+//! [3 nats](crate::estimation::TWENTY_TO_ONE) on the other, without the readings that are a sensor's fault: nothing
+//! that is not committed has to be taken back. What no reading shows alone is weighed at an alarm, and once more at the
+//! next.
 //!
 //! - `price`: densities of readings, and the two states of a channel;
 //! - `repetition`: how often a channel repeats a value exactly;

@@ -3,7 +3,7 @@
 
 use crate::estimation::{UNLIKELY, log_sum};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_2_SQRT_PI, TAU};
 
 /// Scatter of a faulty sensor in stds of a working one: what is nearer costs about the same under either.
 pub const SCATTER: f64 = 3.0;
@@ -44,42 +44,66 @@ pub fn faulty(residual: f64, std: f64) -> f64 {
 /// How wide a burst's readings are nobody knows before its first; that one has the density [`faulty`]. Of those after
 /// it the burst knows: Laplace draws of a size whose logarithm is uniform have, after n of them with the sum A of their
 /// magnitudes, the predictive density n Aⁿ ÷ (2 (A + |residual|)ⁿ⁺¹). One in n + 2 is of another size all the same.
+/// Where they lie to one side A is the sum of their distances from the mean of those before, one less than they are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Burst {
     /// Probability of the burst after the last reading.
     pub probability: f64,
     /// Readings that it has had.
     age: f64,
-    /// Sum of their magnitudes, in std of a working sensor.
+    /// Sum of their distances from what they lie about, in std of a working sensor.
     sum: f64,
+    /// Where that is, where they lie to one side.
+    mean: f64,
 }
+
+/// Readings to one side from which on they are no burst's any more but an offset.
+const LONGEST: f64 = 30.0;
+
+/// Mean distance of a working sensor's readings from what they are about, std: √(2 ÷ π).
+const NEAR: f64 = FRAC_2_SQRT_PI * FRAC_1_SQRT_2;
 
 impl Burst {
     /// Takes a reading by its log-density under a working sensor and its residual, in a channel of that std; `start` is
     /// the probability that a burst begins with a reading. One that has lasted for n readings ends with the next at 1 ÷
-    /// (n + 2). Returns the reading's log-density.
-    pub fn take(&mut self, working: f64, residual: f64, std: f64, start: f64) -> f64 {
+    /// (n + 2). `to_one_side`: whether its readings lie about their own mean; what it has had then counts from where it
+    /// most likely began, whether it is on or not. Returns the reading's log-density.
+    pub fn take(&mut self, working: f64, residual: f64, std: f64, start: f64, to_one_side: bool) -> f64 {
         let (burst, ends) = (self.probability, (self.age + 2.0).recip());
+        let size = (residual / std).clamp(-FAR, FAR);
         let begins = faulty(residual, std) + ((1.0 - burst) * start).ln();
-        let goes_on = self.density(residual, std) + (burst * (1.0 - ends)).ln();
+        let goes_on = self.density(size, std, to_one_side) + (burst * (1.0 - ends)).ln();
         let faulty = log_sum(begins, goes_on);
         let working = working + ((1.0 - burst) * (1.0 - start) + burst * ends).ln();
         let total = log_sum(working, faulty);
         self.probability = (faulty - total).exp();
-        let size = (residual.abs() / std).min(FAR);
-        (self.age, self.sum) = if self.is_on() { (self.age + 1.0, self.sum + size) } else { (0.0, 0.0) };
+        if to_one_side && begins > goes_on {
+            (self.age, self.sum, self.mean) = (1.0, 0.0, size);
+        } else if to_one_side || self.is_on() {
+            self.age += 1.0;
+            self.sum += (size - self.mean).abs();
+            self.mean += if to_one_side { (size - self.mean) / self.age } else { 0.0 };
+        } else {
+            (self.age, self.sum) = (0.0, 0.0);
+        }
         total
     }
 
-    /// Log-density of the next reading of the burst.
-    fn density(&self, residual: f64, std: f64) -> f64 {
-        let wide = faulty(residual, std);
-        if self.sum == 0.0 {
+    /// Log-density of the next reading of the burst, `size` std of a working sensor off.
+    fn density(&self, size: f64, std: f64, to_one_side: bool) -> f64 {
+        if to_one_side && self.age > LONGEST {
+            return faulty(size * std, std);
+        }
+        let distance = (size - self.mean).abs();
+        let wide = faulty(distance * std, std);
+        let n = if to_one_side { self.age - 1.0 } else { self.age };
+        if n <= 0.0 || self.sum == 0.0 {
             return wide;
         }
-        let (n, other) = (self.age, (self.age + 2.0).recip());
-        let beyond = ((residual.abs() / std).min(FAR) / self.sum).ln_1p();
-        let own = (0.5 * n / (self.sum * std)).ln() - (n + 1.0) * beyond;
+        let other = (self.age + 2.0).recip();
+        // what is added to the noise makes no reading likelier than it
+        let sum = if to_one_side { self.sum.max(NEAR * n) } else { self.sum };
+        let own = (0.5 * n / (sum * std)).ln() - (n + 1.0) * (distance / sum).ln_1p();
         log_sum(wide + other.ln(), own + (1.0 - other).ln())
     }
 
@@ -121,7 +145,7 @@ mod tests {
         let mut burst = Burst::default();
         let mut states = Vec::new();
         for residual in [0.5, 9.0, -40.0, 1e300, 0.3, -0.4, 0.2, 0.1, 0.6, -0.7] {
-            burst.take(working(residual, 1.0), residual, 1.0, 1e-9);
+            burst.take(working(residual, 1.0), residual, 1.0, 1e-9, false);
             states.push(burst.is_on());
         }
         assert_eq!(states[..4], [false, true, true, true]);
@@ -133,7 +157,7 @@ mod tests {
     fn a_reading_rather_wide_is_of_the_burst_that_follows() {
         for (residual, of_burst) in [(3.5, true), (1.0, false)] {
             let mut burst = Burst::default();
-            burst.take(working(residual, 1.0), residual, 1.0, 1e-9);
+            burst.take(working(residual, 1.0), residual, 1.0, 1e-9, false);
             assert!(!burst.is_on() && burst.may_have_begun(1e-9) == of_burst, "{residual}");
         }
     }
@@ -142,15 +166,34 @@ mod tests {
     fn a_burst_learns_how_wide_its_readings_are() {
         let mut burst = Burst::default();
         let costs = [3e4, -4.5e4, 2e4, -3e4, 4e4, -1.5e4, 3e4]
-            .map(|residual| burst.take(working(residual, 1.0), residual, 1.0, 1e-9));
+            .map(|residual| burst.take(working(residual, 1.0), residual, 1.0, 1e-9, false));
         let known = (2.0 * 3e4_f64).ln() + 1.0;
         assert!(costs[6] > faulty(3e4, 1.0) + 2.0 && costs[6] > -known - 0.5, "{costs:?}");
+    }
+
+    /// Once the first have told where the others lie, each costs what a working sensor's scatter does.
+    #[test]
+    fn a_burst_to_one_side_learns_where_its_readings_lie() {
+        let residuals = [30.3, 29.2, 30.8, 29.5, 30.1, 30.6, 29.4, 30.2, 29.9, 30.5];
+        let cost = |to_one_side: bool| {
+            let mut burst = Burst::default();
+            residuals.map(|residual| burst.take(working(residual, 1.0), residual, 1.0, 1e-9, to_one_side))[9]
+        };
+        assert!(cost(true) > -2.0 && cost(false) < -4.5, "{}, {}", cost(true), cost(false));
+    }
+
+    /// An offset that lasts is not a burst's.
+    #[test]
+    fn a_burst_to_one_side_ends() {
+        let mut burst = Burst::default();
+        let costs = [4.0; 60].map(|residual| burst.take(working(residual, 1.0), residual, 1.0, 1e-9, true));
+        assert!(costs[20] > -1.9 && costs[50] < -2.8, "{costs:?}");
     }
 
     #[test]
     fn five_stds_are_no_fault_of_a_sensor_that_never_failed() {
         let mut burst = Burst::default();
-        burst.take(working(5.0, 1.0), 5.0, 1.0, 1e-9);
+        burst.take(working(5.0, 1.0), 5.0, 1.0, 1e-9, false);
         assert!(!burst.is_on());
     }
 }

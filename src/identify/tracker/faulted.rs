@@ -194,12 +194,7 @@ impl Tracker {
 
     fn leave_out_burst(&mut self) {
         let Tracker { intake, window, monitor, .. } = self;
-        let mut channels = [false; 2];
-        for number in intake.hindsight.first()..window.ready() {
-            let of_burst = intake.hindsight.is_of_burst(number);
-            window.blame(number, of_burst);
-            channels = [channels[0] || of_burst[0], channels[1] || of_burst[1]];
-        }
+        let channels = intake.hindsight.leave_out(window);
         intake.quarantine.blame(channels);
         monitor.law.run.filter = intake.hindsight.filter();
         self.segment.begin_run(&self.window);
