@@ -188,4 +188,28 @@ mod tests {
             assert!(moved.iter().zip(&direct).all(|(a, b)| (a - b).abs() < 1e-3 * size), "length {which}");
         }
     }
+
+    /// Pieces that end within an advance, and windows that advance by less, by nearly and by more than their length.
+    #[test]
+    fn every_window_has_the_cells_of_its_own_piece() {
+        for counts in [[600, 37, 170], [40_000, 5, 20_011]] {
+            let cells: Cells = counts
+                .map(|count| (0..count).map(|k| [f64::from(k * 7 % 11) - 4.0, f64::from(k * 5 % 13) - 6.0]).collect())
+                .to_vec();
+            for (which, size) in CELLS.into_iter().enumerate() {
+                let windows = Windows::new(which, &cells.iter().map(Vec::len).collect::<Vec<_>>(), 0.1, 0.0);
+                let mut rows = vec![1.0; windows.rows()];
+                windows.add(0, &cells, 2.0, &mut rows);
+                let bump = tabulated(size, windows.length, 0.0, 0.0)[0].clone();
+                for ((piece, first), rows) in windows.places.iter().zip(rows.chunks_exact(windows.functions)) {
+                    let own = bump.iter().zip(&cells[*piece][*first..]);
+                    let integral: f64 = own.map(|(phi, cell)| phi[0] * cell[0] + phi[1] * cell[1]).sum();
+                    assert!(
+                        (rows[0] - 1.0 - 2.0 * integral).abs() < 1e-9,
+                        "length {which}, piece {piece}, cell {first}"
+                    );
+                }
+            }
+        }
+    }
 }

@@ -61,7 +61,7 @@ impl Kind {
 
     /// Whether nothing has happened but readings that are wide draws.
     pub fn is_no_event(self) -> bool {
-        matches!(self, Kind::Readings | Kind::OneSided | Kind::Misfit)
+        matches!(self, Kind::Readings | Kind::Misfit)
     }
 
     /// Whether it can be told where no law is known: a change of law is one of q̈ there. An offset moves slowly in one
