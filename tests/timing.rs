@@ -1,7 +1,10 @@
 //! When the excitation acted: samples that come late, and a hold that is said wrongly.
 
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
 use switchid::identify::{Identifier, Output, Sample, SensorState, Settings};
-use switchid::law::{Given, Hold, Model};
+use switchid::law::{Given, Hold, Model, Motion, State};
 use switchid::limits::SETTLED_ERROR;
 use switchid::simulate::{Builtin, Scenario, record};
 
@@ -107,6 +110,47 @@ fn a_channel_that_begins_to_come_late_is_no_switch_and_hides_none() {
         }
         let output = identifier.output();
         assert!(output.switch_count == 1 && output.detection_time.unwrap() < 20.5, "{seed}: {output:?}");
+    }
+}
+
+/// A Duffing oscillator whose stiffness changes at 24 s, under a sum of sines that is held until 10 s and moves straight
+/// from then on, or the other way round.
+fn held_otherwise(seed: u64, first: Hold) -> Vec<Sample> {
+    let mut generator = ChaCha8Rng::seed_from_u64(seed);
+    let sines: Vec<[f64; 3]> =
+        (0..6).map(|_| [1.0..2.0, 0.5..12.0, 0.0..6.0].map(|range| generator.random_range(range))).collect();
+    let force = |t: f64| sines.iter().map(|[size, rate, phase]| size * (rate * t + phase).sin()).sum::<f64>();
+    let terms = Builtin::DuffingSine.terms();
+    let mut state = State { q: 0.5, qd: 0.0 };
+    let sample = |number: u32| {
+        let t = 1e-3 * f64::from(number);
+        let [from, next] = [t, t + 1e-3].map(force);
+        let mut noise = || NOISE * generator.sample::<f64, _>(StandardNormal);
+        let sample = Sample { t, q: state.q + noise(), qd: state.qd + noise(), excitation: from };
+        let law = [1.0, 0.4, if t < 24.0 { 4.0 } else { 5.0 }, 1.0];
+        let to = if (t < 10.0) == (first == Hold::Zero) { from } else { next };
+        state = Motion::new(&terms, &law).step_linear(state, 1e-3, from, to);
+        sample
+    };
+    (0..26_000).map(sample).collect()
+}
+
+/// What a hold does is seen seconds after it began to, and explains what another law would have to change for.
+#[test]
+fn a_hold_that_changes_in_mid_stream_is_no_switch_and_hides_none() {
+    let model = Model::of("plant", Builtin::DuffingSine.terms().into_iter().map(|term| (term, Given::Fit)));
+    for seed in 1..=4 {
+        for (first, then) in [(Hold::Zero, Hold::Linear), (Hold::Linear, Hold::Zero)] {
+            let mut identifier = Identifier::new(&model, Settings { hold: first, ..Settings::default() }).unwrap();
+            for sample in held_otherwise(seed, first) {
+                identifier.step(sample).unwrap();
+                let Output { switch_count, hold, valid, .. } = identifier.output();
+                assert!(*switch_count == 0 || sample.t >= 24.0, "{seed}, {first}: a switch at {}", sample.t);
+                assert!(sample.t != 23.0 || *valid && *hold == then, "{seed}, {first}: {hold}");
+            }
+            let output = identifier.output();
+            assert!(output.switch_count == 1 && output.detection_time.unwrap() < 24.5, "{seed}, {first}: {output:?}");
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! When F acted: between samples, and against q and q̇. What is assumed of it is left where the motion tells otherwise.
 
-use super::faults::Lateness;
+use super::faults::{Lateness, is_held};
 use super::report::SensorState;
 use super::sample::Sample;
 use super::settings::Channels;
@@ -46,6 +46,15 @@ impl Timing {
         Timing { hold, lag: 0.0, std: 0.0, told_by: 0, is_confirmed: false }
     }
 
+    /// What F does between samples, where a hold that changed is a lag of half a sample.
+    pub fn shown_hold(&self) -> Hold {
+        match (is_held(self.hold, self.lag), self.hold) {
+            (true, _) => Hold::Zero,
+            (false, Hold::Zero) => Hold::Linear,
+            (false, other) => other,
+        }
+    }
+
     /// Samples that F acts later than it comes, were it to move straight: to first order a force held over an interval
     /// is one that does and acts half a sample late.
     pub fn late(&self) -> f64 {
@@ -55,7 +64,7 @@ impl Timing {
     /// What is assumed once a channel has begun to come late, after so many samples of the record; none of what is more
     /// than can be set right, or where F is interpolated from samples to come.
     pub fn moved(&self, late: &Lateness, samples: u64) -> Option<Timing> {
-        let lag = self.lag + late.later as f64;
+        let lag = self.lag + late.later;
         let is_told = self.hold != Hold::BandLimited && lag.abs() <= FARTHEST;
         is_told.then_some(Timing { lag, told_by: samples, is_confirmed: true, ..*self })
     }
@@ -253,6 +262,20 @@ mod tests {
         assert!(near(held.left_open(&found(0.0)), 0.043 * 0.0223_f64.powi(2)), "{}", held.left_open(&found(0.0)));
         let told = held.corrected(&found(-0.25), 1000).unwrap();
         assert!(near(told.left_open(&Lag::UNKNOWN), 0.02 * 0.02 + EXACT * EXACT));
+    }
+
+    /// A hold that changed in mid-stream is kept as a lag.
+    #[test]
+    fn half_a_sample_that_has_come_in_the_stream_is_shown_as_a_hold() {
+        let after = |timing: Timing, later| {
+            let moved = timing.moved(&Lateness { later, first: 0 }, 1000);
+            moved.map(|moved| (moved.late(), moved.shown_hold()))
+        };
+        assert_eq!(after(Timing::new(Hold::Zero), -0.5), Some((0.0, Hold::Linear)));
+        assert_eq!(after(Timing::new(Hold::Linear), 0.5), Some((0.5, Hold::Zero)));
+        let late = Timing::new(Hold::Zero).corrected(&found(1.0), 1000).unwrap();
+        assert_eq!(after(late, -0.5), Some((1.0, Hold::Linear)));
+        assert_eq!(after(Timing::new(Hold::BandLimited), 1.0), None);
     }
 
     #[test]

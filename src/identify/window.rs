@@ -209,12 +209,18 @@ impl Window {
 
     /// What was taken to act so many samples before this one acts with it; at the record's ends, what there is.
     fn move_excitation(&mut self, number: u64, later: f64) {
+        let excitation = self.excitation_before(number, later);
+        let slot = self.slot(number);
+        self.ring[slot].sample.excitation = excitation;
+    }
+
+    /// F so many samples before sample `number`.
+    fn excitation_before(&self, number: u64, later: f64) -> f64 {
         let (first, last) = (self.oldest() as i64, self.end() as i64 - 1);
         let whole = later.ceil();
         let [from, to] = [0, 1].map(|next| (number as i64 - whole as i64 + next).clamp(first, last) as u64);
         let [from, to] = [from, to].map(|number| self.sample(number).excitation);
-        let slot = self.slot(number);
-        self.ring[slot].sample.excitation = (1.0 - whole + later) * from + (whole - later) * to;
+        (1.0 - whole + later) * from + (whole - later) * to
     }
 
     /// Changes the last `count` readings.
@@ -235,37 +241,30 @@ impl Window {
     /// Sample `number` and the excitation since the one before it; both must be in the window.
     #[inline]
     pub fn observation(&self, number: u64) -> Observation {
-        self.observation_under(number, self.drive(number))
-    }
-
-    /// The same with the excitation of so many samples before, as far as it is in the window.
-    pub fn observation_with(&self, number: u64, later: i64) -> Observation {
-        let known = |number: u64| number.saturating_add_signed(-later).clamp(self.oldest(), self.end() - 1);
-        let [before, after] = [number - 1, number].map(known);
-        self.observation_under(number, self.drive_between(before, after))
-    }
-
-    #[inline]
-    fn observation_under(&self, number: u64, drive: Drive) -> Observation {
         let (before, after) = (self.sample(number - 1), self.sample(number));
         let Reading { faulty: [q_faulty, qd_faulty], unseen, .. } = self.ring[self.slot(number)];
         let counts = [self.channels.q && !q_faulty, self.channels.qd && !qd_faulty];
         let measured = [counts[0].then_some(after.q), counts[1].then_some(after.qd)];
-        let dt = after.t - before.t;
-        Observation { dt, drive, measured, unseen }
+        Observation { dt: after.t - before.t, drive: self.drive(number), measured, unseen }
+    }
+
+    /// The excitation of so many samples before those since the sample before sample `number`, as far as it is in the
+    /// window.
+    pub fn drive_with(&self, number: u64, later: f64) -> Drive {
+        let [before, after] = [number - 1, number].map(|number| self.excitation_before(number, later));
+        self.drive_between(before, after)
     }
 
     /// The excitation since the sample before sample `number`.
     fn drive(&self, number: u64) -> Drive {
         match self.hold {
             Hold::BandLimited if self.channels.excitation => self.interpolate(number - 1),
-            _ => self.drive_between(number - 1, number),
+            _ => self.drive_between(self.sample(number - 1).excitation, self.sample(number).excitation),
         }
     }
 
-    /// The excitation from one sample to another, held or straight.
-    fn drive_between(&self, before: u64, after: u64) -> Drive {
-        let [before, after] = [before, after].map(|number| self.sample(number).excitation);
+    /// The excitation from one value to another, held or straight.
+    fn drive_between(&self, before: f64, after: f64) -> Drive {
         match self.hold {
             _ if !self.channels.excitation => Drive::Held(0.0),
             Hold::Zero => Drive::Held(before),

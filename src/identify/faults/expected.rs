@@ -1,7 +1,7 @@
 //! What readings are held against: a law or the motion itself, and by how much either may be wrong.
 
 use crate::estimation::{Filter, Matrix, Noise, times, white_acceleration};
-use crate::law::{Drive, Motion, State};
+use crate::law::{Drive, Hold, Motion, State};
 use crate::limits::SETTLED_ERROR;
 
 /// What the readings are held against.
@@ -88,6 +88,15 @@ impl Expected<'_> {
         filter
     }
 
+    /// (q, q̇) after an interval of the law in use.
+    pub fn carry_state(&self, state: State, dt: f64, drive: &Drive) -> State {
+        let parts = drive.parts(self.parts);
+        (0..parts).fold(state, |state, part| {
+            let [from, _, to] = drive.part(part, parts);
+            self.motion.step_linear(state, dt / parts as f64, from, to)
+        })
+    }
+
     /// Goes over an interval in which q̈ is the law's, u₀ and u₁ F ÷ m as far as they act. `added`, by what multiplies
     /// them, is the intensity of a white acceleration and what u₀ gains in a second, as variances.
     pub fn advance(
@@ -165,9 +174,16 @@ impl<'a> Expected<'a> {
 }
 
 /// Samples by which q and q̇ come later than before where F, which acts so many samples later than it comes, does so by
-/// `later` more: what is left of that is F's, which comes earlier.
+/// `later` more: what is left of that is F's, which comes earlier or is held otherwise.
 pub fn delay(lag: f64, later: f64) -> f64 {
-    (lag + later).max(0.0) - lag.max(0.0)
+    (lag + later.trunc()).max(0.0) - lag.max(0.0)
+}
+
+/// Whether F is held between samples where `hold` is assumed of what acts `lag` samples later than it comes: what is
+/// held acts, to first order, half a sample later than what moves straight.
+pub fn is_held(hold: Hold, lag: f64) -> bool {
+    let late = if hold == Hold::Zero { lag + 0.5 } else { lag };
+    late.fract().abs() == 0.5
 }
 
 /// What an interval makes of a small change of (q, q̇), where q̈ changes so by them.

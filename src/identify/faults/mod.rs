@@ -47,7 +47,7 @@ mod weighing;
 pub use after_outage::{AfterOutage, DECISIVE, Returned};
 pub use clock::Clock;
 pub use excitation::{ExcitationGate, Stray};
-pub use expected::{Expected, Standing, delay};
+pub use expected::{Expected, Standing, delay, is_held};
 pub use hindsight::{Found, Hindsight, settled};
 pub use lateness::{LateChannels, Lateness};
 pub use quarantine::{Against, Quarantine};

@@ -6,11 +6,12 @@ use crate::estimation::{Channel, Filter, Innovation, Observation, TWENTY_TO_ONE}
 use crate::evidence::{INERTIA_SPREAD, Suspect};
 use crate::identify::change::LawInUse;
 use crate::identify::faults::{
-    CERTAIN, DECISIVE, Expected, Found, Lateness, Returned, Standing, StandingForce, delay, settled,
+    CERTAIN, DECISIVE, Expected, Found, LateChannels, Lateness, Returned, Standing, StandingForce, delay, settled,
 };
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::segment::MotionScales;
+use crate::law::Hold;
 
 /// A decision between an offset and another law may take this long after an outage, s …
 const UNDECIDED: f64 = 3.0;
@@ -77,6 +78,13 @@ impl Tracker {
                 intake.after_outage.take(&Expected { noise, ..law }, observation, state, innovations);
             }
             None => {}
+        }
+        if problem.channels.excitation && problem.timing.hold != Hold::BandLimited {
+            let law = &expected();
+            match &mut monitor.late_channels {
+                Some(channels) if !outage => channels.follow(law, window),
+                begins => *begins = Some(LateChannels::begin(law, window, number, state)),
+            }
         }
         if intake.after_outage.is_due() {
             self.take_off_the_rest();
@@ -154,7 +162,7 @@ impl Tracker {
         let expected = expected(problem, law, caution, &segment.scales, intake.quarantine.size());
         let switch = (suspect.start, suspect.evidence / caution);
         let Found { odds, law, is_burst } = intake.hindsight.weigh(&expected, window, switch);
-        let late = intake.late_channels.weigh(&expected, window, (suspect.start, law), monitor.unusual_since);
+        let late = monitor.late_channels.map(|channels| channels.weigh(&expected, window, law));
         // a law that may be another one says nothing of when F acted
         let late = late.filter(|_| !regime.is_unconfirmed());
         let late = late.filter(|(late, own)| *own > odds && problem.timing.moved(late, 0).is_some());
@@ -172,7 +180,7 @@ impl Tracker {
     /// A channel has begun to come late: so it does in the record from then on, and the law stays.
     pub(super) fn begin_late(&mut self, problem: &mut Problem, late: &Lateness) {
         let Some(moved) = problem.timing.moved(late, self.record_length()) else { return };
-        let later = late.later as f64;
+        let later = late.later;
         // a motion whose readings begin to come late has stood still in them
         let stood_still = delay(problem.timing.lag, later) != 0.0;
         problem.timing = moved;
@@ -286,6 +294,7 @@ impl Tracker {
     fn restart_law(&mut self, filter: Filter) {
         self.clear_suspicion();
         self.monitor.law.run.filter = filter;
+        self.monitor.late_channels = None;
         self.monitor.prediction.restart(filter.state(), self.window.sample(self.window.ready() - 1).t);
     }
 

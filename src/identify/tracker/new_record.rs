@@ -96,6 +96,7 @@ impl Tracker {
         self.weak_row_drift.restart(self.window.end());
         self.augmented_drift.end();
         self.intake.after_outage.end();
+        self.monitor.late_channels = None;
         (self.history, self.drifted) = (History::default(), None);
     }
 

@@ -6,6 +6,7 @@ use crate::identify::report::{ByQuantity, Coefficient, Output};
 use crate::identify::segment::GROWTH;
 use crate::identify::settings::Settings;
 use crate::identify::validation::{DOUBTED, TRUSTED, VALIDATED};
+use crate::law::Hold;
 
 impl Tracker {
     /// Writes every output. Of a record whose law cannot state an honest std, the coefficients of the weak form stand
@@ -14,7 +15,7 @@ impl Tracker {
     pub fn show(&mut self, problem: &Problem, settings: &Settings, shown: &mut [Coefficient], output: &mut Output) {
         self.foretell(problem);
         shown.copy_from_slice(&self.published.coefficients);
-        *output = self.output();
+        *output = self.output(problem.timing.shown_hold());
         output.valid &= self.is_fresh();
         let unknown = shown.iter().any(|coefficient| coefficient.std.is_none());
         output.valid &= !unknown;
@@ -32,7 +33,7 @@ impl Tracker {
         }
     }
 
-    fn output(&self) -> Output {
+    fn output(&self, hold: Hold) -> Output {
         let (published, prediction) = (&self.published, &self.monitor.prediction);
         Output {
             switch_count: published.switches.count,
@@ -51,7 +52,7 @@ impl Tracker {
             threshold: prediction.shown_threshold,
             prediction: ByQuantity { q: prediction.shown.q, qd: prediction.shown.qd, force: 0.0 },
             missing: published.missing,
-            hold: self.window.hold(),
+            hold,
             explained: None,
             noise: ByQuantity { q: published.noise[0], qd: published.noise[1], force: None },
         }

@@ -84,7 +84,6 @@ pub(super) struct Intake {
     pub(super) motion_known: bool,
     pub(super) after_outage: AfterOutage,
     pub(super) hindsight: Hindsight,
-    pub(super) late_channels: LateChannels,
     /// Since when one comes late, as has just been found.
     pub(super) late: Option<Lateness>,
     /// Whether an alarm waits for the decision between another law and an offset.
@@ -129,6 +128,8 @@ pub(super) struct Monitor {
     pub(super) law: LawInUse,
     pub(super) bank: Bank,
     pub(super) prediction: Prediction,
+    /// Whether channels have begun to come late against it, as long as nothing else has disturbed it.
+    pub(super) late_channels: Option<LateChannels>,
     /// Since which sample the evidence of a switch is more than chance brings now and then.
     pub(super) unusual_since: Option<u64>,
     /// Every free term: what a switch may move.
@@ -183,7 +184,7 @@ impl ChangeBelief {
 impl Monitor {
     /// No law is in use any more.
     pub(super) fn stop(&mut self) {
-        (self.law.running, self.unusual_since) = (false, None);
+        (self.law.running, self.unusual_since, self.late_channels) = (false, None, None);
         self.prediction.clear();
     }
 }
@@ -200,7 +201,6 @@ impl Tracker {
                 motion_known: false,
                 after_outage: AfterOutage::new(),
                 hindsight: Hindsight::new(),
-                late_channels: LateChannels::default(),
                 late: None,
                 undecided: false,
                 force: Repetition::default(),
@@ -220,6 +220,7 @@ impl Tracker {
                 law: LawInUse::new(problem),
                 bank: Bank::new(n, HYPOTHESES),
                 prediction: Prediction::new(settings),
+                late_channels: None,
                 unusual_since: None,
                 every_term: vec![true; n],
             },
