@@ -30,6 +30,8 @@ const RIVALS: usize = 7;
 pub struct Timing {
     /// What it does between samples.
     pub hold: Hold,
+    /// What it was said to do.
+    said: Hold,
     /// Samples that it acts later than it comes: 1 where q and q̇ come a sample late, −1 where F does.
     pub lag: f64,
     /// Std of that; 0 where a hold or a late channel explains it.
@@ -43,7 +45,12 @@ pub struct Timing {
 impl Timing {
     /// The channels in time.
     pub fn new(hold: Hold) -> Timing {
-        Timing { hold, lag: 0.0, std: 0.0, told_by: 0, is_confirmed: false }
+        Timing { hold, said: hold, lag: 0.0, std: 0.0, told_by: 0, is_confirmed: false }
+    }
+
+    /// What was assumed before anything was told.
+    pub fn anew(&self) -> Timing {
+        Timing::new(self.said)
     }
 
     /// What F does between samples, where a hold that changed is a lag of half a sample.
@@ -81,7 +88,7 @@ impl Timing {
         // what is interpolated from samples to come is held instead, or comes in time
         let is_possible = self.hold != Hold::BandLimited || hold == Hold::Zero && lag == 0.0;
         let is_new = (EARLIEST..=LATEST).contains(&lag) && is_possible;
-        is_new.then_some(Timing { hold, lag, std, told_by: samples, is_confirmed: false })
+        is_new.then_some(Timing { hold, lag, std, told_by: samples, is_confirmed: false, ..*self })
     }
 
     /// What else F does by such a record: a hold or a late channel where one stands out from the others, else a lag of

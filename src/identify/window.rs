@@ -231,6 +231,15 @@ impl Window {
         }
     }
 
+    /// Readings of these channels that repeat the last one were none.
+    pub fn leave_out_repeated(&mut self, channels: [bool; 2]) {
+        for number in self.oldest() + 1..self.end() {
+            let [before, now] = [number - 1, number].map(|number| self.sample(number));
+            let repeated = [channels[0] && now.q == before.q, channels[1] && now.qd == before.qd];
+            self.set_faulty(number, repeated, true);
+        }
+    }
+
     /// A sample's readings of these channels are a sensor's fault, or after all they are not.
     pub fn set_faulty(&mut self, number: u64, channels: [bool; 2], are_faulty: bool) {
         let slot = self.slot(number);

@@ -5,6 +5,7 @@ mod bursts;
 mod offsets;
 mod outages;
 mod silence;
+mod unread;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -50,6 +50,8 @@ pub(super) fn remarks(recording: &Recording, calm: &Recording) -> Vec<Remark> {
         if moves {
             said.extend(coarse(values).map(|sentence| Remark::new(channel, "coarse", sentence)));
             said.extend(beside(values).map(|sentence| Remark::new(channel, "offset", sentence)));
+            let others: Vec<&[f64]> = signals.iter().filter(|other| other.0 != *channel).map(|other| other.1).collect();
+            said.extend(held(values, &others).map(|sentence| Remark::new(channel, "held", sentence)));
         }
     }
     said
@@ -195,6 +197,18 @@ fn coarse(values: &[f64]) -> Option<String> {
             "is read in steps of {}, 1/{:.0} of its std: the rounding is noise that is no white one at slow motion",
             digits(step, 3),
             spread / step
+        )
+    })
+}
+
+/// In how many samples a channel is read anew that is read less often than the others.
+fn held(values: &[f64], others: &[&[f64]]) -> Option<String> {
+    let read = values.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    is_held(values, others).then(|| {
+        format!(
+            "is read anew in {:.0} % of the samples and repeats itself in the others: `identify` leaves these out; for \
+             `compare`, `diagnose` and `improve` keep the samples in which every channel is read",
+            100.0 * read as f64 / values.len() as f64
         )
     })
 }

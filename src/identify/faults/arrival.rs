@@ -3,7 +3,8 @@
 use super::expected::Expected;
 use super::hypothesis::Value;
 use super::kind::Kind;
-use super::repetition::Repetition;
+use super::price::event;
+use super::repetition::{Repeat, Repetition};
 use crate::estimation::{Channel, Filter, OUTLYING};
 use crate::identify::reading::Reading;
 use crate::identify::sample::Sample;
@@ -85,9 +86,17 @@ pub struct Arrivals {
     /// F of the sample before that, N.
     excitation_before: f64,
     repetitions: [Repetition; 2],
+    /// Which channels have gone unread, and which of these have just been found to.
+    goes_unread: [bool; 2],
+    found_unread: [bool; 2],
 }
 
 impl Arrivals {
+    /// The channels that have just been found to go unread: until now they were taken at their word.
+    pub fn found_unread(&mut self) -> [bool; 2] {
+        std::mem::take(&mut self.found_unread)
+    }
+
     /// Takes a reading of these channels; none is an arrival before there is an interval. `course` is asked for where a
     /// channel repeats itself alone.
     pub fn take(
@@ -110,15 +119,26 @@ impl Arrivals {
         // what comes next nobody knows
         let shifted = [drive(now, now), drive(older, last)];
         let drive = drive(last, now);
-        let mut runs = [0.0; 2];
+        let dt = sample.t - before.t;
+        let never = -event(dt).ln();
+        let (mut reading, mut runs) = (reading, [0.0; 2]);
         let values = Channel::ALL.map(|channel| {
             let index = channel as usize;
             let value = [sample.q, sample.qd][index];
-            let run = self.repetitions[index].run();
-            let repeats = self.repetitions[index].take(value, moved[index], scatter[index]);
-            runs[index] = if repeats.is_some() { run } else { 0.0 };
+            let repeats = match self.repetitions[index].take(value, moved[index], scatter[index], never) {
+                Repeat::None => None,
+                Repeat::Unread => {
+                    reading.faulty[index] = true;
+                    self.found_unread[index] |= !std::mem::replace(&mut self.goes_unread[index], true);
+                    return None;
+                }
+                Repeat::Rare { nats, before } => {
+                    runs[index] = before;
+                    Some(nats)
+                }
+            };
             measured[index].then_some(Value { value, repeats })
         });
-        Some(Arrival { reading, dt: sample.t - before.t, drive, shifted, values, runs })
+        Some(Arrival { reading, dt, drive, shifted, values, runs })
     }
 }

@@ -11,14 +11,14 @@
 //! next.
 //!
 //! - `price`: densities of readings, and the two states of a channel;
-//! - `repetition`: how often a channel repeats a value exactly;
+//! - `repetition`: whether a channel repeats a value since it was not read, or is stuck;
 //! - `expected`: the law that readings are held against, or what there is without one;
 //! - `kind`: what may have happened; `hypothesis`: the filter of one; `weighing`: all of them on the same readings;
 //! - `motion_alone`: what is expected where no law is known;
 //! - `arrival`: a reading beside the last one; `queue`: readings on their way into the record;
 //! - `quarantine`: readings held, and what is let through; `states`: what is said of each sensor;
 //! - `hindsight`: whether what speaks for a switch is a burst of readings that were not held;
-//! - `lateness`: whether F, or q and q̇, have begun to come late;
+//! - `lateness`: whether F, or q and q̇, have begun to come late, or F to be held otherwise;
 //! - `excitation`: a reading of F that leaves its course and returns;
 //! - `standing_force`: whether an F that was lost acts as it is read again;
 //! - `after_outage`: whether a sensor came back from an outage with an offset;
@@ -51,7 +51,7 @@ pub use expected::{Expected, Standing, delay, is_held};
 pub use hindsight::{Found, Hindsight, settled};
 pub use lateness::{LateChannels, Lateness};
 pub use quarantine::{Against, Quarantine};
-pub use repetition::Repetition;
+pub use repetition::{Repeat, Repetition};
 pub use sender::Sender;
 pub use standing_force::StandingForce;
 pub use weighing::CERTAIN;

@@ -142,6 +142,9 @@ impl Quarantine {
         let is_whole = |arrival: &Arrival| arrival.dt < GAP * pace;
         self.whole =
             arrival.as_ref().filter(|arrival| is_whole(arrival)).map_or(0.0, |arrival| self.whole + arrival.dt);
+        let read = arrival.as_ref().map_or(reading, |arrival| arrival.reading);
+        // what is usually not read is not missed
+        self.counted += arrival.as_ref().filter(|_| !read.counts(self.measured)).map_or(0.0, |arrival| arrival.dt);
         match (against, arrival) {
             // what brings the readings back may have brought another law as well; no burst lasts for so long
             (_, Some(arrival)) if self.may_count(&arrival) && is_outage(reading.sample.t - self.counted, pace) => {
@@ -161,7 +164,7 @@ impl Quarantine {
             _ => {
                 self.settle();
                 self.motion.restart();
-                self.let_through(reading);
+                self.let_through(read);
             }
         }
     }
@@ -399,7 +402,7 @@ impl Quarantine {
             let Sample { q, qd, .. } = reading.sample;
             (reading.sample.q, reading.sample.qd) =
                 (if faulty[0] { state.q } else { q }, if faulty[1] { state.qd } else { qd });
-            reading.faulty = faulty;
+            reading.faulty = [0, 1].map(|index| reading.faulty[index] || faulty[index]);
             // what has moved q̇ may have been its sensor: it is asked as after an outage
             if kind.is_kick() && begins && number == 0 && !self.is_alone {
                 reading.unseen = f64::INFINITY;
@@ -459,6 +462,11 @@ impl Quarantine {
     /// By how many samples F has just been found to act later than it did, and since how many samples.
     pub fn found_late(&mut self) -> Option<(i8, usize)> {
         self.late.take()
+    }
+
+    /// The channels of which it has just been found that they are not read anew for every sample.
+    pub fn found_unread(&mut self) -> [bool; 2] {
+        self.arrivals.found_unread()
     }
 
     /// Whether something has just been found to have moved q̇ that was not read of F.

@@ -1,6 +1,6 @@
 //! How often a channel repeats its last value exactly, and what one more repetition says of a stuck sensor.
 
-use crate::estimation::{BEYOND_CHANCE, SAMPLES_OF_A_VARIANCE};
+use crate::estimation::{BEYOND_CHANCE, SAMPLES_OF_A_VARIANCE, TWENTY_TO_ONE};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -10,6 +10,22 @@ const RARE: f64 = 0.01;
 
 /// Variance of the second difference of white noise, in its own.
 const BENDS: f64 = 6.0;
+
+/// What a value says of its sensor by repeating the last one or not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Repeat {
+    /// It is a reading: it does not repeat the last one, or does where rounding may have made it.
+    None,
+    /// The sensor has not been read: its last value stands for what the channel has gone on to.
+    Unread,
+    /// It may be stuck.
+    Rare {
+        /// −ln of how often the channel repeats a value, nats.
+        nats: f64,
+        /// The same of the repetitions before this one.
+        before: f64,
+    },
+}
 
 /// Repetitions of one channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -22,44 +38,68 @@ pub struct Repetition {
     resolution: Option<f64>,
     readings: f64,
     repeated: f64,
-    /// What the rare repetitions in a row so far have cost, nats.
+    /// Repetitions in a row, the most that there have been of them, and what they have cost so far, nats.
+    in_a_row: u64,
+    longest: u64,
     run: f64,
-    /// How many there are.
+    /// How many of them are rare.
     length: u64,
 }
 
 impl Repetition {
-    /// Takes a reading; returns −ln of how often the channel repeats a value, nats, where this one does and that is
-    /// rare. `course` is what the channel has moved by at least since the last one, as far as is known, and `scatter`
-    /// the std of its noise under the law: one that moves by less than its resolution may repeat itself, the likelier
-    /// the less it scatters.
-    pub fn take(&mut self, value: f64, course: f64, scatter: f64) -> Option<f64> {
-        let moved = self.last.replace(value).map(|last| value - last);
-        let step = moved.map(f64::abs);
-        let scatter = scatter.min((self.bends / BENDS).sqrt());
+    /// Takes a value. `course` is what the channel has moved by at least since the last one, as far as is known, and
+    /// `scatter` the std of its noise under the law: one that moves by less than its resolution may repeat itself, the
+    /// likelier the less it scatters. What befalls a sensor in an interval is as rare as `never`, nats: a channel that
+    /// usually goes unread for some samples is stuck once it does for so long that this is rarer.
+    pub fn take(&mut self, value: f64, course: f64, scatter: f64, never: f64) -> Repeat {
+        let step = self.last.replace(value).map(|last| (value - last).abs());
         let repeats = step == Some(0.0);
+        let bends = (self.bends / BENDS).sqrt();
+        let of_rounding = |scatter: f64| self.resolution.map_or(1.0, |step| step / (2.0 * PI.sqrt() * scatter));
         // two normal readings of one mean are rounded to the same value
         let chance = match self.resolution {
             Some(resolution) if course >= resolution => 0.0,
-            Some(resolution) => resolution / (2.0 * PI.sqrt() * scatter),
-            None => 1.0,
+            _ => of_rounding(scatter.min(bends)),
         };
         if repeats && chance >= RARE {
-            return None;
+            return Repeat::None;
         }
+        let of_rounding = of_rounding(bends);
         let moved = step.filter(|step| *step > 0.0);
         self.resolution = self.resolution.into_iter().chain(moved).reduce(f64::min);
-        let rate = ((self.repeated + 0.5) / (self.readings + 1.0)).max(chance);
-        let rare = repeats && rate < RARE;
-        self.run = if rare { self.run - rate.ln() } else { 0.0 };
-        self.length = if rare { self.length + 1 } else { 0 };
-        // what is called a fault does not become usual
-        if !rare {
-            self.readings += 1.0;
-            self.follow_scatter(moved.unwrap_or(0.0));
-            self.repeated += f64::from(u8::from(repeats));
+        if !repeats {
+            self.read(moved);
+            return Repeat::None;
         }
-        rare.then(|| -rate.ln())
+        let rate = (self.repeated + 0.5) / (self.readings + 1.0);
+        let usual = -rate.max(chance).ln();
+        let (before, nats) = (self.run, usual.max(self.beyond_usual()));
+        self.run += nats;
+        self.in_a_row += 1;
+        // what is called a fault does not become usual
+        if usual > -RARE.ln() || self.run > never {
+            self.length += 1;
+            return Repeat::Rare { nats, before };
+        }
+        (self.readings, self.repeated) = (self.readings + 1.0, self.repeated + 1.0);
+        if (rate / of_rounding).ln() > TWENTY_TO_ONE { Repeat::Unread } else { Repeat::None }
+    }
+
+    /// A value that repeats nothing, and what it is off the last one.
+    fn read(&mut self, moved: Option<f64>) {
+        if self.length == 0 {
+            self.longest = self.longest.max(self.in_a_row);
+        }
+        (self.run, self.length, self.in_a_row) = (0.0, 0, 0);
+        self.readings += 1.0;
+        moved.into_iter().for_each(|step| self.follow_scatter(step));
+    }
+
+    /// −ln of how seldom one more repetition comes after those in a row where that is more than it ever was: of twice as
+    /// many one reading was missed.
+    fn beyond_usual(&self) -> f64 {
+        let is_usual = self.in_a_row < 2 * (self.longest + 1);
+        if is_usual { 0.0 } else { (2.0 * (self.readings - self.repeated + 1.0)).ln() }
     }
 
     /// What a law leaves may be its own error; no channel scatters by more than its steps change by.
@@ -67,12 +107,13 @@ impl Repetition {
         let bend = step - std::mem::replace(&mut self.step, step);
         let usual = self.bends.max(self.resolution.map_or(0.0, |resolution| resolution * resolution));
         let most = BEYOND_CHANCE * BEYOND_CHANCE * usual;
-        self.bends += ((bend * bend).min(most) - self.bends) / self.readings.min(SAMPLES_OF_A_VARIANCE);
+        let count = self.readings - self.repeated;
+        self.bends += ((bend * bend).min(most) - self.bends) / count.min(SAMPLES_OF_A_VARIANCE);
     }
 
-    /// −ln of how seldom the channel repeats a value as often as it just has, nats.
+    /// −ln of how seldom the channel repeats a value as often as it just has, nats; 0 where that is usual.
     pub fn run(&self) -> f64 {
-        self.run
+        if self.length > 0 { self.run } else { 0.0 }
     }
 
     /// Rare repetitions in a row.
@@ -88,26 +129,51 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use rand_distr::StandardNormal;
 
+    const NEVER: f64 = 20.0;
+
+    fn take(channel: &mut Repetition, value: f64) -> Repeat {
+        channel.take(value, 1.0, 0.0, NEVER)
+    }
+
     #[test]
     fn a_channel_that_always_varied_repeats_by_a_fault() {
         let mut channel = Repetition::default();
-        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index), 1.0, 0.0), None));
-        assert!(channel.take(999.0, 1.0, 0.0).unwrap() > 7.0);
-        assert_eq!(channel.take(5.0, 1.0, 0.0), None);
+        (0..1000).for_each(|index| assert_eq!(take(&mut channel, f64::from(index)), Repeat::None));
+        assert!(matches!(take(&mut channel, 999.0), Repeat::Rare { nats, before: 0.0 } if nats > 7.0));
+        assert_eq!(take(&mut channel, 5.0), Repeat::None);
     }
 
     #[test]
     fn a_coarse_sensor_repeats_all_the_time() {
         let mut channel = Repetition::default();
-        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index / 3), 1.0, 0.0), None));
+        (0..1000).for_each(|index| assert_eq!(take(&mut channel, f64::from(index / 3)), Repeat::None));
     }
 
     #[test]
     fn a_rounded_channel_repeats_where_it_hardly_moves() {
         let mut channel = Repetition::default();
-        (0..1000).for_each(|index| assert_eq!(channel.take(f64::from(index), 1.0, 0.0), None));
-        (0..20).for_each(|_| assert_eq!(channel.take(999.0, 0.1, 1.0), None));
-        assert!(channel.take(999.0, 1.0, 0.0).unwrap() > 7.0);
+        (0..1000).for_each(|index| assert_eq!(take(&mut channel, f64::from(index)), Repeat::None));
+        (0..20).for_each(|_| assert_eq!(channel.take(999.0, 0.1, 1.0, NEVER), Repeat::None));
+        assert!(matches!(take(&mut channel, 999.0), Repeat::Rare { nats, .. } if nats > 7.0));
+    }
+
+    /// It is stuck once it goes unread for longer than it ever would.
+    #[test]
+    fn a_channel_that_is_read_every_fifth_sample_is_unread_in_between() {
+        let mut generator = ChaCha8Rng::seed_from_u64(18);
+        let mut channel = Repetition::default();
+        let mut value = 0.0;
+        for index in 0..4000 {
+            let is_read = index % 5 == 0;
+            value = if is_read { generator.sample(StandardNormal) } else { value };
+            let expected = if is_read { Repeat::None } else { Repeat::Unread };
+            let repeat = take(&mut channel, value);
+            assert!(index < 1000 || repeat == expected, "{index}: {repeat:?}");
+        }
+        // four have come already
+        let in_a_row = 4 + (0..200).take_while(|_| take(&mut channel, value) == Repeat::Unread).count();
+        assert!((10..20).contains(&in_a_row), "{in_a_row}");
+        assert!(matches!(take(&mut channel, value), Repeat::Rare { nats, before } if nats > 6.0 && before > NEVER));
     }
 
     /// What a law leaves is not the channel's noise where that goes straight on.
@@ -118,10 +184,10 @@ mod tests {
             let mut channel = Repetition::default();
             for index in 0..4000 {
                 let scatter: f64 = generator.sample(StandardNormal);
-                channel.take((f64::from(index / 4) + scatters * scatter).round(), 0.1, 1e4);
+                channel.take((f64::from(index / 4) + scatters * scatter).round(), 0.1, 1e4, NEVER);
             }
             let repeats = channel.last.unwrap();
-            assert_eq!(channel.take(repeats, 0.1, 1e4).is_some(), told, "{channel:?}");
+            assert_eq!(channel.take(repeats, 0.1, 1e4, NEVER) != Repeat::None, told, "{channel:?}");
         }
     }
 }

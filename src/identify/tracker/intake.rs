@@ -3,7 +3,7 @@
 use super::faulted::expected;
 use super::state::{Fitting, Intake, Setup, Tracker};
 use crate::estimation::{OUTLYING, TWENTY_TO_ONE};
-use crate::identify::faults::{Against, Expected, Lateness, Stray};
+use crate::identify::faults::{Against, Expected, Lateness, Repeat, Stray};
 use crate::identify::problem::Problem;
 use crate::identify::reading::Reading;
 use crate::identify::report::{SensorState, Status};
@@ -90,7 +90,8 @@ impl Tracker {
     /// An F that is lost says nothing until it varies again, on its course.
     fn follow_excitation(&mut self, problem: &Problem, reading: &mut Reading) {
         let (run, length, last) = (self.intake.force.run(), self.intake.force.length(), self.intake.quarantine.now());
-        let varies = self.intake.force.take(reading.sample.excitation, f64::INFINITY, 0.0).is_none();
+        let repeat = self.intake.force.take(reading.sample.excitation, f64::INFINITY, 0.0, f64::INFINITY);
+        let varies = !matches!(repeat, Repeat::Rare { .. });
         if varies && run > TWENTY_TO_ONE && !self.intake.force_lost {
             self.intake.stood_still = Some([last - length as f64 * self.window.pace(), last]);
         }
@@ -119,7 +120,7 @@ impl Tracker {
         let known = self.tells_readings().then(|| self.decision().caution());
         let stuck = self.standing_force().filter(|_| !self.intake.force_lost);
         let noise = setup.known_noise(&self.difference_noise);
-        let Tracker { intake, monitor, window, segment, .. } = self;
+        let Tracker { intake, monitor, window, segment, regime, .. } = self;
         let law = &monitor.law;
         let size = intake.quarantine.size();
         let force = if problem.channels.excitation { intake.excitation.size() } else { 0.0 };
@@ -137,6 +138,13 @@ impl Tracker {
         if let Some((later, since)) = intake.quarantine.found_late() {
             let first = (window.end() + intake.quarantine.behind() as u64).saturating_sub(since as u64);
             intake.late = Some(Lateness { later: later.into(), first });
+        }
+        let unread = intake.quarantine.found_unread();
+        if unread != [false; 2] {
+            window.leave_out_repeated(unread);
+            segment.begin_run(window);
+            // what looks like a motion that comes late has made the first law of such a record
+            intake.begin_anew = regime.law().is_none();
         }
         let kicked = intake.quarantine.found_kick() && !by_law;
         match intake.excitation.left().filter(|_| !intake.force_lost) {

@@ -52,6 +52,12 @@ impl Tracker {
 
     /// What is assumed of when F acted follows what the record of the present law tells.
     pub fn correct_timing(&mut self, problem: &mut Problem) {
+        if std::mem::take(&mut self.intake.begin_anew) {
+            let before = problem.timing;
+            problem.timing = before.anew();
+            self.window.set_timing(problem.timing.hold, -before.lag);
+            return self.lose();
+        }
         self.intake.late = self.intake.late.filter(|_| self.monitor.law.running);
         // what is still held will be in the record as it was read
         if let Some(late) = self.intake.late.filter(|_| self.intake.quarantine.behind() == 0) {

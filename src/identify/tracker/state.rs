@@ -86,6 +86,8 @@ pub(super) struct Intake {
     pub(super) hindsight: Hindsight,
     /// Since when one comes late, as has just been found.
     pub(super) late: Option<Lateness>,
+    /// Whether all that was told so far is of readings that were none.
+    pub(super) begin_anew: bool,
     /// Whether an alarm waits for the decision between another law and an offset.
     pub(super) undecided: bool,
     /// How often F repeats its value.
@@ -202,6 +204,7 @@ impl Tracker {
                 after_outage: AfterOutage::new(),
                 hindsight: Hindsight::new(),
                 late: None,
+                begin_anew: false,
                 undecided: false,
                 force: Repetition::default(),
                 stood_still: None,
