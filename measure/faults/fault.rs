@@ -103,6 +103,8 @@ pub enum Fault {
     Gaps,
     /// One reading in ten repeats the last one.
     Repeated(Of),
+    /// One reading in so many is read, throughout: the last one stands for the others.
+    Seldom(Of, usize),
     /// The displacement is off by 0.05 from a gap of 1 s on.
     Offset,
     /// The displacement is off by 0.05 from a sample on.
@@ -129,7 +131,7 @@ pub enum Fault {
 
 impl Fault {
     /// All of them, in the order of the table.
-    pub const ALL: [Fault; 58] = [
+    pub const ALL: [Fault; 61] = [
         Fault::Clean,
         Fault::Burst(Of::Q),
         Fault::Burst(Of::Qd),
@@ -165,6 +167,9 @@ impl Fault {
         Fault::Gaps,
         Fault::Repeated(Of::F),
         Fault::Repeated(Of::All),
+        Fault::Repeated(Of::Qd),
+        Fault::Seldom(Of::Qd, 5),
+        Fault::Seldom(Of::Both, 5),
         Fault::Offset,
         Fault::Jump,
         Fault::Off(Of::Q, true),
@@ -213,6 +218,7 @@ impl Fault {
             Fault::Hidden(ms) => format!("gap {} s over the switch", f64::from(ms) / 1000.0),
             Fault::Gaps => "gap 0.2 s every second".into(),
             Fault::Repeated(of) => format!("one in 10 repeats the last, {}", of.id()),
+            Fault::Seldom(of, every) => format!("read every {every} samples, {}", of.id()),
             Fault::Offset => "offset 0.05 of q after a gap".into(),
             Fault::Jump => "offset 0.05 of q".into(),
             Fault::Off(of, true) => format!("offset of 6 to 200 std after a gap, {}", of.id()),
@@ -289,7 +295,12 @@ impl Fault {
         self.change_times(readings, first, &mut generator);
         match self {
             Fault::Stamp | Fault::Ahead | Fault::Dead | Fault::Hidden(_) | Fault::Gaps | Fault::Repeated(_) => at,
-            Fault::Flaky | Fault::Late | Fault::ComesLate(..) | Fault::Coarse(_) | Fault::Lacks(_) => at,
+            Fault::Flaky
+            | Fault::Late
+            | Fault::Seldom(..)
+            | Fault::ComesLate(..)
+            | Fault::Coarse(_)
+            | Fault::Lacks(_) => at,
             Fault::Offset | Fault::Jump | Fault::Off(..) => readings[first].t,
             _ => {
                 let end = in_a_row.map_or(last, |count| first + count);
@@ -385,6 +396,12 @@ impl Fault {
                     if generator.random_bool(REPEATED) {
                         of.set(&mut readings[index], &before);
                     }
+                }
+            }
+            Fault::Seldom(of, every) => {
+                for index in 0..readings.len() {
+                    let read = readings[index - index % every];
+                    of.set(&mut readings[index], &read);
                 }
             }
             Fault::Offset | Fault::Jump => readings[first..].iter_mut().for_each(|reading| reading.q += OFFSET),

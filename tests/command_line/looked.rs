@@ -137,6 +137,8 @@ fn a_channel_that_is_read_less_often_does_not_make_the_motion_fast() {
         let text = "t,q,qd,F\n".to_string() + &cells[1..].iter().enumerate().map(held).collect::<String>();
         let found = kinds(&bench, &text);
         assert!(!found.iter().any(|kind| ["t slow", "qd foreign"].contains(&kind.as_str())), "{every}: {found:?}");
+        let held: Vec<&String> = found.iter().filter(|kind| kind.ends_with(" held")).collect();
+        assert_eq!(held, [if column == 1 { "q held" } else { "qd held" }], "{every}: {found:?}");
     }
     // one in 60 of its samples: a period of the faster motion has four
     let few: String = cells.iter().step_by(60).map(|row| row.join(",") + "\n").collect();
