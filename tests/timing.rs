@@ -113,8 +113,8 @@ fn a_channel_that_begins_to_come_late_is_no_switch_and_hides_none() {
     }
 }
 
-/// A Duffing oscillator whose stiffness changes at 24 s, under a sum of sines that is held until 10 s and moves straight
-/// from then on, or the other way round.
+/// A Duffing oscillator whose stiffness changes at 24 s, under a sum of sines that is held until 10 s and moves
+/// straight from then on, or the other way round.
 fn held_otherwise(seed: u64, first: Hold) -> Vec<Sample> {
     let mut generator = ChaCha8Rng::seed_from_u64(seed);
     let sines: Vec<[f64; 3]> =

@@ -95,8 +95,8 @@ impl Repetition {
         moved.into_iter().for_each(|step| self.follow_scatter(step));
     }
 
-    /// −ln of how seldom one more repetition comes after those in a row where that is more than it ever was: of twice as
-    /// many one reading was missed.
+    /// −ln of how seldom one more repetition comes after those in a row where that is more than it ever was: of twice
+    /// as many one reading was missed.
     fn beyond_usual(&self) -> f64 {
         let is_usual = self.in_a_row < 2 * (self.longest + 1);
         if is_usual { 0.0 } else { (2.0 * (self.readings - self.repeated + 1.0)).ln() }
