@@ -184,6 +184,13 @@ mod tests {
         }
     }
 
+    /// A force that is held otherwise leaves the motion where it is; one whose readings come late stands still in them.
+    #[test]
+    fn a_hold_moves_no_motion() {
+        let moved = [(0.0, HELD), (0.0, -HELD), (1.0, HELD), (0.0, 1.0), (1.0, -1.0), (0.0, -1.0), (-1.0, 2.0)];
+        assert_eq!(moved.map(|(lag, later)| delay(lag, later)), [0.0, 0.0, 0.0, 1.0, -1.0, 0.0, 1.0]);
+    }
+
     #[test]
     fn nothing_comes_late_where_nothing_happens() {
         let (own, odds) = found(0.0, 100, 1);
