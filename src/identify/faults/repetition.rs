@@ -8,6 +8,9 @@ use std::f64::consts::PI;
 /// what the law expects.
 const RARE: f64 = 0.01;
 
+/// Readings that the rate of repetitions is known from: seconds of most streams.
+const MEMORY: f64 = 10_000.0;
+
 /// Variance of the second difference of white noise, in its own.
 const BENDS: f64 = 6.0;
 
@@ -27,6 +30,25 @@ pub enum Repeat {
     },
 }
 
+/// How often something happens.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Rate {
+    often: f64,
+    of: f64,
+}
+
+impl Rate {
+    fn count(&mut self, happens: bool) {
+        let kept = 1.0 - 1.0 / MEMORY;
+        *self = Rate { often: kept * self.often + f64::from(u8::from(happens)), of: kept * self.of + 1.0 };
+    }
+
+    /// The mean of its posterior after Jeffreys' prior.
+    fn mean(&self) -> f64 {
+        (self.often + 0.5) / (self.of + 1.0)
+    }
+}
+
 /// Repetitions of one channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Repetition {
@@ -37,7 +59,9 @@ pub struct Repetition {
     /// The smallest step that it has made: a rounded channel's resolution.
     resolution: Option<f64>,
     readings: f64,
-    repeated: f64,
+    /// How often it repeats a reading, and how often it goes on to where that is usual.
+    begins: Rate,
+    goes_on: Rate,
     /// Repetitions in a row, the most that there have been of them, and what they have cost so far, nats.
     in_a_row: u64,
     longest: u64,
@@ -50,7 +74,8 @@ impl Repetition {
     /// Takes a value. `course` is what the channel has moved by at least since the last one, as far as is known, and
     /// `scatter` the std of its noise under the law: one that moves by less than its resolution may repeat itself, the
     /// likelier the less it scatters. What befalls a sensor in an interval is as rare as `never`, nats: a channel that
-    /// usually goes unread for some samples is stuck once it does for so long that this is rarer.
+    /// usually goes unread for some samples is stuck once it does for so long that this is rarer. It is infinite for
+    /// what may stand still by itself.
     pub fn take(&mut self, value: f64, course: f64, scatter: f64, never: f64) -> Repeat {
         let step = self.last.replace(value).map(|last| (value - last).abs());
         let repeats = step == Some(0.0);
@@ -71,23 +96,33 @@ impl Repetition {
             self.read(moved);
             return Repeat::None;
         }
-        let rate = (self.repeated + 0.5) / (self.readings + 1.0);
+        // a working sensor repeats itself as often as ever, one that is not read goes on to
+        let rate = if self.in_a_row == 0 || self.length > 0 { self.begins } else { self.goes_on }.mean();
         let usual = -rate.max(chance).ln();
         let (before, nats) = (self.run, usual.max(self.beyond_usual()));
+        let is_fault = usual > -RARE.ln() || self.run + nats > never;
+        // that a fault goes on does not become usual; that it comes back does, of what cannot stand still itself
+        if self.in_a_row == 0 && (never.is_finite() || !is_fault) {
+            self.begins.count(true);
+        }
         self.run += nats;
         self.in_a_row += 1;
-        // what is called a fault does not become usual
-        if usual > -RARE.ln() || self.run > never {
+        if is_fault {
             self.length += 1;
             return Repeat::Rare { nats, before };
         }
-        (self.readings, self.repeated) = (self.readings + 1.0, self.repeated + 1.0);
+        if self.in_a_row > 1 {
+            self.goes_on.count(true);
+        }
         if (rate / of_rounding).ln() > TWENTY_TO_ONE { Repeat::Unread } else { Repeat::None }
     }
 
     /// A value that repeats nothing, and what it is off the last one.
     fn read(&mut self, moved: Option<f64>) {
-        if self.length == 0 {
+        if self.in_a_row == 0 {
+            self.begins.count(false);
+        } else if self.length == 0 {
+            self.goes_on.count(false);
             self.longest = self.longest.max(self.in_a_row);
         }
         (self.run, self.length, self.in_a_row) = (0.0, 0, 0);
@@ -99,7 +134,7 @@ impl Repetition {
     /// as many one reading was missed.
     fn beyond_usual(&self) -> f64 {
         let is_usual = self.in_a_row < 2 * (self.longest + 1);
-        if is_usual { 0.0 } else { (2.0 * (self.readings - self.repeated + 1.0)).ln() }
+        if is_usual { 0.0 } else { (2.0 * (self.readings + 1.0)).ln() }
     }
 
     /// What a law leaves may be its own error; no channel scatters by more than its steps change by.
@@ -107,8 +142,7 @@ impl Repetition {
         let bend = step - std::mem::replace(&mut self.step, step);
         let usual = self.bends.max(self.resolution.map_or(0.0, |resolution| resolution * resolution));
         let most = BEYOND_CHANCE * BEYOND_CHANCE * usual;
-        let count = self.readings - self.repeated;
-        self.bends += ((bend * bend).min(most) - self.bends) / count.min(SAMPLES_OF_A_VARIANCE);
+        self.bends += ((bend * bend).min(most) - self.bends) / self.readings.min(SAMPLES_OF_A_VARIANCE);
     }
 
     /// −ln of how seldom the channel repeats a value as often as it just has, nats; 0 where that is usual.
