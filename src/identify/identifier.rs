@@ -42,6 +42,8 @@ pub struct Identifier {
     coefficients: Vec<Coefficient>,
     output: Output,
     clock: Clock,
+    /// A sample after a gap, which is read once the next one comes later.
+    waiting: Option<Sample>,
     sender: Sender,
     alignment: Alignment,
 }
@@ -59,18 +61,57 @@ impl Identifier {
         let potential = model.potential.clone();
         let output = Output { hold: settings.hold, ..Output::default() };
         let (clock, sender, alignment) = (Clock::default(), Sender::default(), Alignment::default());
-        Ok(Identifier { settings, problem, engine, potential, coefficients, output, clock, sender, alignment })
+        let waiting = None;
+        Ok(Identifier { settings, problem, engine, potential, coefficients, output, clock, waiting, sender, alignment })
     }
 
-    /// Takes one sample.
+    /// Takes one sample. One that comes after a gap is used with the next one, which tells whether its stamp was right.
     ///
     /// # Errors
     /// [`Skipped`] says why the sample, or the one before it, was not used; the identifier goes on unchanged.
     pub fn step(&mut self, sample: Sample) -> Result<(), Skipped> {
         let measured = self.measured(sample);
+        self.accept(&measured).map_err(|skipped| self.skip(&measured, skipped))?;
+        let waited = self.end_waiting(&measured);
+        waited.and(self.take(measured))
+    }
+
+    /// Time stamp, s, of a sample that came after a gap and waits for the next one.
+    pub fn waiting(&self) -> Option<f64> {
+        self.waiting.map(|sample| sample.t)
+    }
+
+    /// What waits is used if the next sample comes later.
+    fn end_waiting(&mut self, next: &Sample) -> Result<(), Skipped> {
+        let Some(waiting) = self.waiting.take() else { return Ok(()) };
+        if waiting.t > next.t {
+            return Err(self.clock.ahead(waiting.t));
+        }
+        let t = self.accept(&waiting)?;
+        self.read(Sample { t, ..waiting })
+    }
+
+    fn take(&mut self, measured: Sample) -> Result<(), Skipped> {
         let t = self.accept(&measured).map_err(|skipped| self.skip(&measured, skipped))?;
-        self.clock.advance(t);
-        let read = self.sender.read(Sample { t, ..measured })?;
+        if self.clock.is_after_gap(t) {
+            self.wait(measured);
+            return Ok(());
+        }
+        self.read(Sample { t, ..measured })
+    }
+
+    /// Until the next sample has come nothing that is said holds for the present.
+    fn wait(&mut self, measured: Sample) {
+        self.waiting = Some(measured);
+        self.output.valid = false;
+        let missing = self.output.sensors.iter_mut().filter(|sensor| **sensor == SensorState::Missing);
+        missing.for_each(|sensor| *sensor = SensorState::Ok);
+    }
+
+    /// Uses a sample whose time is that of the record.
+    fn read(&mut self, sample: Sample) -> Result<(), Skipped> {
+        self.clock.advance(sample.t);
+        let read = self.sender.read(sample)?;
         let Some(sample) = read.and_then(|sample| self.alignment.align(self.problem.timing.lag, sample)) else {
             return Ok(());
         };

@@ -51,12 +51,12 @@ pub enum Skipped {
         /// Time of the last accepted one, s.
         previous: f64,
     },
-    /// Time is far ahead, alone so far.
+    /// The sample before came after a gap, and this one comes before it: its stamp was wrong.
     #[error(
-        "the sample at t = {t} s comes long after the one at {previous} s: skipped, believed once the next one agrees"
+        "the sample at t = {t} s came long after the one at {previous} s, and the next one before it: its time is wrong, skipped"
     )]
     Ahead {
-        /// Time of the sample, s.
+        /// Time of the sample that is skipped, s.
         t: f64,
         /// Time of the last accepted one, s.
         previous: f64,

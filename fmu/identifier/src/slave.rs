@@ -121,7 +121,7 @@ impl Slave for IdentifierSlave {
         if let Err(skipped) = outcome {
             say_skipped(skipped, log);
         }
-        running.watch.take(&sample, &outcome, log);
+        running.watch.take(&sample, &outcome, running.identifier.waiting(), log);
         values.put(self.stream, Value::Integer(running.watch.shown()));
         running.say_switch(before, log);
         running.say_sensors(time, sensors, log);
@@ -183,12 +183,15 @@ impl Running {
 /// A sample that the identifier did not take; what comes too soon or after a hole is for the [`Watch`] to say.
 fn say_skipped(skipped: Skipped, log: &mut Log) {
     match skipped {
-        Skipped::TooSoon { .. } | Skipped::Ahead { .. } | Skipped::Repeated { .. } | Skipped::Interpolated { .. } => {}
+        Skipped::TooSoon { .. } | Skipped::Repeated { .. } | Skipped::Interpolated { .. } => {}
         Skipped::NotFinite { t, channel } => {
             log.warn_rarely(channel, || Skipped::NotFinite { t: seconds(t), channel }.to_string());
         }
         Skipped::NotLater { t, previous } => {
             log.warn_rarely("time", || Skipped::NotLater { t: seconds(t), previous: seconds(previous) }.to_string())
+        }
+        Skipped::Ahead { t, previous } => {
+            log.warn_rarely("time", || Skipped::Ahead { t: seconds(t), previous: seconds(previous) }.to_string())
         }
     }
 }

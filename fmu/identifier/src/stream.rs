@@ -39,6 +39,8 @@ const COUNT: usize = 7;
 pub struct Watch {
     number: u64,
     last: Option<Sample>,
+    /// The sample that the identifier keeps until the next one tells whether its time is right.
+    waiting: Option<Sample>,
     connected: bool,
     /// Number of the last sample at which q or qd had changed.
     moved: u64,
@@ -76,17 +78,27 @@ impl Motion {
 }
 
 impl Watch {
-    /// Takes a sample as the host gave it, with what the identifier said of it.
-    pub fn take(&mut self, sample: &Sample, outcome: &Result<(), Skipped>, log: &mut Log) {
+    /// Takes a sample as the host gave it, with what the identifier said of it, and the time of the one that waits.
+    pub fn take(&mut self, sample: &Sample, outcome: &Result<(), Skipped>, waiting: Option<f64>, log: &mut Log) {
+        if let Some(waited) = self.waiting.filter(|waited| Some(waited.t) != waiting) {
+            self.waiting = None;
+            if !matches!(outcome, Err(Skipped::Ahead { .. })) {
+                self.take_after_gap(&waited, log);
+            }
+        }
+        if waiting == Some(sample.t) {
+            self.waiting = Some(*sample);
+        } else {
+            self.follow(sample, outcome, log);
+        }
+    }
+
+    fn follow(&mut self, sample: &Sample, outcome: &Result<(), Skipped>, log: &mut Log) {
         self.number += 1;
         self.forget();
         match outcome {
             Err(Skipped::NotFinite { .. }) => return self.raise(Condition::NotANumber, sample.t, log, String::new),
             Err(Skipped::NotLater { .. }) => return,
-            Err(Skipped::Ahead { previous, .. }) => {
-                let missing = seconds(sample.t - previous);
-                return self.raise(Condition::TooFarApart, sample.t, log, || format!("no sample for {missing} s"));
-            }
             Err(Skipped::TooSoon { .. }) => self.raise(Condition::Thinned, sample.t, log, || THINNED.into()),
             // what it repeats is looked for below
             Err(Skipped::Repeated { .. }) => {}
@@ -94,7 +106,8 @@ impl Watch {
                 self.raise(Condition::NotFresh, sample.t, log, || INTERPOLATED.into());
                 self.take_accepted(sample, log);
             }
-            Ok(()) => self.take_accepted(sample, log),
+            // of the sample before, which this one shows to have a wrong time
+            Ok(()) | Err(Skipped::Ahead { .. }) => self.take_accepted(sample, log),
         }
         self.look_for_change(sample, log);
         self.last = Some(*sample);
@@ -110,21 +123,34 @@ impl Watch {
         let Some(before) = self.last else { return };
         let usual = self.motion.dt;
         self.motion.take(&before, sample);
+        self.judge_distance(sample.t, sample.t - before.t, usual, log);
+    }
+
+    /// A gap says nothing of the steps that the host takes.
+    fn take_after_gap(&mut self, sample: &Sample, log: &mut Log) {
+        self.number += 1;
+        if let Some(before) = self.last {
+            self.judge_distance(sample.t, sample.t - before.t, self.motion.dt, log);
+        }
+        self.look_for_change(sample, log);
+        self.last = Some(*sample);
+    }
+
+    /// Whether the usual step, or this one, is too long for the motion.
+    fn judge_distance(&mut self, t: f64, dt: f64, usual: f64, log: &mut Log) {
         let Some(omega) = self.motion.frequency() else { return };
-        let (dt, period) = (sample.t - before.t, TAU / omega);
-        if omega * self.motion.dt > COARSE {
-            let text = || {
+        let (period, mean) = (TAU / omega, self.motion.dt);
+        if omega * mean > COARSE {
+            let samples = period / mean;
+            self.raise(Condition::TooCoarse, t, log, || {
                 format!(
-                    "the motion has only {:.1} samples in a natural period of {period:.3} s: the law needs six or more, take shorter \
-                     communication steps",
-                    period / self.motion.dt
+                    "the motion has only {samples:.1} samples in a natural period of {period:.3} s: the law needs six or more, take \
+                     shorter communication steps"
                 )
-            };
-            let text = text();
-            self.raise(Condition::TooCoarse, sample.t, log, || text);
+            });
         } else if omega * dt > COARSE && dt > usual {
             let text = || format!("no sample for {} s, in a motion of natural period {period:.3} s", seconds(dt));
-            self.raise(Condition::TooFarApart, sample.t, log, text);
+            self.raise(Condition::TooFarApart, t, log, text);
         }
     }
 

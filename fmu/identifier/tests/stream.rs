@@ -140,6 +140,17 @@ fn a_hole_in_the_stream_is_named_and_over_after_a_while() {
 }
 
 #[test]
+fn a_stamp_that_is_ahead_is_said_and_no_hole() {
+    let run = Run::new();
+    run.swing(0, 1500, 1e-2);
+    run.feed(1e6, 1e-2, motion(15.0));
+    run.swing(1501, 2500, 1e-2);
+    let warnings = run.warnings();
+    assert_eq!((run.stream().as_str(), warnings.len()), ("ok", 1), "{warnings:?}");
+    assert!(warnings[0].contains("t = 1000000 s") && warnings[0].contains("its time is wrong"), "{warnings:?}");
+}
+
+#[test]
 fn a_huge_step_is_taken_and_the_next_sample_is_called_far() {
     let run = Run::new();
     run.swing(0, 1000, 1e-2);

@@ -1,12 +1,9 @@
-//! Time stamps: one that is far ahead alone is none; a clock that was set back goes on from where it was, after an
-//! outage.
+//! Time stamps: one after a gap is believed once the next one agrees; a clock that was set back goes on from where it
+//! was, after an outage.
 
-use crate::identify::sample::{OUTAGE, PACE_SHARE, Skipped};
+use crate::identify::sample::{GAP, OUTAGE, PACE_SHARE, Skipped};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
-
-/// A stamp this many usual steps ahead is believed once the next one agrees.
-const AHEAD: f64 = 250.0;
 
 /// Steps of one length in a row that make up a clock: what is usual, or that it was set back.
 const STEADY: u32 = 10;
@@ -33,7 +30,7 @@ pub struct Clock {
     /// Another step, s, and how many have been like it since one was like the usual.
     other: f64,
     others: u32,
-    /// The last stamp that was not believed, the first of those that it goes on from, and how many there are.
+    /// The last stamp from before the record's end, the first of those that it goes on from, and how many there are.
     stray: Option<f64>,
     first: f64,
     steady: u32,
@@ -48,30 +45,39 @@ impl Clock {
         let Some(last) = self.last else { return Ok(stamp) };
         let t = stamp + self.shift;
         let step = t - last;
-        let agrees = self.stray.is_some_and(|stray| ALIKE.contains(&((stamp - stray) / self.pace)));
         if step <= 0.0 {
-            return self
-                .set_back(stamp, agrees, last)
-                .ok_or(Skipped::NotLater { t: stamp, previous: last - self.shift });
+            return self.set_back(stamp, last).ok_or(Skipped::NotLater { t: stamp, previous: last - self.shift });
         }
         if step + ROUNDING * t.abs() < 0.5 * sample_time {
             return Err(Skipped::TooSoon { t: stamp });
         }
-        if self.known >= STEADY && step > AHEAD * self.pace && !agrees {
-            self.stray = Some(stamp);
-            return Err(Skipped::Ahead { t: stamp, previous: last - self.shift });
-        }
         Ok(t)
     }
 
+    /// Whether a sample of that time comes after a gap: samples were lost, or its stamp is wrong.
+    pub fn is_after_gap(&self, t: f64) -> bool {
+        self.is_late(t, GAP)
+    }
+
+    /// What is said of a stamp that the next one came before.
+    pub fn ahead(&self, stamp: f64) -> Skipped {
+        Skipped::Ahead { t: stamp, previous: self.last.map_or(stamp, |last| last - self.shift) }
+    }
+
+    /// Whether that time is more than so many usual steps after the last sample.
+    fn is_late(&self, t: f64, steps: f64) -> bool {
+        self.known >= STEADY && self.last.is_some_and(|last| t - last > steps * self.pace)
+    }
+
     /// The time of a stamp of a clock that was set back, once that is sure.
-    fn set_back(&mut self, stamp: f64, agrees: bool, last: f64) -> Option<f64> {
+    fn set_back(&mut self, stamp: f64, last: f64) -> Option<f64> {
         if self.known < STEADY || self.stray == Some(stamp) {
             return None;
         }
+        let agrees = self.stray.is_some_and(|stray| ALIKE.contains(&((stamp - stray) / self.pace)));
         (self.first, self.steady) = if agrees { (self.first, self.steady + 1) } else { (stamp, 0) };
         self.stray = Some(stamp);
-        // what comes before the last sample alone says that its stamp was ahead
+        // what comes before the last sample alone says that its stamp was ahead by less than a gap
         if self.steady < STEADY || stamp + self.shift > self.before {
             return None;
         }
@@ -109,8 +115,7 @@ impl Clock {
     /// Whether the record has had no sample for longer than is usual, at a stamp that was skipped: it is later than the
     /// next sample can be, or one of several that came before the last.
     pub fn is_stale(&self, stamp: f64) -> bool {
-        let step = self.last.map_or(0.0, |last| stamp + self.shift - last);
-        self.known >= STEADY && (step > ALIKE.end * self.pace || self.steady >= 2)
+        self.is_late(stamp + self.shift, ALIKE.end) || self.known >= STEADY && self.steady >= 2
     }
 }
 
@@ -136,21 +141,20 @@ mod tests {
     }
 
     #[test]
-    fn one_stamp_far_ahead_is_skipped_alone() {
-        let seen = times(stamps(0.0, 50).chain([1e6]).chain(stamps(0.05, 50)));
-        assert!(seen.len() == 100 && seen[99] < 0.2, "{seen:?}");
+    fn a_sample_comes_after_a_gap_once_the_usual_step_is_known() {
+        let mut clock = Clock::default();
+        for stamp in stamps(0.0, 50) {
+            assert!(!clock.is_after_gap(stamp + 0.1) || stamp > 0.009);
+            let t = clock.time(stamp, 1e-3).unwrap();
+            clock.advance(t);
+        }
+        assert!(!clock.is_after_gap(0.053) && clock.is_after_gap(0.054) && clock.is_after_gap(1e6));
     }
 
     #[test]
     fn after_a_stamp_that_was_a_little_ahead_the_clock_is_what_it_was() {
-        let seen = times(stamps(0.0, 50).chain([0.066]).chain(stamps(0.051, 50)));
-        assert!(seen.is_sorted() && seen[51..].iter().zip(stamps(0.067, 30)).all(|(t, was)| (t - was).abs() < 1e-9));
-    }
-
-    #[test]
-    fn an_outage_is_believed_with_its_second_sample() {
-        let seen = times(stamps(0.0, 50).chain(stamps(5.0, 50)));
-        assert!(seen.len() == 99 && (seen[50] - 5.001).abs() < 1e-9, "{seen:?}");
+        let seen = times(stamps(0.0, 50).chain([0.053]).chain(stamps(0.051, 50)));
+        assert!(seen.is_sorted() && seen[51..].iter().zip(stamps(0.054, 30)).all(|(t, was)| (t - was).abs() < 1e-9));
     }
 
     #[test]
