@@ -18,10 +18,15 @@ const WITHIN: f64 = 5.0;
 /// Log-odds at which what an outage has brought is told.
 pub const DECISIVE: f64 = 6.0;
 
-/// Offsets that are begun from and the std about each, as parts of the motion's size: small ones are as likely as those
-/// of which a filter that is linear about none finds nothing.
-const STARTS: [[f64; 2]; 7] =
-    [[0.0, 0.1], [-0.3, 0.15], [0.3, 0.15], [-0.7, 0.25], [0.7, 0.25], [-1.3, 0.4], [1.3, 0.4]];
+/// Where a channel that came back may really be, as a part of its size, and the std about it: what it reads beyond that
+/// is its offset, however large that is, and a filter is linear about either.
+const MOTIONS: [[f64; 2]; 6] = [[-0.3, 0.15], [0.3, 0.15], [-0.7, 0.25], [0.7, 0.25], [-1.3, 0.4], [1.3, 0.4]];
+
+/// The std of an offset that is small beside the motion, as a part of its size: such ones are as likely.
+const SMALL: f64 = 0.1;
+
+/// Filters by channel: one about what was read, one about each of [`MOTIONS`].
+const STARTS: usize = 1 + MOTIONS.len();
 
 /// What the last outage may have brought.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -30,7 +35,7 @@ pub struct AfterOutage {
     nothing: f64,
     law: Hypothesis,
     /// By channel and start.
-    offsets: [[Hypothesis; STARTS.len()]; 2],
+    offsets: [[Hypothesis; STARTS]; 2],
     /// Time since the outage, s; `None` where there was none of late.
     since: Option<f64>,
     /// Time since the outage from which what is left of an offset that was found is taken off, s.
@@ -65,7 +70,7 @@ impl AfterOutage {
         AfterOutage {
             nothing: 0.0,
             law: new(Kind::Law { times: 1, unnoticed: false }),
-            offsets: Channel::ALL.map(|channel| STARTS.map(|_| new(Kind::Offset(channel)))),
+            offsets: Channel::ALL.map(|channel| std::array::from_fn(|_| new(Kind::Offset(channel)))),
             since: None,
             due: f64::INFINITY,
             taken: None,
@@ -79,10 +84,13 @@ impl AfterOutage {
         self.nothing = 0.0;
         self.law.begin(&start, law, 0.0, 0.0, 0.0);
         for (index, starts) in self.offsets.iter_mut().enumerate() {
-            let odds = if measured[index] { -(STARTS.len() as f64).ln() } else { f64::NEG_INFINITY };
-            for (hypothesis, [offset, about]) in starts.iter_mut().zip(STARTS) {
+            let odds = if measured[index] { -(STARTS as f64).ln() } else { f64::NEG_INFINITY };
+            let read = start.mean[index];
+            let beyond = MOTIONS.map(|[motion, about]| [read - motion * sizes[index], about]);
+            let offsets = std::iter::once([0.0, SMALL]).chain(beyond);
+            for (hypothesis, [offset, about]) in starts.iter_mut().zip(offsets) {
                 let law = &Expected { size: law.size.map(|size| about * size), ..*law };
-                let (mut start, offset, variance) = (start, offset * sizes[index], law.size[index].powi(2));
+                let (mut start, variance) = (start, law.size[index].powi(2));
                 (start.mean[index], start.mean[2]) = (start.mean[index] - offset, offset);
                 let covariance = &mut start.covariance;
                 covariance[index][index] += variance;
@@ -155,10 +163,15 @@ impl AfterOutage {
         }
     }
 
-    /// Whether an offset is likelier than nothing: the law in use has followed what was read and says little then.
-    pub fn speaks(&self) -> bool {
-        let [q, qd] = Channel::ALL.map(|channel| self.offset(channel).log);
-        self.is_open() && !self.is_found() && q.max(qd) - self.nothing > DECISIVE
+    /// Log-odds of an offset that has not been found against nothing; −∞ where none is asked for. Where it is likelier
+    /// the law in use has followed what was read, and says little.
+    pub fn lead(&self) -> f64 {
+        if self.is_open() && !self.is_found() {
+            let [q, qd] = Channel::ALL.map(|channel| self.offset(channel).log);
+            q.max(qd) - self.nothing
+        } else {
+            f64::NEG_INFINITY
+        }
     }
 
     /// Whether it is time to take off what is left of an offset.

@@ -107,11 +107,12 @@ impl Tracker {
     }
 
     /// A validated law that explains its record says what a reading can be, and what F did, unless it may be another
-    /// one since an outage.
+    /// one since an outage, or a sensor may have come back off: nothing is held until that is twenty times less likely.
     fn tells_readings(&self) -> bool {
         let law = &self.monitor.law;
         let is_known = self.regime.law().is_some() && !self.regime.is_unconfirmed();
-        law.running && law.explains && is_known && !self.intake.undecided
+        let is_as_before = !self.intake.undecided && self.intake.after_outage.lead() < -TWENTY_TO_ONE;
+        law.running && law.explains && is_known && is_as_before
     }
 
     /// What may be a sensor's fault is held against such a law, or without one against the motion itself.

@@ -6,6 +6,7 @@ use crate::estimation::TWENTY_TO_ONE;
 use crate::evidence::Suspect;
 use crate::identify::change::Decision;
 use crate::identify::drift::INSTANTS;
+use crate::identify::faults::DECISIVE;
 use crate::identify::problem::Problem;
 
 /// A linear estimate of a change that moves a coefficient by more stds of a switch than this is none to begin with. The
@@ -23,7 +24,7 @@ impl Tracker {
         monitor.unusual_since = unusual.then(|| monitor.unusual_since.unwrap_or(end));
         let deviates = self.monitor.prediction.deviates(setup.settings, self.now());
         let alarms = suspect.evidence > threshold || deviates;
-        let asks = alarms || self.intake.after_outage.speaks();
+        let asks = alarms || self.intake.after_outage.lead() > DECISIVE;
         self.intake.undecided &= asks;
         // in nats of a law that is known for sure, as those are of an effect or a lag
         let excess = (suspect.evidence - threshold) / decision.caution();
