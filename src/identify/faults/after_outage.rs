@@ -34,6 +34,8 @@ pub struct AfterOutage {
     /// Log-likelihood of nothing, the law in use going on, nats.
     nothing: f64,
     law: Hypothesis,
+    /// Whether the law has begun anew, so that the outage did not bring it.
+    anew: bool,
     /// By channel and start.
     offsets: [[Hypothesis; STARTS]; 2],
     /// Time since the outage, s; `None` where there was none of late.
@@ -70,6 +72,7 @@ impl AfterOutage {
         AfterOutage {
             nothing: 0.0,
             law: new(Kind::Law { times: 1, unnoticed: false }),
+            anew: false,
             offsets: Channel::ALL.map(|channel| std::array::from_fn(|_| new(Kind::Offset(channel)))),
             since: None,
             due: f64::INFINITY,
@@ -98,7 +101,7 @@ impl AfterOutage {
                 hypothesis.begin(&start, law, 0.0, 0.0, odds);
             }
         }
-        (self.since, self.due, self.taken) = (Some(0.0), f64::INFINITY, None);
+        (self.anew, self.since, self.due, self.taken) = (false, Some(0.0), f64::INFINITY, None);
     }
 
     /// An offset of the channel was found without an outage and taken off: this variance of it is left.
@@ -109,7 +112,7 @@ impl AfterOutage {
             let odds = if place == 0 { 0.0 } else { f64::NEG_INFINITY };
             hypothesis.begin(&under_law(state), law, 0.0, 0.0, odds);
         }
-        (self.due, self.taken) = (0.0, Some((channel, 0.0)));
+        (self.anew, self.due, self.taken) = (true, 0.0, Some((channel, 0.0)));
     }
 
     /// Nothing is asked any more.
@@ -156,6 +159,7 @@ impl AfterOutage {
         let rare = event(dt).ln();
         if self.law.log < self.nothing + rare {
             self.law.begin(&under_law(state), law, dt, self.nothing, rare);
+            self.anew = true;
         }
         match self.since.map(|since| since + dt).filter(|since| *since < WITHIN) {
             None => self.end(),
@@ -182,6 +186,13 @@ impl AfterOutage {
     /// Whether an offset has been taken off since the outage.
     pub fn is_found(&self) -> bool {
         self.taken.is_some()
+    }
+
+    /// An offset that was taken off, and the time since the outage, s, where another law since then is as likely now.
+    pub fn in_doubt(&self) -> Option<(Channel, f64, f64)> {
+        let ((channel, taken), since) = self.taken.zip(self.since)?;
+        let odds = self.offset(channel).log - self.law.log;
+        (!self.anew && odds < DECISIVE).then_some((channel, taken, since))
     }
 
     /// The offset has been taken off the readings since the outage, and the law goes on without it.

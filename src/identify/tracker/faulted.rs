@@ -274,8 +274,18 @@ impl Tracker {
     fn correct_offset(&mut self, returned: &Returned) {
         let Returned { channel, offset, since, .. } = *returned;
         let is_first = !self.intake.after_outage.is_found();
-        self.intake.quarantine.take_off(channel, offset);
         self.intake.after_outage.correct(returned);
+        self.take_off(channel, offset, since);
+        self.segment.begin_run(&self.window);
+        if is_first {
+            self.monitor.law.forget_since_outage();
+        }
+        self.restart_law(returned.filter);
+    }
+
+    /// Takes an offset off what was read since an outage, `since` s ago; returns the number of the first sample after.
+    fn take_off(&mut self, channel: Channel, offset: f64, since: f64) -> u64 {
+        self.intake.quarantine.take_off(channel, offset);
         let count = self.count_since(self.now() - since - 0.5 * self.window.pace());
         let take_off = |Reading { sample, .. }: &mut Reading| match channel {
             Channel::Q => sample.q -= offset,
@@ -283,11 +293,14 @@ impl Tracker {
         };
         self.intake.quarantine.amend(u64::MAX, take_off);
         self.window.amend(count, take_off);
-        self.segment.begin_run(&self.window);
-        if is_first {
-            self.monitor.law.forget_since_outage();
-        }
-        self.restart_law(returned.filter);
+        self.window.end() - count
+    }
+
+    /// Where the law seems to have switched after an offset was told, and another law since the outage is as likely as
+    /// that: the outage brought the law and no offset. Returns the number of the first sample after it.
+    pub(super) fn take_back_offset(&mut self) -> Option<u64> {
+        let (channel, taken, since) = self.intake.after_outage.in_doubt()?;
+        Some(self.take_off(channel, -taken, since))
     }
 
     /// What spoke for a switch was a fault: the law in use goes on from a state that the fault did not touch.

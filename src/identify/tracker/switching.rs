@@ -28,11 +28,12 @@ impl Tracker {
         self.intake.undecided &= asks;
         // in nats of a law that is known for sure, as those are of an effect or a lag
         let excess = (suspect.evidence - threshold) / decision.caution();
-        let is_fault = alarms && self.is_fault(setup.problem, suspect);
-        if is_fault
-            || asks && self.is_offset(suspect)
-            || alarms && (self.is_lag(setup.problem, excess) || self.is_effect(excess))
-        {
+        let is_none = asks && self.is_offset(suspect)
+            || alarms
+                && (self.is_fault(setup.problem, suspect)
+                    || self.is_lag(setup.problem, excess)
+                    || self.is_effect(excess));
+        if is_none {
             return;
         }
         if alarms {
@@ -91,13 +92,15 @@ impl Tracker {
         bank.look_at_all();
         let suspect = bank.suspect().unwrap_or(*suspect);
         let last = self.window.ready() - 1;
-        let instant = self.monitor.bank.likeliest_start(&suspect, threshold);
-        let start = (self.monitor.bank.after(&suspect, threshold) + 1).min(last);
-        let time = |number: u64| self.window.sample(number).t;
-        let distance = self.monitor.bank.distance_of_switch(time(instant), self.now(), time);
         if self.regime.is_unconfirmed() {
             return self.take_back(problem);
         }
+        let brought = self.take_back_offset();
+        let bank = &self.monitor.bank;
+        let instant = brought.unwrap_or_else(|| bank.likeliest_start(&suspect, threshold));
+        let start = brought.unwrap_or_else(|| (bank.after(&suspect, threshold) + 1).min(last));
+        let time = |number: u64| self.window.sample(number).t;
+        let distance = bank.distance_of_switch(time(instant), self.now(), time);
         self.intake.after_outage.end();
         self.keep_law(problem);
         self.set_spread(problem);
